@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     from verify.schemes.scheme import Scheme as Scheme
     from verify.verdict import Verdict as Verdict
 
-# Each public name with the module that it comes from, and in a line what it is: what help(verify)
-# begins with. Imported when it is used, so that `verify --help` and a proof wait for nothing else.
+# Each public name with its module and a line that describes it, the table of help(verify).
+# A module is imported when its name is used, so that `verify --help` and a proof wait for no other.
 _NAMES = {
     "run": ("verify.calls.run", "N steps: values with error bounds, and the orbit as arrays"),
     "sweep": ("verify.calls.sweep", "runs over lists of schemes, steps, starts: a table"),
@@ -106,6 +106,7 @@ _NAMES = {
     "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
     "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),
 }
+# Public names that are modules themselves, not attributes of one.
 _MODULES = ("schemes", "systems")
 _WIDTH = max(map(len, _NAMES))
 __all__ = [*_NAMES]
@@ -114,7 +115,7 @@ __doc__ = (__doc__ or "") + "\n".join(  # None by python -OO
 )
 
 
-register()  # what hypothesis draws, whichever of the two is imported first
+register()  # of classes with hypothesis, whichever of the two is imported first
 
 
 def __getattr__(name: str) -> Any:

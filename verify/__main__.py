@@ -1,4 +1,4 @@
-"""`python -m verify` is the command `verify`, and so is `main`, which the installed script calls.
+"""The entry of `python -m verify`, and of the command `verify`, whose script calls `main`.
 
 Python itself puts the current folder first on the path, and has imported `verify` and what its own
 `-m` needs by the time that this is read; the command `verify` never looks there.
@@ -9,12 +9,13 @@ import os
 import sys
 
 _INTERRUPTED = 130
-# Objects; what a command imports stays, and to look for cycles in it takes a tenth of the time.
+# Objects between two collections: imported modules stay for good, and Python's default of 700 would
+# spend a tenth of a short command on looking for cycles among them.
 _BETWEEN_COLLECTIONS = 50_000
 
 
 def main() -> None:
-    """Run the command line and exit; an interruption while it is imported is one, too."""
+    """Run the command line and exit, with the status of an interruption also during the import."""
     gc.set_threshold(_BETWEEN_COLLECTIONS, 20, 20)
     try:
         from verify.commands.main import main as run
@@ -24,7 +25,8 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    # Where verify itself does not come from that folder, nothing else shall.
+    # Python has put the current folder first on the path. Where verify itself does not come from
+    # that folder, no other module may: a file of the user's, such as random.py, would be imported.
     here = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))  # noqa: PTH120
     if not sys.flags.safe_path and os.path.realpath(sys.path[0]) != here:
         del sys.path[0]

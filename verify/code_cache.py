@@ -1,7 +1,7 @@
-"""Machine code of kernels, and what was read of a Hamiltonian, on disk for the processes to come.
+"""A cache on disk, for later processes: machine code of kernels, and parsed Hamiltonians.
 
-Contract: `load(key)` gives the very bytes that `keep(key, code)` was given, by this user, or None.
-What is loaded will be run. So the folder and each file in it must be this user's own and nobody
+Contract: `load(key)` returns the very bytes that this user passed to `keep(key, code)`, or None.
+Loaded code is run. So the folder and each file in it must be this user's own and nobody
 else's to write, and no link is followed to them; a digest of key and code stands in the file, so
 that what is damaged, or was renamed, is nothing. Nothing here fails: a full disk, a home that is
 read-only or a folder of somebody else's mean that code is compiled anew and not kept.
@@ -24,6 +24,7 @@ from verify.errors import InputError
 from verify.files import write_atomically
 
 VARIABLE, OFF = "VERIFY_CACHE", "off"
+# Of the whole folder, and of a file that is read.
 MOST_BYTES = 256 * 2**20
 _OWNED = hasattr(os, "geteuid") and os.open in os.supports_dir_fd
 _FOLDER, _SUFFIX = "kernels", ".kernel"
@@ -32,7 +33,7 @@ _DIGEST = hashlib.sha256().digest_size
 
 
 def key_of(*parts: str) -> str:
-    """A name for these texts, in this order."""
+    """Return a digest of these texts in this order, to name an entry."""
     digest = hashlib.sha256()
     for part in parts:
         raw = part.encode(errors="surrogatepass")  # what is typed may be no Unicode
@@ -41,19 +42,20 @@ def key_of(*parts: str) -> str:
 
 
 def folder() -> Path | None:
-    """Where code is kept; None where nothing is.
+    """Return the folder where code is kept; None where none is to be kept.
 
     Raises InputError where VERIFY_CACHE is neither a folder's absolute path nor `off`.
     """
-    given = os.environ.get(VARIABLE, "")
-    if given == OFF or not _OWNED:
+    setting = os.environ.get(VARIABLE, "")
+    # Without owners of files there is no telling whose code a file holds: nothing is kept.
+    if setting == OFF or not _OWNED:
         return None
-    if given:
-        if not Path(given).is_absolute():
-            raise InputError(VARIABLE, given, f"give a folder's absolute path, or {OFF}")
-        if Path(given).exists() and not Path(given).is_dir():
-            raise InputError(VARIABLE, given, f"is no folder; give one, or {OFF}")
-        return Path(given, _FOLDER)
+    if setting:
+        if not Path(setting).is_absolute():
+            raise InputError(VARIABLE, setting, f"give a folder's absolute path, or {OFF}")
+        if Path(setting).exists() and not Path(setting).is_dir():
+            raise InputError(VARIABLE, setting, f"is no folder; give one, or {OFF}")
+        return Path(setting, _FOLDER)
     general = os.environ.get("XDG_CACHE_HOME", "")
     try:
         # The convention has a relative one ignored.
@@ -64,15 +66,18 @@ def folder() -> Path | None:
 
 
 def load(key: str) -> bytes | None:
-    """The code that was kept under the key; None where there is none to be trusted."""
-    with _opened(folder()) as directory:
-        content = b"" if directory is None else _read(directory, key + _SUFFIX)
+    """Return the code that was kept under the key; None where there is none to be trusted."""
+    with _open_folder(folder()) as directory:
+        content = b"" if directory is None else _read_entry(directory, key + _SUFFIX)
     code = content[_DIGEST:]
+    # The digest is of the key, too: a file that was renamed to another key does not match.
     return code if content[:_DIGEST] == _digest(key, code) else None
 
 
-def _read(directory: int, name: str) -> bytes:
-    """What is in the file; nothing where it is not this user's own, or cannot be read."""
+def _read_entry(directory: int, name: str) -> bytes:
+    """Return the content of the file; b"" where it is not this user's, or cannot be read."""
+    # O_NOFOLLOW: a link could lead to code that somebody else may write. O_NONBLOCK: to open a pipe
+    # would wait for a writer.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         file = os.open(name, flags, dir_fd=directory)
@@ -93,14 +98,15 @@ def _read(directory: int, name: str) -> bytes:
 
 
 def keep(key: str, code: bytes) -> None:
-    """Keeps the code under the key, in place of what was kept before, where that can be done."""
+    """Keep the code under the key, in place of an older one, where that can be done."""
     path = folder()
     if path is None:
         return
     with suppress(OSError):
         for each in (path.parent, path):
+            # Private from the beginning: what others may write to is refused later by `_is_ours`.
             each.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with _opened(path) as directory:
+    with _open_folder(path) as directory:
         if directory is not None:
             with suppress(OSError, InputError):
                 write_atomically(path / f"{key}{_SUFFIX}", _digest(key, code) + code)
@@ -112,13 +118,15 @@ def _digest(key: str, code: bytes) -> bytes:
 
 
 def _is_ours(status: os.stat_result) -> bool:
-    """Whether it is this user's, and nobody else may write there."""
+    """Return True if the file is this user's and nobody else may write to it."""
     return status.st_uid == os.geteuid() and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
 @contextmanager
-def _opened(path: Path | None) -> Iterator[int | None]:
-    """The folder, held while it is looked at; None where it is not to be trusted."""
+def _open_folder(path: Path | None) -> Iterator[int | None]:
+    """Open the folder for a while, and yield its descriptor; None where it is not to be trusted."""
+    # Files are opened relative to this descriptor, so that nobody can put another folder in its
+    # place between the check and the use.
     directory = None
     if path is not None:
         with suppress(OSError):
@@ -132,16 +140,16 @@ def _opened(path: Path | None) -> Iterator[int | None]:
 
 
 def _drop_oldest(directory: int) -> None:
-    """Deletes what was used the longest time ago, until the rest is within the bound."""
-    found = []
+    """Delete the entries that were used the longest time ago, until the rest is small enough."""
+    files = []
     with suppress(OSError), os.scandir(directory) as entries:
         for entry in entries:
             if _ENTRY.match(entry.name):
                 with suppress(OSError):  # gone meanwhile, by another process
                     status = entry.stat(follow_symlinks=False)
-                    found.append((status.st_mtime_ns, entry.name, status.st_size))
-    size = sum(each for _, _, each in found)
-    for _, name, each in sorted(found):
+                    files.append((status.st_mtime_ns, entry.name, status.st_size))
+    size = sum(each for _, _, each in files)
+    for _, name, each in sorted(files):
         if size <= MOST_BYTES:
             return
         with suppress(OSError):

@@ -1,5 +1,4 @@
-"""What is shipped beside the code: what is verified (`reports/`), and published data
-(`reference/`).
+"""The content shipped with the code: scenes and claims (`reports/`), published data (`reference/`).
 
 In a checkout both lie beside the package, in a wheel inside it, in `verify/data`.
 """
@@ -16,45 +15,50 @@ _CHECKOUT = "pyproject.toml"  # beside the package; else a folder of that name i
 
 
 def content(*names: str) -> Path:
-    """The path of a file or folder of the content, such as `content("reports", "paper")`."""
-    return Path(_root(_package()), *names)
+    """Return the path of a file or folder of the content, such as `content("reports", "paper")`."""
+    return Path(_find_root(_package()), *names)
 
 
 def checkout() -> Path | None:
-    """The folder of the checkout that the package lies in; None where it is installed."""
-    root = _root(_package())
+    """Return the folder of the checkout that holds the package; None where it is installed."""
+    root = _find_root(_package())
     return root if root == _package().parent else None
 
 
 def shipped_files(package: Path | None = None) -> dict[str, Path]:
-    """Every file of the package and of the content, of whatever kind, by its name.
+    """Return every file of the package and of the content by its name, of whatever kind.
 
-    A wheel's names are those of the checkout that it was made from. Left out is what Python, an
-    editor or the system writes there: bytecode, hidden files, backups. `package`: another one's
-    folder.
+    A wheel has the names of the checkout that it was built from. Files that Python, an editor or
+    the system writes there are left out: bytecode, hidden files, backups. `package`: the folder of
+    another installation.
     """
     package = package or _package()
-    root = _root(package)
-    shipped = {f"verify/{name}": path for name, path in _below(package) if not _is_content(name)}
+    root = _find_root(package)
+    shipped = {
+        f"verify/{name}": path for name, path in _walk_files(package) if not _is_content(name)
+    }
     for folder in _FOLDERS:
-        shipped |= {f"{folder}/{name}": path for name, path in _below(root / folder)}
+        shipped |= {f"{folder}/{name}": path for name, path in _walk_files(root / folder)}
     return shipped
 
 
 def digest_of(files: Mapping[str, Path], others: str = "") -> str:
-    """A name for what these files hold, each under its name, and for `others`."""
+    """Return the SHA-256 digest of these files, each with its name, and of `others`."""
     digest = hashlib.sha256(others.encode())
     for name, path in sorted(files.items()):
         raw = path.read_bytes()
+        # With its length, so that no content can imitate the beginning of the next file.
         digest.update(f"\n{name} {len(raw)}\n".encode() + raw)
     return digest.hexdigest()
 
 
 def is_shipped(path: Path) -> bool:
-    """Whether the path lies in the package or in the content, so that to write there is to change
-    what is shipped.
+    """Return True if the path lies in the package or in the content.
+
+    Writing there would change what is shipped, and the digest of all shipped files with it.
     """
-    root, place = _root(_package()), path.resolve()
+    # With links followed: a link into the package leads there, too.
+    root, place = _find_root(_package()), path.resolve()
     folders = (_package(), *(root / name for name in _FOLDERS))
     return any(place.is_relative_to(folder.resolve()) for folder in folders)
 
@@ -63,8 +67,8 @@ def _package() -> Path:
     return Path(str(files("verify")))
 
 
-def _root(package: Path) -> Path:
-    """The folder with both folders of the content; RuntimeError where neither place has them."""
+def _find_root(package: Path) -> Path:
+    """Return the folder that holds the content; RuntimeError where neither place has all of it."""
     for root in (package / _INSTALLED, package.parent):
         mine = root != package.parent or (root / _CHECKOUT).is_file()
         if mine and all((root / name).is_dir() for name in _FOLDERS):
@@ -76,7 +80,7 @@ def _is_content(name: str) -> bool:
     return name.partition("/")[0] == _INSTALLED
 
 
-def _below(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, Path]]:
+def _walk_files(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, Path]]:
     # Each command that keeps results goes through all files: scandir knows their kinds at once,
     # which is ten times as fast as to ask each path.
     with os.scandir(folder) as entries:
@@ -85,6 +89,6 @@ def _below(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, Path]]:
             if name.startswith(".") or name.endswith("~") or name == "__pycache__":
                 continue  # left behind
             if entry.is_dir(follow_symlinks=False):
-                yield from _below(entry.path, f"{prefix}{name}/")
+                yield from _walk_files(entry.path, f"{prefix}{name}/")
             elif entry.is_file():
                 yield f"{prefix}{name}", Path(entry.path)

@@ -1,4 +1,4 @@
-"""Kinds that are found by themselves: one file each, known by its name before it is imported."""
+"""Catalogues of kinds: one file each, listed by its name before it is imported."""
 
 import pkgutil
 from collections.abc import Iterable, Iterator
@@ -22,27 +22,28 @@ class Catalogue:
 
     @cached_property
     def _modules(self) -> dict[str, str]:
-        # By the names of files, not by those with dashes: what a seed draws hangs on the order.
-        found = sorted(_files(self.package, self.path))
-        modules = {file.replace("_", "-"): dotted for file, dotted in found}
-        if len(modules) < len(found):
+        # Sorted by the names of files, not by those with dashes: hypothesis draws from this order,
+        # so another one would change what a seed draws.
+        entries = sorted(_files(self.package, self.path))
+        modules = {file.replace("_", "-"): dotted for file, dotted in entries}
+        if len(modules) < len(entries):
             raise RuntimeError(f"{self.package}: two files have one name among {[*modules]}")
         return modules
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All names, in alphabetical order of their files; nothing is imported."""
+        """All names, in the alphabetical order of their files; none is imported."""
         return tuple(self._modules)
 
     def __contains__(self, name: object) -> bool:
         return name in self._modules
 
     def module(self, name: str) -> Any:
-        """The module of that name, imported. Raises KeyError where there is none."""
+        """Import and return the module of that name. Raises KeyError where there is none."""
         return import_module(self._modules[name])
 
     def folder(self, name: str) -> str:
-        """The name of the folder that its file lies in."""
+        """Return the name of the folder that the file of this name lies in."""
         return self._modules[name].split(".")[-2]
 
 

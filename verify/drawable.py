@@ -1,7 +1,7 @@
-"""Which classes can be drawn by hypothesis, and by which function of `verify.strategies`.
+"""Classes that hypothesis can draw, each with its function in `verify.strategies`.
 
-A class says so where it is made. Whoever draws them listens, and hears of those that are made later
-too: hypothesis costs nothing where it is not used.
+A class is recorded by its decorator. A listener is called with each class, also with those that are
+defined later: so hypothesis costs nothing where it is not used.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ _LISTENERS: list[Listener] = []
 
 
 def drawn_by(name: str) -> Callable[[C], C]:
-    """A decorator: the class is drawn by `verify.strategies.name()`."""
+    """Return a decorator that records a class as drawn by `verify.strategies.name()`."""
 
     def record(cls: C) -> C:
         _CLASSES.append((cls, name))
@@ -27,7 +27,7 @@ def drawn_by(name: str) -> Callable[[C], C]:
 
 
 def listen(listener: Listener) -> None:
-    """The listener is called with each class there is, and with those to come."""
+    """Call the listener with each class, those of now and those to come."""
     for cls, name in _CLASSES:
         listener(cls, name)
     if listener not in _LISTENERS:

@@ -1,15 +1,16 @@
-"""The errors that a user is told in one line: of input, and of where the work is done."""
+"""Errors that a user reads in one line: those of input, and those of the place of work."""
 
 import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
-# What a terminal acts on, or turns the order of, instead of showing it; tabs and ends of lines not.
+# Characters that a terminal obeys, or by which it turns the order of the text, instead of showing
+# them: control characters, marks of direction, lone surrogates. Tabs and line feeds are harmless.
 CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 class _NotGiven(str):
-    """The text of what was not given at all; an empty text was."""
+    """The text in place of a missing value; an empty text is a value."""
 
 
 NOT_GIVEN = _NotGiven()
@@ -25,65 +26,67 @@ class InputError(ValueError):
         self.name = name
         self.value = value
         self.problem = problem
-        given = "" if isinstance(value, _NotGiven) else f"={_short(value)}"
-        super().__init__(without_controls(f"{name}{given}: {problem}"))
+        value_text = "" if isinstance(value, _NotGiven) else f"={_shorten(value)}"
+        super().__init__(without_controls(f"{name}{value_text}: {problem}"))
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
-        """As a worker process sends it: by its three parts, not by its message."""
-        value = self.value if isinstance(self.value, _NotGiven) else _short(self.value)
+        """Pickle the error by its three parts, as a worker process sends it."""
+        # BaseException would pickle the message alone, and call the class with one argument.
+        value = self.value if isinstance(self.value, _NotGiven) else _shorten(self.value)
         return type(self), (self.name, value, self.problem)
 
 
 class LimitError(InputError):
-    """Beyond what is handled exactly: too large, or of a function that is not known.
+    """Input beyond what is handled exactly: too large, or with an unknown function.
 
-    A claim that prints it is no mistake of the file; it is left undecided.
+    A claim with such a formula is no mistake of its file, and is left undecided.
     """
 
 
 class PlaceError(RuntimeError):
-    """The place where tasks run fails them: workers lost, a scheduler gone, other code there.
+    """A failure of the place where tasks run: workers or a scheduler lost, or other code there.
 
-    One line. The command line turns it into exit status 2; what was finished is kept.
+    The message is one line. The command line turns it into exit status 2; finished tasks are kept.
     """
 
 
-def unknown(
+def unknown_name(
     source: str,
     name: object,
-    allowed: Iterable[str],
+    candidates: Iterable[str],
     more: str = "",
     aliases: Mapping[str, str] = MappingProxyType({}),
 ) -> InputError:
-    """The error for a name that is none of those allowed; the nearest of them is asked for.
+    """Return the error for a name outside `candidates`, which suggests the nearest of them.
 
-    `more` is said after them; `aliases` are other names, with those that they stand for.
+    `more` ends the message; `aliases` maps further names to those that they stand for.
     """
     from difflib import get_close_matches
 
-    names = list(allowed)
+    names = list(candidates)
     plain = {**aliases, **{plain_name(each): each for each in reversed(names)}}
-    given = plain_name(str(name))
-    near = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", given)]
-    near = sorted(near, key=len, reverse=True) or get_close_matches(given, plain, 1, 0.6)
-    meant = is_meant(plain[near[0]] if near else "")
-    return InputError(source, name, f"unknown; {meant}allowed: {', '.join(names)}{more}")
+    plain_text = plain_name(str(name))
+    # Whole words first: `duffing oscillator` is nearer to `duffing` than its letters are.
+    near = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", plain_text)]
+    near = sorted(near, key=len, reverse=True) or get_close_matches(plain_text, plain, 1, 0.6)
+    question = format_suggestion(plain[near[0]] if near else "")
+    return InputError(source, name, f"unknown; {question}allowed: {', '.join(names)}{more}")
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
-    """Of those names the one that is meant, as far as its letters tell; empty where none is."""
+def find_nearest(name: str, names: Iterable[str]) -> str:
+    """Return the one of `names` that is spelt most like `name`; empty where none is similar."""
     from difflib import get_close_matches
 
     return next(iter(get_close_matches(name, list(names), 1, 0.6)), "")
 
 
-def is_meant(name: str) -> str:
-    """The question whether that name is meant, and a blank; empty where there is none."""
+def format_suggestion(name: str) -> str:
+    """Return the question whether that name is meant, and a blank; empty for no name."""
     return f"is {name} meant? " if name else ""
 
 
 def plain_name(name: str) -> str:
-    """The name in small letters, a dash in place of spaces, dashes and underscores.
+    """Return the name in small letters, with a dash for each run of spaces, dashes, underscores.
 
     >>> plain_name(" Double_Well ")
     'double-well'
@@ -92,12 +95,12 @@ def plain_name(name: str) -> str:
 
 
 def without_controls(text: str) -> str:
-    """The text as a terminal may be given it."""
+    """Return the text with a replacement character for each that a terminal may not get."""
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
-def _short(value: object) -> str:
-    """The value as one short line, however long or many-lined the user's text was."""
+def _shorten(value: object) -> str:
+    """Return the value as one short line, however long the user's text is."""
     try:
         text = value if isinstance(value, str) else repr(value)
     except ValueError:  # an integer beyond Python's limit of printed digits

@@ -1,7 +1,7 @@
-"""Files as they are read and written: whole ones, regular ones, and never a part of one.
+"""Reading and writing of whole regular files.
 
-What is read may be anybody's: a device, a pipe and a file beyond a limit are refused before they
-are read. What is written replaces a regular file or nothing.
+A file that is read may be anybody's: a device, a pipe and a file beyond a limit are refused before
+they are read. A file that is written replaces a regular file or nothing, never in part.
 """
 
 import os
@@ -18,13 +18,13 @@ from verify.errors import InputError
 
 MOST_BYTES = 64 * 2**20
 MOST_TEXT = 4 * 2**20  # of what people write by hand
-_HERE = f"@{platform.node()}"  # of several machines that share a folder
+_MACHINE_MARK = f"@{platform.node()}"  # of several machines that share a folder
 _MOST_NAMES = 1000  # of a folder, among which one is looked for that may be meant
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[BinaryIO]:
-    """A regular file, to be read while this is open.
+def open_regular_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a regular file for reading, as a context manager.
 
     Raises InputError, which names it, for what is not there, is no regular file or cannot be read.
     """
@@ -39,11 +39,11 @@ def opened(path: Path) -> Iterator[BinaryIO]:
             yield file
     except OSError as error:
         problem = error.strerror or "cannot be read"
-        raise InputError("file", str(path), problem + _instead(path, error)) from None
+        raise InputError("file", str(path), problem + _suggest_instead(path, error)) from None
 
 
-def _instead(path: Path, error: OSError) -> str:
-    """What to give for a file that cannot be opened, where that can be told."""
+def _suggest_instead(path: Path, error: OSError) -> str:
+    """Return advice for a file that cannot be opened; empty where there is none."""
     if isinstance(error, IsADirectoryError):
         return "; give a file"
     if not isinstance(error, FileNotFoundError):
@@ -54,32 +54,33 @@ def _instead(path: Path, error: OSError) -> str:
         return "; write / for \\ in a path"
     from difflib import get_close_matches
 
-    here: dict[str, Path] = {}
+    by_stem: dict[str, Path] = {}
     with suppress(OSError):
-        # Of two with one stem the last is taken: that of the same kind.
+        # Of two files with one stem the last stays in the table: that with the same suffix.
         some = islice(path.parent.iterdir(), _MOST_NAMES)
-        there = sorted(some, key=lambda each: (each.suffix == path.suffix, each))
-        here = {each.stem.lower(): each for each in there}
-    near = get_close_matches(path.stem.strip().lower(), here, n=1, cutoff=0.7)
-    return f"; is {here[near[0]]} meant?" if near else "; give a file that is there"
+        candidates = sorted(some, key=lambda each: (each.suffix == path.suffix, each))
+        by_stem = {each.stem.lower(): each for each in candidates}
+    near = get_close_matches(path.stem.strip().lower(), by_stem, n=1, cutoff=0.7)
+    return f"; is {by_stem[near[0]]} meant?" if near else "; give a file that is there"
 
 
 def read_bytes(path: Path, most: int | None = MOST_BYTES) -> bytes:
-    """A regular file's content; `most`: how many bytes are allowed. InputError as `opened`."""
-    with opened(path) as file:
+    """Return a regular file's content, of at most `most` bytes; errors as `open_regular_file`."""
+    with open_regular_file(path) as file:
         size = os.fstat(file.fileno()).st_size
         if most is not None and size > most:
             raise InputError("file", str(path), f"has {size} bytes; allowed: {most}")
+        # At most so many bytes even if the file has grown since its size was read.
         return file.read() if most is None else file.read(most)
 
 
 def read_text(path: Path, most: int | None = MOST_TEXT) -> str:
-    """As `read_bytes`, in UTF-8. Raises InputError where it is not."""
+    """Return a regular file's text in UTF-8. Raises InputError as `read_bytes` and `text_of`."""
     return text_of(read_bytes(path, most), str(path))
 
 
 def text_of(content: bytes, name: str) -> str:
-    """The content as text. Raises InputError where it is not UTF-8."""
+    """Decode the content as text. Raises InputError where it is not UTF-8."""
     try:
         return content.decode()
     except UnicodeDecodeError as error:
@@ -89,44 +90,46 @@ def text_of(content: bytes, name: str) -> str:
 
 
 def check_replaceable(path: Path, name: str = "file") -> None:
-    """InputError where something stands there that is not ours to replace, which stays as it is."""
+    """Raise InputError where the path is a folder, a link, a device or read-only."""
     try:
         mode = path.lstat().st_mode
     except OSError:
         return
-    what = "is a folder" if stat.S_ISDIR(mode) else "is no regular file, and is left as it is"
+    problem = "is a folder" if stat.S_ISDIR(mode) else "is no regular file, and is left as it is"
     if not stat.S_ISREG(mode):
-        raise InputError(name, str(path), "is a link" if stat.S_ISLNK(mode) else what)
+        raise InputError(name, str(path), "is a link" if stat.S_ISLNK(mode) else problem)
     if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
         raise InputError(name, str(path), "is read-only")
 
 
-def _by(process: int) -> str:
-    """What stands in the name of a file that the process is writing."""
+def _process_mark(process: int) -> str:
+    """Return the part of a temporary file's name that names the process writing it."""
     return f".of-{process}."
 
 
 def clear_unfinished(folder: Path, processes: Iterable[int]) -> None:
-    """Removes what these processes, which are no more, were writing there as they were ended."""
+    """Remove the temporary files of these processes, which have ended, from the folder."""
     for process in processes:
-        for path in folder.glob(f".*{_by(process)}*"):
+        for path in folder.glob(f".*{_process_mark(process)}*"):
             with suppress(OSError):
                 path.unlink()
 
 
 def clear_abandoned(folder: Path) -> None:
-    """Removes what processes of this machine that were killed had begun to write there."""
-    here = re.compile(rf"\..+\.of-(\d+)\.[0-9a-f]+{re.escape(_HERE)}")
+    """Remove the temporary files of killed processes of this machine from the folder."""
+    pattern = re.compile(rf"\..+\.of-(\d+)\.[0-9a-f]+{re.escape(_MACHINE_MARK)}")
+    # Only files of this machine: whether a process of another one is alive cannot be found out.
     for path in folder.glob(".*"):
-        begun = here.fullmatch(path.name)
-        if begun and not _is_there(int(begun[1])):
+        match = pattern.fullmatch(path.name)
+        if match and not _is_running(int(match[1])):
             with suppress(OSError):
                 path.unlink()
 
 
-def _is_there(process: int) -> bool:
+def _is_running(process: int) -> bool:
     try:
         if os.name == "posix":  # elsewhere there is no signal that does nothing
+            # Signal 0 is not sent; the call only fails where the process does not exist.
             os.kill(process, 0)
     except (ProcessLookupError, OverflowError):
         return False
@@ -136,7 +139,7 @@ def _is_there(process: int) -> bool:
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """The whole content or the old one, never a part: written beside it, then renamed.
+    """Write the file whole or not at all: to a temporary one beside it, which is then renamed.
 
     Raises InputError where a link, a device, a pipe or a read-only file stands there, and OSError,
     which names the file, where it cannot be written.
@@ -144,14 +147,18 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    name = f".{path.name[:100]}{_by(os.getpid())}{os.urandom(8).hex()}{_HERE}"
+    # Hidden, so that a listing of results does not see it, and with the process and machine in it,
+    # so that `clear_abandoned` can tell whose it was.
+    name = f".{path.name[:100]}{_process_mark(os.getpid())}{os.urandom(8).hex()}{_MACHINE_MARK}"
     temporary = path.with_name(name)  # known before it is made: an interruption may come at once
     try:
+        # O_EXCL: nothing may stand there, no link either. The mode opens the file to others only
+        # when it is whole.
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "wb") as file:
             file.write(raw)
             file.flush()
-            os.fsync(file.fileno())
+            os.fsync(file.fileno())  # else a crash after the renaming could leave an empty file
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException as error:

@@ -1,4 +1,4 @@
-"""The format of our JSON files: its name and version under the key `format`, looked at first.
+"""The format of our JSON files: its name and version under the key `format`, read first.
 
     {"format": "areaproof certificate 2", …}
 
@@ -13,34 +13,36 @@ from pathlib import Path
 from typing import Any
 
 from verify.errors import InputError
-from verify.files import opened, read_bytes
+from verify.files import open_regular_file, read_bytes
 
 _BEGINNING = 200  # bytes within which our files name their format
 
 
-def read_json(path: Path, wanted: str) -> dict[str, Any]:
-    """The object of that format in a file. InputError for what is not there, or no such JSON."""
+def read_json(path: Path, expected: str) -> dict[str, Any]:
+    """Read the object of that format from a file. InputError where there is no such file."""
     try:
-        data = json.loads(read_bytes(path), object_pairs_hook=unique)
+        data = json.loads(read_bytes(path), object_pairs_hook=reject_repeated_keys)
     except InputError:
         raise
     except RecursionError:
+        # Arrays nested thousands deep exhaust the stack of Python's parser.
         raise InputError("file", str(path), "is not JSON") from None
     except ValueError as error:
         raise InputError("file", str(path), f"is not JSON: {error}") from None
-    return check_format(data, wanted, str(path))
+    return check_format(data, expected, str(path))
 
 
-def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """The object; ValueError where a key stands twice, of which each reader may take another."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
+def reject_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Build the object; ValueError where a key stands twice."""
+    # json takes the last of two, other readers the first: they would read different files.
+    result = dict(pairs)
+    if len(result) < len(pairs):
         raise ValueError("a key stands twice")
-    return found
+    return result
 
 
-def check_format(data: object, wanted: str, file: str) -> dict[str, Any]:
-    """The data, if they are an object of the format `wanted`.
+def check_format(data: object, expected: str, file: str) -> dict[str, Any]:
+    """Return the data if they are an object of the format `expected`.
 
     >>> check_format({"format": "areaproof certificate 3"}, "areaproof certificate 2", "lie2.json")
     Traceback (most recent call last):
@@ -49,34 +51,39 @@ newer; this version reads 'areaproof certificate 2'
 
     Raises InputError, one line, for an older or newer version, for another format and for none.
     """
-    if isinstance(data, dict) and data.get("format") == wanted:
+    if isinstance(data, dict) and data.get("format") == expected:
         return data
     if not isinstance(data, dict):
-        found = f"is no JSON object, but {_short(data)}"
+        problem = f"is no JSON object, but {_shorten(data)}"
     elif "format" not in data:
-        found = "names no format"
+        problem = "names no format"
     else:
-        found = f"has the format {_short(data['format'])}{_age(data['format'], wanted)}"
-    raise InputError("file", file, f"{found}; this version reads {wanted!r}")
+        problem = (
+            f"has the format {_shorten(data['format'])}{_describe_age(data['format'], expected)}"
+        )
+    raise InputError("file", file, f"{problem}; this version reads {expected!r}")
 
 
-def names_format(path: Path, wanted: str) -> bool:
-    """Whether a file's beginning names this format, of whatever version; False where none is."""
+def names_format(path: Path, expected: str) -> bool:
+    """Return True if a file's beginning names this format, of whatever version."""
     try:
-        with opened(path) as file:
-            return wanted.rpartition(" ")[0].encode() in file.read(_BEGINNING)
+        with open_regular_file(path) as file:
+            return expected.rpartition(" ")[0].encode() in file.read(_BEGINNING)
     except InputError:
         return False
 
 
-def _age(found: object, wanted: str) -> str:
-    """Whether it is the same format of another version."""
-    (name, _, version), (own, _, current) = (str(x).rpartition(" ") for x in (found, wanted))
-    if name != own or not version.isdecimal():
+def _describe_age(actual: object, expected: str) -> str:
+    """Return words for an older or newer version of the same format; else an empty text."""
+    (name, _, version), (expected_name, _, current) = (
+        str(x).rpartition(" ") for x in (actual, expected)
+    )
+    if name != expected_name or not version.isdecimal():
         return ""
+    # Nine digits decide; int() refuses texts of thousands of them.
     return ", which is newer" if int(version[:9]) > int(current) else ", which is older"
 
 
-def _short(value: object) -> str:
+def _shorten(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:60]}…"

@@ -1,4 +1,4 @@
-"""Tables of other libraries, which are used where they are installed: pandas, xarray."""
+"""Tables of optional libraries, pandas and xarray."""
 
 from fractions import Fraction
 from importlib import import_module
@@ -7,16 +7,16 @@ from typing import Any
 from verify.errors import InputError
 
 
-def library(name: str, wanted: str) -> Any:
-    """The library of that name; InputError, one line, where it is not installed."""
+def import_library(name: str, feature: str) -> Any:
+    """Import the library of that name; InputError, one line, where it is not installed."""
     try:
         return import_module(name)
     except ImportError:
-        raise InputError("library", name, f"is not installed, and {wanted} needs it") from None
+        raise InputError("library", name, f"is not installed, and {feature} needs it") from None
 
 
 def nearest_float(text: str) -> float:
-    """That of an exact text, a decimal or a quotient; nan for an empty one.
+    """Return the float nearest to an exact text, a decimal or a quotient; nan for an empty one.
 
     >>> nearest_float("1/4"), nearest_float("1.5e-03")
     (0.25, 0.0015)

@@ -1,6 +1,7 @@
-"""`st.from_type(Hamiltonian)` works in either order of imports.
+"""Registration of our classes with hypothesis, for `st.from_type(Hamiltonian)`.
 
-hypothesis calls `register` at the end of its own import (its entry point is in pyproject.toml).
+It works in either order of imports: hypothesis calls `register` at the end of its own import (its
+entry point is in pyproject.toml).
 Nothing but the standard library is imported here, and the strategies only when something is drawn:
 hypothesis costs no more where areaproof is installed and not used.
 """
@@ -12,15 +13,15 @@ from verify.drawable import listen
 
 
 def register() -> None:
-    """Tell hypothesis of the classes there are, and of those to come; twice changes nothing."""
-    listen(_tell)
+    """Register all drawable classes, of now and later; a second call changes nothing."""
+    listen(_register_strategy)
 
 
-def _tell(cls: type, name: str) -> None:
+def _register_strategy(cls: type, name: str) -> None:
     strategies = sys.modules.get("hypothesis.strategies")
-    tell = getattr(strategies, "register_type_strategy", None)
-    if tell is not None:
-        tell(cls, lambda _: _strategy(name))
+    register_type = getattr(strategies, "register_type_strategy", None)
+    if register_type is not None:
+        register_type(cls, lambda _: _strategy(name))
 
 
 def _strategy(name: str) -> Any:

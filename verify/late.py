@@ -1,8 +1,8 @@
-"""sympy, imported when it is first asked for something.
+"""sympy, imported at the first use of one of its names.
 
-Its import takes as long as all else that a short command does, and what was read of a Hamiltonian
-before needs none of it (`verify.hamiltonians.kept`). A module on the way of a run writes
-`from verify.late import sympy`, and asks for nothing of it as it is imported.
+Its import takes as long as all the rest of a short command, and a Hamiltonian from the cache needs
+none of it (`verify.hamiltonians.kept`). A module on the way of a run writes
+`from verify.late import sympy`, and uses no name of it while it is itself imported.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 
-class _Late(ModuleType):
-    """A module that is imported by the first look at it."""
+class _LateModule(ModuleType):
+    """A module that is imported when an attribute of it is first read."""
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(importlib.import_module(self.__name__), name)
-        setattr(self, name, found)  # the next look comes no further than this
-        return found
+        value = getattr(importlib.import_module(self.__name__), name)
+        setattr(self, name, value)  # the next look comes no further than this
+        return value
 
 
 if TYPE_CHECKING:
     import sympy as sympy
 else:
-    sympy = _Late("sympy")
+    sympy = _LateModule("sympy")

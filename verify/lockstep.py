@@ -1,13 +1,13 @@
-"""Functions that run in turn and meet where what they ask for can be done together.
+"""Functions that run in turn, and wait where their requests can be served together.
 
-Such a function is a generator, a `Course`: it yields what it asks of a `Work`, by `meet`, and goes
-on when that is there. `together` runs several of them, one at a time, until all wait, or have
-ended; then one work does some of what is asked of it, as orbits of one kernel are stepped in the
-lanes of the vector unit. `alone` runs a single one.
+Such a function is a generator, a `Course`: by `meet` it yields a request to a `Work`, and goes on
+when the result is there. `run_together` runs several courses, one at a time, until all wait or have
+ended; then one work serves some of its requests, as orbits of one kernel are stepped in the lanes
+of the vector unit. `run_alone` runs a single course.
 
-Contract: each gives what it gives alone. What a `Work` gives must not depend on what is done beside
-it. Not promised: which of them ends first. Who waits holds what it holds: it must not meet while it
-has changed what others see, such as flint's precision.
+Contract: each course returns what it returns alone. The result of a `Work` must not depend on the
+requests that are served with it. Not promised: which course ends first. A course must not wait
+while it has changed what others see, such as flint's precision.
 """
 
 import inspect
@@ -21,26 +21,26 @@ T = TypeVar("T")
 
 
 class Work(Protocol):
-    """What can be done for several together."""
+    """A computation that can serve several requests together."""
 
     def advance(self, pending: "Sequence[Pending]") -> None:
-        """Does some of what is asked; at least one of them is finished then.
+        """Serve some of the requests, and finish at least one of them.
 
-        They come in the order in which they wait, and the first is among those that go on.
+        They come in the order in which they wait, and the first must be among those served.
         """
 
 
 class Pending:
-    """What somebody asks of a work, until its result or its error is there.
+    """A request to a work, until its result or its error is there.
 
-    `state` is the work's own, for what is done in part; `seconds` what that has taken for this one,
-    its share where it was done together with others.
+    `state` belongs to the work, for a request that is served in part; `seconds` is the time that
+    this request has taken, its share where it was served together with others.
     """
 
-    __slots__ = ("asked", "error", "finished", "result", "seconds", "state", "work")
+    __slots__ = ("error", "finished", "request", "result", "seconds", "state", "work")
 
-    def __init__(self, work: Work, asked: Any) -> None:
-        self.work, self.asked = work, asked
+    def __init__(self, work: Work, request: Any) -> None:
+        self.work, self.request = work, request
         self.finished = False
         self.result: Any = None
         self.error: Exception | None = None
@@ -48,24 +48,24 @@ class Pending:
         self.seconds = 0.0
 
     def end(self, result: Any, error: Exception | None = None) -> None:
-        """Called by the work: this one is finished."""
+        """Finish the request; called by the work."""
         self.result, self.error, self.finished = result, error, True
 
 
 Course: TypeAlias = Generator[Pending, None, T]
 
 
-def meet(work: Work, asked: Any) -> Course[Any]:
-    """What the work makes of this, together with what others ask of it; errors are raised."""
-    pending = Pending(work, asked)
+def meet(work: Work, request: Any) -> Course[Any]:
+    """Return the work's result for the request, served with those of others; raise its error."""
+    pending = Pending(work, request)
     yield pending
     if pending.error is not None:
         raise pending.error
     return pending.result
 
 
-def alone(course: Course[T]) -> T:
-    """What it gives with no other beside it. What a work raises, it may catch."""
+def run_alone(course: Course[T]) -> T:
+    """Run one course to its end, and return its value. The course may catch errors of a work."""
     error: BaseException | None = None
     while True:
         try:
@@ -73,36 +73,38 @@ def alone(course: Course[T]) -> T:
             error = None
             while not pending.finished:
                 pending.work.advance([pending])
-        except StopIteration as ended:
-            result: T = ended.value
+        except StopIteration as stop:
+            result: T = stop.value
             return result
-        except BaseException as raised:
-            if not _waits(course):
+        except BaseException as exception:
+            # The error of a work is raised in the course at its `yield`, where it may be caught.
+            # An error of the course itself has ended it, and goes to the caller.
+            if not _is_suspended(course):
                 raise
-            error = raised
+            error = exception
 
 
-def _waits(course: Course[Any]) -> bool:
-    """Whether it has begun, and has not ended."""
+def _is_suspended(course: Course[Any]) -> bool:
+    """Return True if the course has begun and has not ended."""
     return inspect.getgeneratorstate(course) == inspect.GEN_SUSPENDED
 
 
-class _Here(threading.local):
-    """Of the course that runs in this thread: the seconds for which others ran since it began."""
+class _ThreadState(threading.local):
+    """The seconds for which others ran since the course of this thread began."""
 
     away = 0.0
 
 
-_HERE = _Here()
+_THREAD_STATE = _ThreadState()
 
 
 def clock() -> float:
-    """Seconds for which this course has run, what was done for it by a work among them."""
-    return time.perf_counter() - _HERE.away
+    """Return the seconds for which this course has run, with the work done for it."""
+    return time.perf_counter() - _THREAD_STATE.away
 
 
-class Ended(Generic[T]):
-    """What a course gave."""
+class Outcome(Generic[T]):
+    """The value of a course that has ended, or its error."""
 
     __slots__ = ("_error", "_value")
 
@@ -110,40 +112,43 @@ class Ended(Generic[T]):
         self._value, self._error = value, error
 
     def result(self) -> T:
-        """Its value; what it raised is raised."""
+        """Return the value, or raise the error."""
         if self._error is not None:
             raise self._error
         return self._value  # type: ignore[return-value]  # T may be None
 
 
-def together(courses: Iterator[Course[T]], most: int) -> Iterator[tuple[int, Ended[T]]]:
-    """(its number, what it gave) of each course as it ends; `most` are under way at a time.
+def run_together(courses: Iterator[Course[T]], max_active: int) -> Iterator[tuple[int, Outcome[T]]]:
+    """Run the courses, and yield the number and the outcome of each as it ends.
 
-    The courses are taken from their iterator as there is room. Where this is left before its end,
-    those under way are ended where they wait: a KeyboardInterrupt is raised in them as well.
+    At most `max_active` are under way at a time; the next is taken from the iterator as there is
+    room. Where the caller leaves before the end, the courses under way are ended where they wait:
+    a KeyboardInterrupt is raised in them as well.
     """
     numbered = enumerate(courses)
     waiting: list[_Member[T]] = []
+    # Courses are ended as `close` ends a generator, or by the KeyboardInterrupt of the caller, so
+    # that each can keep its state.
     reason: BaseException = GeneratorExit()
     try:
         while True:
-            while len(waiting) < most and (following := next(numbered, None)) is not None:
+            while len(waiting) < max_active and (following := next(numbered, None)) is not None:
                 member = _Member(*following)
                 waiting.append(member)
-                member.go_on()
-                if member.ended is not None:
+                member.resume()
+                if member.outcome is not None:
                     waiting.remove(member)
-                    yield member.number, member.ended
+                    yield member.number, member.outcome
             if not waiting:
                 return
             _advance(waiting)
-            for member in [member for member in waiting if member.ready]:
-                member.go_on()
+            for member in [member for member in waiting if member.is_ready]:
+                member.resume()
                 others = [other for other in waiting if other is not member]
                 # In one assignment: an interruption may come at any time, and is everybody's.
-                waiting = others if member.ended else [*others, member]
-                if member.ended is not None:
-                    yield member.number, member.ended
+                waiting = others if member.outcome else [*others, member]
+                if member.outcome is not None:
+                    yield member.number, member.outcome
     except KeyboardInterrupt as error:
         reason = error
         raise
@@ -153,46 +158,48 @@ def together(courses: Iterator[Course[T]], most: int) -> Iterator[tuple[int, End
 
 
 def _advance(waiting: "Sequence[_Member[Any]]") -> None:
-    """The work that is waited for longest is done, for all who wait for it.
+    """Do the work that has been waited for longest, for all who wait for it.
 
-    So nobody waits for ever, and who is behind the others is not left behind.
+    So no course waits for ever, and one that is behind the others catches up.
     """
-    asked = [member.pending for member in waiting if member.pending is not None]
-    work = asked[0].work
-    work.advance([pending for pending in asked if pending.work is work])
+    requests = [member.pending for member in waiting if member.pending is not None]
+    work = requests[0].work
+    work.advance([pending for pending in requests if pending.work is work])
 
 
 class _Member(Generic[T]):
-    """A course under way: it runs while `go_on` is called, until it waits for a work or ends."""
+    """A course under way: it runs while `resume` is called, until it waits for a work or ends."""
 
     def __init__(self, number: int, course: Course[T]) -> None:
         self.number, self.course = number, course
-        self.ended: Ended[T] | None = None
+        self.outcome: Outcome[T] | None = None
         self.pending: Pending | None = None
         self.away = self.since = 0.0  # seconds for which others ran; when it began to wait
 
     @property
-    def ready(self) -> bool:
-        """Whether what it waits for is done."""
+    def is_ready(self) -> bool:
+        """True if its request is finished."""
         return self.pending is not None and self.pending.finished
 
-    def go_on(self) -> None:
-        """An interruption of it is raised."""
+    def resume(self) -> None:
+        """Run the course until its next request or its end; a KeyboardInterrupt is raised."""
+        # The course was away since it began to wait, but for the seconds of its own request.
         if self.pending is not None:
             self.away += time.perf_counter() - self.since - self.pending.seconds
-        outer, _HERE.away = _HERE.away, self.away
+        # A course may itself run others: the time of the outer one is put back afterwards.
+        outer, _THREAD_STATE.away = _THREAD_STATE.away, self.away
         try:
             self.pending = next(self.course)
-        except StopIteration as ended:
-            self.ended = Ended(ended.value)
+        except StopIteration as stop:
+            self.outcome = Outcome(stop.value)
         except Exception as error:
-            self.ended = Ended(None, error)
+            self.outcome = Outcome(None, error)
         finally:
-            _HERE.away = outer
+            _THREAD_STATE.away = outer
             self.since = time.perf_counter()
 
     def end(self, reason: BaseException) -> None:
-        """Ends it where it waits, if it does."""
-        if _waits(self.course):
+        """End the course where it waits, if it does."""
+        if _is_suspended(self.course):
             with suppress(BaseException):
                 self.course.throw(reason)

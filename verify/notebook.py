@@ -1,7 +1,7 @@
-"""How anything shows itself in a notebook: plain tables, readable on any background.
+"""HTML tables and LaTeX for notebooks, plain and readable on any background.
 
-HTML without a style sheet, a colour or a script; everything is escaped. LaTeX is made of formulas
-and numbers only. What is shown is said by those whose it is; nothing is known of it here.
+The HTML has no style sheet, colour or script; everything is escaped. LaTeX is made of formulas and
+numbers only. The classes that are shown say what they show.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,7 +12,7 @@ _CELL = "text-align: left; font-variant-numeric: tabular-nums"
 
 
 def cut(formula: str) -> str:
-    """A formula as it is, or its beginning where it is long."""
+    """Return the formula, or its beginning where it is long."""
     if len(formula) <= _LONGEST:
         return formula
     return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} …"
@@ -21,12 +21,16 @@ def cut(formula: str) -> str:
 def html_table(
     caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]], foot: str = ""
 ) -> str:
-    """The first column names the rows; all is text. Left, as words read; digits line up."""
+    """Return a table of texts, whose first column names the rows.
+
+    All is aligned at the left, as words read, and digits have one width.
+    """
     parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if heads:
         cells = "".join(f'<th scope="col">{escape(head)}</th>' for head in heads)
         parts.append(f"<thead><tr>{cells}</tr></thead>")
     parts.append("<tbody>")
+    # `scope` lets a screen reader name the row and the column of a cell.
     for name, *values in rows:
         cells = "".join(f'<td style="{_CELL}">{escape(value)}</td>' for value in values)
         parts.append(f'<tr><th scope="row" style="{_CELL}">{escape(name)}</th>{cells}</tr>')
@@ -37,12 +41,12 @@ def html_table(
 
 
 def short_latex(formula: str) -> str:
-    """A formula's LaTeX cannot be cut; one that is too long is left out."""
+    """Return the LaTeX, or a remark where it is too long: LaTeX cannot be cut."""
     return formula if len(formula) <= _LONGEST else r"\text{(too long to be shown)}"
 
 
 def aligned_latex(lines: Iterable[str]) -> str:
-    r"""Equations one below the other, each with the & at which it is aligned.
+    r"""Return equations one below the other, each aligned at its &.
 
     >>> print(aligned_latex(["a &= b", "c &= d"]))
     $$\begin{aligned} a &= b \\ c &= d \end{aligned}$$
@@ -51,7 +55,7 @@ def aligned_latex(lines: Iterable[str]) -> str:
 
 
 def number_latex(text: str) -> str:
-    """`-1.2e-05` → −1.2 · 10⁻⁵."""
+    """Return the LaTeX of a decimal text: −1.2 · 10⁻⁵ for `-1.2e-05`."""
     mantissa, _, exponent = text.lower().partition("e")
     power = int(exponent or 0)
     return rf"{mantissa} \cdot 10^{{{power}}}" if power else mantissa

@@ -1,4 +1,4 @@
-"""What results say: text, formulas and numbers in turn, which each medium shows in its way.
+"""Prose of results: text, formulas and numbers in turn, which each medium shows in its way.
 
     prose("ΔJ = ", Formula("-3*h**3*delta*p*q"), " + O(", Formula("h^4"), ")")
     read_prose("The coefficient of `h^m` in det J vanishes")   # what people write: formulas quoted
@@ -54,16 +54,18 @@ class Prose(str):
 
     def __new__(cls, *parts: str) -> Self:
         flat: list[str] = []
-        for part in _unpacked(parts):
+        for part in _unpack_parts(parts):
+            # Texts side by side are merged, so that equal proses have equal parts.
             if flat and type(part) is type(flat[-1]) is str:
                 flat[-1] += part
             elif part:
                 flat.append(part)
-        made = super().__new__(cls, "".join(flat))
-        made.parts = tuple(flat)
-        return made
+        instance = super().__new__(cls, "".join(flat))
+        instance.parts = tuple(flat)
+        return instance
 
     def __reduce__(self) -> tuple[Any, ...]:
+        # As a subclass of str it would be pickled without its parts.
         return type(self), self.parts
 
     def __add__(self, other: str) -> "Prose":
@@ -73,49 +75,53 @@ class Prose(str):
         return Prose(other, self)
 
     def join(self, parts: Iterable[str]) -> "Prose":
-        """The parts with this text between each two of them."""
+        """Join the parts with this text between each two of them."""
         between = [each for part in parts for each in (self, part)]
         return Prose(*between[1:])
 
     def partition(self, sep: str) -> "tuple[Prose, str, Prose]":
-        """As of a str, at the first `sep` within a text; each side keeps its parts.
+        """Split at the first `sep` within a text, as a str does; each side keeps its parts.
 
         >>> prose("ΔJ = ", Formula("a; b"), "; and so on").partition("; ")[0].parts
         ('ΔJ = ', 'a; b')
         """
-        for at, part in enumerate(self.parts):
+        for index, part in enumerate(self.parts):
             if type(part) is str and sep in part:
                 before, _, after = part.partition(sep)
-                return Prose(*self.parts[:at], before), sep, Prose(after, *self.parts[at + 1 :])
+                return (
+                    Prose(*self.parts[:index], before),
+                    sep,
+                    Prose(after, *self.parts[index + 1 :]),
+                )
         return self, "", Prose()
 
     def as_data(self) -> list[PartData]:
-        """The parts as JSON has them: text as a string, the others under the name of their kind."""
+        """Return the parts for JSON: text as a string, the others under the name of their kind."""
         names = {kind: name for name, kind in _KINDS.items()}
         return [{names[type(p)]: str(p)} if type(p) in names else str(p) for p in self.parts]
 
     @classmethod
-    def of_data(cls, data: object) -> Self:
-        """What `as_data` gave, or a plain text. ValueError for anything else."""
+    def from_data(cls, data: object) -> Self:
+        """Read the output of `as_data`, or a plain text. ValueError for anything else."""
         if isinstance(data, str):
             return cls(data)
         if not isinstance(data, list | tuple):
             raise ValueError("prose is a text or a list of its parts")
-        return cls(*(_part_of(each) for each in data))
+        return cls(*(_parse_part(each) for each in data))
 
 
 def prose(*parts: str) -> Prose:
-    """The parts as one prose; a Prose among them gives its own parts."""
+    """Return the parts as one prose; a Prose among them contributes its own parts."""
     return Prose(*parts)
 
 
 def number(text: str) -> str:
-    """A Number where the text is one; else the text, such as `unknown`."""
+    """Return a Number where the text is one; else the text, such as `unknown`."""
     return Number(text) if _NUMBER.fullmatch(text) else text
 
 
 def count(n: int, one: str) -> str:
-    """So many of a thing, in the singular or the plural.
+    """Return the number and the thing, in the singular or the plural.
 
     >>> count(1, "stage"), count(2, "stage")
     ('1 stage', '2 stages')
@@ -123,40 +129,41 @@ def count(n: int, one: str) -> str:
     return f"{n} {one}{'' if n == 1 else 's'}"
 
 
-def joined(between: str, parts: Iterable[str]) -> Prose:
-    """The parts with `between` between each two of them."""
+def join_prose(between: str, parts: Iterable[str]) -> Prose:
+    """Join the parts with `between` between each two of them."""
     return Prose(between).join(parts)
 
 
 def read_prose(text: str) -> Prose:
-    """What people write: `` `h^3` `` is a formula, and so is what stands between any two backticks.
+    """Read a text that people write: a formula stands between two backticks, as `` `h^3` ``.
 
     >>> read_prose("of order `h^3`, says the paper").parts
     ('of order ', 'h^3', ', says the paper')
     >>> read_prose("at q = `-0.5`").as_data()  # a quoted decimal is a Number
     ['at q = ', {'number': '-0.5'}]
 
-    What two backticks quote on either side is on a line of its own. A backtick without its partner
-    is text; a Prose is itself.
+    A formula between double backticks is on a line of its own. A backtick without its partner is
+    text; a Prose is returned as it is.
     """
     if isinstance(text, Prose):
         return text
     pieces = _DISPLAY.split(text)
-    return Prose(*(Display(p) if i % 2 else Prose(*_in_line(p)) for i, p in enumerate(pieces)))
+    return Prose(*(Display(p) if i % 2 else Prose(*_parse_inline(p)) for i, p in enumerate(pieces)))
 
 
-def _in_line(text: str) -> Iterator[str]:
+def _parse_inline(text: str) -> Iterator[str]:
     pieces = text.split(_QUOTE)
     if len(pieces) % 2 == 0:
+        # An odd number of backticks: the last one has no partner, and is text.
         pieces[-2:] = [_QUOTE.join(pieces[-2:])]
-    yield from (_quoted(p) if i % 2 else p for i, p in enumerate(pieces))
+    yield from (_parse_quoted(p) if i % 2 else p for i, p in enumerate(pieces))
 
 
-def _quoted(text: str) -> str:
+def _parse_quoted(text: str) -> str:
     return Number(text) if _NUMBER.fullmatch(text) else Formula(text)
 
 
-def _unpacked(parts: Iterable[str]) -> Iterable[str]:
+def _unpack_parts(parts: Iterable[str]) -> Iterable[str]:
     for part in parts:
         if isinstance(part, Prose):
             yield from part.parts
@@ -164,7 +171,7 @@ def _unpacked(parts: Iterable[str]) -> Iterable[str]:
             yield part if type(part) in _KINDS.values() else str(part)
 
 
-def _part_of(data: object) -> str:
+def _parse_part(data: object) -> str:
     if isinstance(data, str):
         return data
     if isinstance(data, Mapping) and len(data) == 1:

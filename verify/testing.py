@@ -1,4 +1,4 @@
-"""For pytest: what a step function of one's own preserves, asserted.
+"""Asserts for pytest: what a step function of one's own preserves.
 
     from verify.testing import assert_area_preserving, assert_convergence_order
 
@@ -18,8 +18,8 @@ from collections.abc import Callable
 from typing import Any
 
 from verify.calls.check import request_of
-from verify.calls.given import hamiltonian_from
-from verify.errors import InputError, unknown
+from verify.calls.inputs import hamiltonian_from
+from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
@@ -31,13 +31,14 @@ __all__ = [
     "assert_area_order", "assert_area_preserving", "assert_convergence_order", "assert_symplectic",
 ]  # fmt: skip
 
+# `__tracebackhide__` below makes pytest show the line of the test in place of ours.
 StepFunction = Callable[..., Any]
 
 
 def assert_area_preserving(
     step: StepFunction, hamiltonian: Hamiltonian | str, **options: Any
 ) -> Finding:
-    """AssertionError unless det J ≡ 1 for the map (p, q) ↦ step(p, q, h), and it is a scheme for H.
+    """Assert that det J ≡ 1 for the map (p, q) ↦ step(p, q, h), and that it is a scheme for H.
 
     `step(p, q, h)` returns p' and q', numbers or arrays of one entry; where its arguments are named
     q, p, h or x, v, dt it gets and returns them so. `hamiltonian`: a Hamiltonian, a formula such as
@@ -46,63 +47,63 @@ def assert_area_preserving(
     the largest that is looked at; `within`, a defect that is allowed; `time_limit`, seconds for
     all.
 
-    The message has the counterexample: initial value, h, det J − 1 as found. What is not decided
-    fails too, and the message says UNDECIDED. Returns what was found, with its verdict: PROVED, or
-    MEASURED with `probe_error`. Raises InputError where an argument is none that is allowed.
+    Returns the Finding with its verdict: PROVED, or MEASURED with `probe_error`. Raises
+    AssertionError, whose message has the counterexample: initial value, h, det J − 1. An undecided
+    claim fails too, and the message says UNDECIDED. Raises InputError for a bad argument.
     """
     __tracebackhide__ = True
-    return _asserted(step, hamiltonian, Claims(area_preserving=True), options)
+    return _assert_claims(step, hamiltonian, Claims(area_preserving=True), options)
 
 
 def assert_symplectic(
     step: StepFunction, hamiltonian: Hamiltonian | str, **options: Any
 ) -> Finding:
-    """AssertionError unless JᵀΩJ ≡ Ω for the map z ↦ step(z, h), and it is a scheme for H.
+    """Assert that JᵀΩJ ≡ Ω for the map z ↦ step(z, h), and that it is a scheme for H.
 
     In n degrees of freedom `step(p, q, h)` takes and returns arrays of n numbers, and the message
     has the entry of S = JᵀΩJ − Ω that is not 0. In one degree it is the same as
     `assert_area_preserving`, which says the rest.
     """
     __tracebackhide__ = True
-    return _asserted(step, hamiltonian, Claims(symplectic=True), options)
+    return _assert_claims(step, hamiltonian, Claims(symplectic=True), options)
 
 
 def assert_area_order(
     step: StepFunction, hamiltonian: Hamiltonian | str, order: int, **options: Any
 ) -> Finding:
-    """AssertionError unless ΔJ = det J − 1 is O(h^order), or 0; else as `assert_area_preserving`.
+    """Assert that ΔJ = det J − 1 is O(h^order), or 0; else as `assert_area_preserving`.
 
     The scheme lie2 has ΔJ = O(h³), so that `assert_area_order(lie2, H, 3)` passes.
     """
     __tracebackhide__ = True
-    return _asserted(step, hamiltonian, Claims(area_order=_order(order)), options)
+    return _assert_claims(step, hamiltonian, Claims(area_order=_check_order(order)), options)
 
 
 def assert_convergence_order(
     step: StepFunction, hamiltonian: Hamiltonian | str, order: int, **options: Any
 ) -> Finding:
-    """AssertionError unless one step agrees with the exact flow up to h^order, at least.
+    """Assert that one step agrees with the exact flow up to h^order, at least.
 
     Then the global error is O(h^order). Else as `assert_area_preserving`.
     """
     __tracebackhide__ = True
-    return _asserted(step, hamiltonian, Claims(order=_order(order)), options)
+    return _assert_claims(step, hamiltonian, Claims(order=_check_order(order)), options)
 
 
-def _order(order: int) -> int:
+def _check_order(order: int) -> int:
     if isinstance(order, bool) or not isinstance(order, int) or not 1 <= order <= MOST_CLAIMED:
         raise InputError("order", order, f"is no whole number from 1 to {MOST_CLAIMED}")
     return order
 
 
-def _asserted(
+def _assert_claims(
     step: StepFunction, hamiltonian: Hamiltonian | str, claims: Claims, options: dict[str, Any]
 ) -> Finding:
     __tracebackhide__ = True
-    known = {"parameters", "arguments", "p", "q", "step_size", "within", "time_limit"}
+    option_names = {"parameters", "arguments", "p", "q", "step_size", "within", "time_limit"}
     for name in options:
-        if name not in known:
-            raise unknown(name, options[name], sorted(known))
+        if name not in option_names:
+            raise unknown_name(name, options[name], sorted(option_names))
     if not callable(step):
         raise InputError("step", step, "is no function")
     exact = hamiltonian_from(hamiltonian, options.get("parameters"))
@@ -112,16 +113,17 @@ def _asserted(
         step, exact.coordinates, arguments=options.get("arguments"),
         parameters=dict(exact.values), time_limit=limit,
     )  # fmt: skip
-    found = check_integrator(callee, exact, claims, request_of(exact, **where))
-    if not found.verdict.holds:
-        raise AssertionError(_message(found))
-    return found
+    finding = check_integrator(callee, exact, claims, request_of(exact, **where))
+    # UNDECIDED does not hold: an assertion that nothing decides must not pass.
+    if not finding.verdict.holds:
+        raise AssertionError(_format_message(finding))
+    return finding
 
 
-def _message(found: Finding) -> str:
-    lines = [f"{found.verdict}: {found.reason}"]
-    if found.verdict is Verdict.UNDECIDED:
-        lines[0] = f"UNDECIDED, which is neither yes nor no: {found.reason}"
-    if found.counterexample is not None:
-        lines.append(str(found.counterexample))
-    return "\n".join([*lines, *found.notes])
+def _format_message(finding: Finding) -> str:
+    lines = [f"{finding.verdict}: {finding.reason}"]
+    if finding.verdict is Verdict.UNDECIDED:
+        lines[0] = f"UNDECIDED, which is neither yes nor no: {finding.reason}"
+    if finding.counterexample is not None:
+        lines.append(str(finding.counterexample))
+    return "\n".join([*lines, *finding.notes])

@@ -1,4 +1,4 @@
-"""What can be said of a claim."""
+"""The verdict on a claim."""
 
 from enum import StrEnum
 

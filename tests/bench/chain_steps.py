@@ -17,7 +17,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.systems import get
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.studies.work_precision.timing import interleaved
+from verify.studies.work_precision.timing import time_interleaved
 
 _STEPS, _ROUNDS = 2000, 5
 _SCHEMES = ("kick 1", "stormer-verlet", "lie2", "rk4", "lie4")
@@ -44,7 +44,7 @@ def _measured(scheme: str, n: int) -> str:
     kernel.function(0, *given)
     compiled = time.thread_time()
     calls = [lambda: kernel.function(_STEPS, *given), lambda: kernel.function(0, *given)]
-    whole, empty = (each.least for each in interleaved(calls, _ROUNDS))
+    whole, empty = (each.least for each in time_interleaved(calls, _ROUNDS))
     operations = sum(op.kind in ("add", "sub", "mul") for op in kernel.program.ops)
     return (
         f"{operations:6} operations, {(whole - empty) / _STEPS * 1e6:7.3f} µs a step, "

@@ -20,7 +20,7 @@ from verify import arithmetic
 from verify.arithmetic.float_context import FLOAT
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.many_points import PointMap, waypoints
+from verify.kernels.many_points import PointMap, waypoints_of
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.shapes import named as shapes
 from verify.studies.regions.task import FlowTask
@@ -34,7 +34,7 @@ PAPER += [(Fraction(1, 1000), n) for n in (5_000, 10_000, 20_000)]
 
 def face() -> tuple[np.ndarray, np.ndarray]:
     """2,000 points of all outlines of the face, about (1, 0)."""
-    outlines = shapes.get("cat").placed(Fraction(1), Fraction(0), Fraction(1, 2)).outlines
+    outlines = shapes.get("cat").place_at(Fraction(1), Fraction(0), Fraction(1, 2)).outlines
     curves = []
     for k, outline in enumerate(outlines):
         count = POINTS // len(outlines) + (k < POINTS % len(outlines))
@@ -48,7 +48,7 @@ def face() -> tuple[np.ndarray, np.ndarray]:
 
 def timed(work: Callable[[], Any]) -> float:
     """Its seconds, from the points' starts: it is not remembered where they have got to."""
-    waypoints.cache_clear()
+    waypoints_of.cache_clear()
     begun = time.perf_counter()
     work()
     return time.perf_counter() - begun

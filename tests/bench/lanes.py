@@ -64,7 +64,7 @@ def loops(system: str, digits: int, orbits: int, certified: bool) -> tuple[Kerne
 
 def words_of(layout: Layout, each: list[Any]) -> Any:
     """The arguments of all orbits, a column each."""
-    packed = [layout.packed((STEPS, *loop.fixed, *loop.state)) for loop in each]
+    packed = [layout.pack((STEPS, *loop.fixed, *loop.state)) for loop in each]
     return np.ascontiguousarray(
         np.stack([np.frombuffer(row, dtype=np.uint64) for row in packed], axis=1)
     )

@@ -95,13 +95,13 @@ def first_call(formula: str, name: str, digits: int) -> float:
 
 def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]]:
     """Wall seconds, steps, the fewest digits that are known, and how often each kind of bound."""
-    from verify.commands.shared.input import target
+    from verify.commands.shared.input import load_target
     from verify.execution.execute import Store, execute
     from verify.execution.executors import Placement
     from verify.scenes.results.run import RunResult
     from verify.studies.plan import plan_scenes
 
-    _, scenes, _ = target("paper")
+    _, scenes, _ = load_target("paper")
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
     chosen = []
     for scene in scenes:

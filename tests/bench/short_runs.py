@@ -22,7 +22,7 @@ from verify import lockstep
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.runs.run import run
-from verify.studies.separation.links import separated_chains
+from verify.studies.separation.links import separate_chains
 from verify.studies.separation.stepper.run import Stopped
 
 STEPS, H = 8, Fraction(1, 100)
@@ -52,8 +52,8 @@ def drawn(draw: random.Random, scheme: str) -> Hamiltonian:
 def one_run(hamiltonian: Hamiltonian, scheme: str, name: str) -> None:
     if name == SEPARATION:
         with contextlib.suppress(Stopped):  # an answer too
-            lockstep.alone(
-                separated_chains(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS, 8)
+            lockstep.run_alone(
+                separate_chains(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS, 8)
             )
         return
     run(hamiltonian, scheme, q=Q, p=P, step_size=H, steps=STEPS, arithmetic=name,

@@ -24,7 +24,7 @@ def main() -> int:
     for path in files():
         begun, found = time.perf_counter(), read_tables(path)
         entries = {entry.name: entry for entry, _ in found.entries}
-        for each in found.judged():
+        for each in found.judge():
             entry, claim = entries[each.table], each.claim
             claimed = claimed_of(entry, claim.kind)
             plain = claim.kind.partition(", ")[0]
@@ -35,10 +35,10 @@ def main() -> int:
                 unseen += 1
             elif claim.verdict is Verdict.REFUTED and claim.severity in OF_ORDERS:
                 wrong += 1
-                problems += [] if look.shown else [f"{each.id}: refuted, and {look.said}"]
+                problems += [] if look.confirms else [f"{each.id}: refuted, and {look.sentence}"]
             elif claim.verdict is not Verdict.REFUTED:
                 right += 1
-                problems += [f"{each.id}: right, and {look.said}"] if look.shown else []
+                problems += [f"{each.id}: right, and {look.sentence}"] if look.confirms else []
         print(f"{found.title}: {time.perf_counter() - begun:.0f} s", flush=True)
     print(f"{right} right and {wrong} wrong orders looked at twice, {unseen} of kinds once only")
     for problem in problems:

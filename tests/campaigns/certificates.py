@@ -23,9 +23,9 @@ from tests.oracle.printed_certificates import is_true
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import established
-from verify.proof.certificates.every import of_every
-from verify.proof.certificates.one import of_one
+from verify.proof.certificates.established import state_theorem
+from verify.proof.certificates.every import certify_every
+from verify.proof.certificates.one import certify_one
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.proof.plane.potential import potential_of
@@ -59,7 +59,7 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
             scheme = get(name)
             try:
                 proof = prove(scheme.step_map(hamiltonian), scheme)
-                found.append(of_one(proof, potential_of(proof, scheme)))
+                found.append(certify_one(proof, potential_of(proof, scheme)))
             except InputError:
                 continue
     for name in (*names(), "lie1", "lie2", "lie3"):
@@ -67,10 +67,10 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
         every = scheme.every_h
         for separable in (False, True) if every and not every.separable else (True,):
             with suppress(InputError):
-                found.append(of_every(prove_every(name, separable)))
+                found.append(certify_every(prove_every(name, separable)))
         if scheme.order <= 4 or not scheme.explicit:  # others are longer in time, and take long
             with suppress(InputError):
-                found.append(of_every(prove_every(name, timed=True)))
+                found.append(certify_every(prove_every(name, timed=True)))
     texts = dict.fromkeys(map(json.dumps, found))
     return tuple(json.loads(text) for text in texts if len(text) <= longest)
 
@@ -268,7 +268,7 @@ def judged(data: Data, seed: int) -> tuple[str, float]:
     """("refused", "true", or what is wrong; seconds that the checker took)."""
     begun = time.perf_counter()
     try:
-        found = established(check(data))
+        found = state_theorem(check(data))
     except ValueError:
         return "refused", time.perf_counter() - begun
     except RecursionError:

@@ -13,7 +13,7 @@ import time
 from collections import Counter
 
 from verify.exploration import properties
-from verify.exploration.property_checks import outcome, shrink
+from verify.exploration.property_checks import check_sample, shrink
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene
@@ -41,10 +41,10 @@ def looked(degrees: int, timed: bool, count: int, seed: int) -> int:
     spoke, seconds, first = Counter[str](), Counter[str](), dict[str, int]()
     begun = time.process_time()
     for number in range(count):
-        sample = Sample.of(sample_scene(space, seed, number))
+        sample = Sample.from_scene(sample_scene(space, seed, number))
         for name in properties.names():
             before = time.process_time()
-            speaks, wrong = outcome(properties.get(name), sample)
+            speaks, wrong = check_sample(properties.get(name), sample)
             seconds[name] += time.process_time() - before
             spoke[name] += speaks
             if wrong and name not in first:

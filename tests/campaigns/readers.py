@@ -26,11 +26,11 @@ from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tables.check import check_table
-from verify.proof.certificates.every import of_every
-from verify.proof.certificates.file import checked
+from verify.proof.certificates.every import certify_every
+from verify.proof.certificates.file import check_file
 from verify.proof.every import prove_every
 from verify.reference.compare.published import load
-from verify.reference.compare.rows import opened
+from verify.reference.compare.rows import open_table
 from verify.reference.make.make import PUBLISHED
 from verify.reference.make.parquet import parquet_bytes, parquet_rows
 from verify.scenes.results.report import Provenance, Report, read_report
@@ -65,7 +65,7 @@ def _of_text(read: Callable[[str], object]) -> Reader:
 
 
 def _table(path: Path) -> int:
-    with opened(path) as lines:
+    with open_table(path) as lines:
         return sum(1 for _ in lines)
 
 
@@ -105,7 +105,7 @@ def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
     papers = tuple((ROOT / "reports/paper" / f"{n}.toml").read_text("utf-8") for n in ("duffing",))
     claims = (ROOT / "reports/paper/claims.toml").read_text("utf-8").split("[[claim]]")
     short = tuple(claims[0] + "[[claim]]" + each for each in claims[1:8])
-    made = tuple(json.dumps(of_every(prove_every(n))) for n in ("lie2", "implicit-midpoint"))
+    made = tuple(json.dumps(certify_every(prove_every(n))) for n in ("lie2", "implicit-midpoint"))
     told = Provenance(command="", versions={}, machine="", seconds=1, kept=0, computed=0)
     report = Report(title="a", claims=(), scenes=(), left_out=(), provenance=told)
     data = (PUBLISHED / "extreme-zero.json").read_text("utf-8")
@@ -116,7 +116,7 @@ def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
         "path": (_of_text(svg_path), PATHS),
         "scene": (load_scene, scenes + papers),
         "claims": (_claims, short),
-        "certificate": (checked, made),
+        "certificate": (check_file, made),
         "table": (_table, (TABLE,)),
         "coefficients": (check_table, _coefficients()),
         "report": (read_report, (report.model_dump_json(),)),

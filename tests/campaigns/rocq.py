@@ -19,7 +19,7 @@ from typing import Any
 from tests.campaigns.certificates import mutant, seeds
 from tests.helpers.rocq.coqc import beside, compile_theory, coqc
 from verify.errors import InputError
-from verify.proof.assistant.export import exported
+from verify.proof.assistant.export import export_certificate
 from verify.proof.certificates.checker import check
 
 SLOWEST = 60.0  # seconds for a file
@@ -62,7 +62,7 @@ def main() -> None:
             file = folder / f"certificate{k}.json"
             file.write_text(json.dumps(data), encoding="utf-8")
             try:
-                text = exported(file, stands_alone=False).text
+                text = export_certificate(file, stands_alone=False).text
             except InputError as error:
                 left += 1
                 print(f"{k}: not exported: {error}")

@@ -16,7 +16,7 @@ from typing import Any
 import flint
 
 from verify.algebra.enclosure import BALLS
-from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
+from verify.arithmetic.arb import bounds, midpoint_and_radius, rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.functions import in_rings
 
@@ -194,7 +194,7 @@ def value_of(operation: str, x: Fraction, y: Fraction) -> Fraction:
 def true_value(kind: str, x: Fraction, bits: int, degree: int = 1) -> tuple[Fraction, Fraction]:
     """The function's value and the radius of its enclosure, by flint at twice the precision."""
     with flint.ctx.workprec(2 * bits + 200):
-        return middle_and_radius(
+        return midpoint_and_radius(
             BALLS[kind](flint.arb(flint.fmpq(x.numerator, x.denominator)), degree)
         )
 
@@ -242,7 +242,7 @@ def beyond(made: Arithmetic, x: Fraction, *values: Fraction, kinds: tuple[str, .
 
 def check_pi(made: Arithmetic) -> None:
     with flint.ctx.workprec(2 * made.bits + 200):
-        true, slack = middle_and_radius(flint.arb.pi())
+        true, slack = midpoint_and_radius(flint.arb.pi())
     assert_right(made, made.functions["pi"], true, "π", slack=slack)
 
 

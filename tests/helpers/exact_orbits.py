@@ -15,7 +15,7 @@ import flint
 import sympy
 
 from tests.helpers.sampled.formulas import H, P, Q, lie_step, plain, plain_delta_j
-from verify.arithmetic.arb import in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import is_representable, midpoint_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
@@ -131,9 +131,9 @@ def enclosed(case: Case, bits: int) -> dict[str, True_] | None:
         step = _function(case, rational_ball, names)
         start = rational_ball(case.p), rational_ball(case.q)
         found = _values(step, *start, case.steps, flint.arb(0), flint.arb.max)
-        if not all(in_reach(x) for x in found.values()):
+        if not all(is_representable(x) for x in found.values()):
             return None
-        return {name: middle_and_radius(x) for name, x in found.items()}
+        return {name: midpoint_and_radius(x) for name, x in found.items()}
 
 
 def enclosed_finely(case: Case, errors: Mapping[str, Fraction]) -> dict[str, True_]:

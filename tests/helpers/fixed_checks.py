@@ -15,7 +15,7 @@ from typing import Any
 import flint
 
 from verify.algebra.enclosure import BALLS
-from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
+from verify.arithmetic.arb import bounds, midpoint_and_radius, rational_ball
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
@@ -39,7 +39,7 @@ class Format:
     """The numbers of one width; functions of them are compiled when they are first called."""
 
     def __init__(
-        self, width: int, compiled: Callable[..., Callable[..., Any]] = engine.compiled
+        self, width: int, compiled: Callable[..., Callable[..., Any]] = engine.compile_source
     ) -> None:
         self.width, self.bits = width, width - FRACTION_OF
         self.made = fixed.at_bits(self.bits)
@@ -121,7 +121,7 @@ def step_of(name: str) -> Fraction:
     """An arb constant as a rational, to more bits than any width here."""
     with flint.ctx.workprec(2 * WIDEST):
         exact = {"angle": 2 * flint.arb.pi() / _ANGLES, "octave": flint.arb(2).log() / _OCTAVE}
-        return middle_and_radius(exact[name])[0] if name in exact else Fraction(1)
+        return midpoint_and_radius(exact[name])[0] if name in exact else Fraction(1)
 
 
 LIMBS = (0, 1, 2**32, 2**63 - 1, 2**63, 2**64 - 2, ONES)
@@ -236,6 +236,6 @@ def check_function(form: Format, kind: str, raw: int) -> None:
         return
     assert given is not False, f"{what} is taken for {float(found)}"
     with flint.ctx.workprec(2 * form.width + 64):
-        true, slack = middle_and_radius(BALLS[kind](rational_ball(x), 2))
+        true, slack = midpoint_and_radius(BALLS[kind](rational_ball(x), 2))
     error = abs(found - true)
     assert form.allows(error - slack, kind, true), f"{what}: {units(form, error)} units off"

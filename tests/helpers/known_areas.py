@@ -11,7 +11,7 @@ import numpy as np
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline, Point, bezier
-from verify.studies.regions.area import Goal, Measured, Probe
+from verify.studies.regions.area import Goal, MeasuredArea, Probe
 from verify.studies.regions.point_carriers import FloatCarrier, WideCarrier
 
 FINE = Goal(change=Fraction(0), area=Fraction(1, 10**13))
@@ -40,7 +40,7 @@ def still(hamiltonian: Hamiltonian = OSCILLATOR) -> MadePlane:
     return MadePlane(lambda x, y: (x + 0, y + 0))
 
 
-def measured(outline: Outline, plane: Any, goal: Goal = FINE) -> Measured:
+def measured(outline: Outline, plane: Any, goal: Goal = FINE) -> MeasuredArea:
     return Probe([outline], plane, [goal]).measure()[0]
 
 
@@ -100,7 +100,7 @@ def pi(times: Fraction) -> Fraction:
 
 
 def placed(outline: Outline, q: Any, p: Any, scale: Any) -> Outline:
-    return outline.placed(Fraction(q), Fraction(p), Fraction(scale))
+    return outline.place_at(Fraction(q), Fraction(p), Fraction(scale))
 
 
 def bent(x: Any, y: Any) -> tuple[Any, Any]:

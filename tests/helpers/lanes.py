@@ -17,7 +17,7 @@ from verify.arithmetic.wide.size import INTEGER_BITS
 from verify.kernels.kernel import kernel_for
 from verify.studies.separation.stepper.kernel import mixed_kernel
 
-NATIVE = [name for name, path in paths.PATHS.items() if path.needed and path.there]
+NATIVE = [name for name, path in paths.PATHS.items() if path.required and path.is_available]
 IN_LANES = [*NATIVE, "portable"]
 PATHS = [*IN_LANES, paths.OFF]
 
@@ -32,7 +32,7 @@ def path(name: str) -> Iterator[None]:
 
 
 def _forget() -> None:
-    engine._compiled.cache_clear()
+    engine._cached_function.cache_clear()
     kernel_for.cache_clear()
     mixed_kernel.cache_clear()
 
@@ -51,7 +51,7 @@ class Both:
     @cached_property
     def _lanes(self) -> tuple[Any, Any]:
         """Its layout, and the function."""
-        layout, linked = self._source.compiled(anew=True)
+        layout, linked = self._source.compile(anew=True)
         return layout, linked()
 
     def of_one(self, arguments: Sequence[Any]) -> Any:
@@ -64,16 +64,16 @@ class Both:
     def in_lanes(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
         """The same of each of up to eight rows of arguments."""
         layout, function = self._lanes
-        given = [layout.packed(row) for row in rows]
+        given = [layout.pack(row) for row in rows]
         given += [given[0]] * (LANES - len(rows))
         words = [np.frombuffer(row, dtype=np.uint64) for row in given]
         size = sum(layout.result_sizes) // 8 + 1
-        found = engine._called(function, size, np.ascontiguousarray(np.stack(words, axis=1)))
+        found = engine._call(function, size, np.ascontiguousarray(np.stack(words, axis=1)))
         return [self._read(column.tobytes()) for column in found.T[: len(rows)]]
 
     def _read(self, raw: bytes) -> Any:
         try:
-            return self._lanes[0].unpacked(raw)
+            return self._lanes[0].unpack(raw)
         except ValueError:
             return None
 

@@ -7,7 +7,7 @@ its equations are the same but for 1 − a and 1 − b; so stages in reverse, wi
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.symmetry import Symmetry, by_series
+from verify.proof.symmetry import Symmetry, judge_symmetry
 from verify.prose import prose
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import StageEquations
@@ -36,7 +36,7 @@ def prove_symmetry(scheme: Scheme) -> Symmetry:
         step_map = scheme.step_map(Hamiltonian.parse(WITNESS))
     except InputError:
         return Symmetry(Verdict.UNDECIDED, prose("it does not take this H"))
-    return by_series(step_map, scheme.order + _MORE)
+    return judge_symmetry(step_map, scheme.order + _MORE)
 
 
 def palindromic(stages: StageEquations) -> bool:

@@ -64,7 +64,7 @@ def drawn_scenes(examples: int, seed: int) -> list[Any]:
 
 def example_of(scene: Any) -> Any:
     """The scene as properties look at it."""
-    return import_module("verify.exploration.sample").Sample.of(scene)
+    return import_module("verify.exploration.sample").Sample.from_scene(scene)
 
 
 def violation() -> type[Exception]:

@@ -21,7 +21,7 @@ from tests.oracle.by_heyoka import (
     oracle,
 )
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import midpoint_and_radius
 from verify.schemes import get
 
 POINTS = [(Fraction(p, 8), Fraction(q, 8)) for p, q in ((4, 10), (-6, 3), (2, -12))]
@@ -51,7 +51,7 @@ def ours(name: str, eta: int, at: Point) -> tuple[State, Fraction]:
     point = {"p": at[0], "q": at[1], "h": STEP_SIZE}
     found = []
     for x in (*step.elements, *step.jacobian[0], *step.jacobian[1], step.delta_j):
-        middle, radius = middle_and_radius(enclose(step.ring, x, point, 400))
+        middle, radius = midpoint_and_radius(enclose(step.ring, x, point, 400))
         assert radius < Fraction(1, 2**380)
         found.append(middle)
     return found[:-1], found[-1]

@@ -16,7 +16,7 @@ import pytest
 
 from tests.oracle.by_heyoka import PRECISIONS, STEP_SIZE, Precision, hy
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import midpoint_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.schemes import get
@@ -88,7 +88,7 @@ def ours(name: str, eta: int) -> tuple[list[Fraction], list[list[Fraction]]]:
     at = {**dict(zip(made.field.names, POINT, strict=False)), "h": STEP_SIZE, "t": TIME}
 
     def value(x: Any) -> Fraction:
-        middle, radius = middle_and_radius(enclose(made.ring, x, at, 300))
+        middle, radius = midpoint_and_radius(enclose(made.ring, x, at, 300))
         assert radius < Fraction(1, 2**200)
         return middle
 
@@ -127,9 +127,9 @@ def test_and_so_is_the_symplectic_defect_which_has_the_order_that_is_proved(
     scale = STEP_SIZE**proof.order
     at = {**dict(zip(proof.first.form.names, POINT, strict=False)), "t": TIME}  # type: ignore[union-attr]
     for (a, b), x in other.items():
-        leading = proof.first.form.at(a, b)  # type: ignore[union-attr]
+        leading = proof.first.form.entry(a, b)  # type: ignore[union-attr]
         ball = enclose(proof.first.form.ring, leading, at, 100)  # type: ignore[union-attr, arg-type]
-        expected = middle_and_radius(ball)[0]
+        expected = midpoint_and_radius(ball)[0]
         assert abs(x / scale - expected) < Fraction(1, 4) * (largest / scale)
 
 

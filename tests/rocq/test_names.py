@@ -9,7 +9,7 @@ import pytest
 from tests.helpers.rocq.assumptions import ASKED
 from tests.helpers.rocq.exports import certificate, export, export_of, proved
 from tests.helpers.rocq.session import Session
-from verify.proof.assistant.formulas import KEYWORDS, safe
+from verify.proof.assistant.formulas import KEYWORDS, safe_names
 from verify.proof.assistant.text import template_words
 
 pytestmark = pytest.mark.left_to_ci
@@ -32,7 +32,7 @@ def test_no_word_of_the_grammar_stands_for_a_parameter(rocq: Session) -> None:
     said = rocq.accepted(loaded + asked)
     words = sorted(set(re.findall(r"\w+", said)) | KEYWORDS)
     assert {"forall", "exists2", "Fixpoint", "symmetry", "match"} <= set(words)
-    spelled = safe(filter(_NAME.fullmatch, words), ()).values()
+    spelled = safe_names(filter(_NAME.fullmatch, words), ()).values()
     text = "".join(f"Check (fun {name} : R => {name} + 1)%R.\n" for name in spelled)
     rocq.accepted(loaded + text)
 

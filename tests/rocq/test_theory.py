@@ -12,7 +12,7 @@ from tests.helpers.rocq.assumptions import (
     printed_assumptions,
 )
 from tests.helpers.rocq.session import Session
-from verify.proof.assistant.shipped import FOLDER, files, in_order, text_of
+from verify.proof.assistant.shipped import FOLDER, files, sort_by_imports, text_of
 
 pytestmark = pytest.mark.left_to_ci
 
@@ -36,7 +36,7 @@ def theorems_of(name: str) -> list[str]:
 
 def without_reals(name: str) -> bool:
     """Whether neither the file nor what it stands on imports the library's real numbers."""
-    found = (lib for below in in_order([name]) for lib in _LIBRARIES.findall(text_of(below)))
+    found = (lib for below in sort_by_imports([name]) for lib in _LIBRARIES.findall(text_of(below)))
     return not _WITH_REALS & {word for line in found for word in line.split()}
 
 

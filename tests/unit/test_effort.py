@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from verify.effort import Effort, limited, unless_long
+from verify.effort import Effort, answer_unless_long, limit_effort
 from verify.errors import LimitError
 
 
@@ -25,16 +25,16 @@ def many(count: int) -> int:
 
 def test_what_does_not_end_is_an_error_that_names_the_input() -> None:
     with pytest.raises(LimitError, match="map=p: to compose it takes too long"), \
-         limited("map", "p", "to compose it"):  # fmt: skip
+         limit_effort("map", "p", "to compose it"):  # fmt: skip
         forever()
     assert sys.getprofile() is None
 
 
 def test_what_need_not_be_known_is_answered_otherwise() -> None:
-    assert unless_long(lambda: many(10), 0) == 10
-    assert unless_long(forever, 7, most=1000) == 7
+    assert answer_unless_long(lambda: many(10), 0) == 10
+    assert answer_unless_long(forever, 7, most=1000) == 7
     with pytest.raises(LimitError, match="its own"):
-        unless_long(lambda: (_ for _ in ()).throw(LimitError("x", 1, "its own")), None)
+        answer_unless_long(lambda: (_ for _ in ()).throw(LimitError("x", 1, "its own")), None)
 
 
 def test_a_count_goes_on_where_it_is_entered_again() -> None:
@@ -57,10 +57,10 @@ def test_of_two_that_of_fewer_calls_ends_it(inner: int, outer: int, said: str) -
 
 def test_an_inner_one_that_is_spent_leaves_the_outer_counting() -> None:
     def inner_and_more() -> int:
-        assert unless_long(forever, 3, most=1000) == 3
+        assert answer_unless_long(forever, 3, most=1000) == 3
         return forever()
 
-    assert unless_long(inner_and_more, 4, most=10_000) == 4
+    assert answer_unless_long(inner_and_more, 4, most=10_000) == 4
 
 
 @pytest.mark.parametrize("most", range(40))
@@ -71,7 +71,7 @@ def test_wherever_it_is_spent_nothing_is_left_behind(most: int) -> None:
         with effort:
             many(5)
     except LimitError:
-        assert effort.left < 0
+        assert effort.calls_left < 0
     assert sys.getprofile() is None
 
 
@@ -83,7 +83,7 @@ def test_a_handler_on_the_way_does_not_swallow_it() -> None:
             except Exception:  # noqa: S112 - as libraries do
                 continue
 
-    assert unless_long(swallows, "given up", most=1000) == "given up"  # type: ignore[arg-type]
+    assert answer_unless_long(swallows, "given up", most=1000) == "given up"  # type: ignore[arg-type]
 
 
 def test_a_generator_that_is_closed_does_not_lose_it() -> None:
@@ -93,7 +93,7 @@ def test_a_generator_that_is_closed_does_not_lose_it() -> None:
         while True:
             any(each() > 0 for each in _functions())
 
-    assert unless_long(closed_early, -1, most=5000) == -1
+    assert answer_unless_long(closed_early, -1, most=5000) == -1
 
 
 def _functions() -> Iterator[Callable[[], int]]:
@@ -109,7 +109,7 @@ def _functions() -> Iterator[Callable[[], int]]:
     ],
 )
 def test_loops_within_generators_and_in_c_are_ended(endless: Callable[[], int]) -> None:
-    assert unless_long(endless, -1, most=5000) == -1
+    assert answer_unless_long(endless, -1, most=5000) == -1
 
 
 def test_a_profiler_goes_on_undisturbed() -> None:
@@ -130,7 +130,9 @@ def test_a_profiler_goes_on_undisturbed() -> None:
 
 def test_other_threads_have_the_limit_and_not_this_one() -> None:
     found: list[int] = []
-    thread = threading.Thread(target=lambda: found.append(unless_long(forever, 9, most=50_000)))
+    thread = threading.Thread(
+        target=lambda: found.append(answer_unless_long(forever, 9, most=50_000))
+    )
     thread.start()
     assert many(100_000) == 100_000
     thread.join(60)

@@ -10,10 +10,10 @@ import pytest
 from tests.campaigns.kept_results import kept_results
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.keeping import KEPT, NOTHING, Keeper, sealed, unsealed
+from verify.execution.keeping import KEPT, NOTHING, Keeper, seal, unseal
 from verify.formats import check_format
 from verify.proof.certificates import file as certificates
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.every import certify_every
 from verify.proof.every import prove_every
 from verify.reference.check.check import check
 from verify.reference.compare.published import load
@@ -41,8 +41,8 @@ def scene(path: Path) -> object:
 
 READERS: dict[str, tuple[str, Reader, Callable[[], str]]] = {
     "certificate": (
-        certificates.FORMAT, certificates.checked,
-        lambda: json.dumps(of_every(prove_every("lie2"))),
+        certificates.FORMAT, certificates.check_file,
+        lambda: json.dumps(certify_every(prove_every("lie2"))),
     ),
     "results.json": (reports.FORMAT, read_report, REPORT.model_dump_json),
     "data": (DATA_FORMAT, scene, (PUBLISHED / "duffing.json").read_text),
@@ -158,10 +158,10 @@ def test_a_checkpoint_of_another_version_or_content_is_none(
 
 
 def test_what_was_sealed_is_told_by_its_format() -> None:
-    assert unsealed(KEPT, "7f", sealed(KEPT, "7f", "{}")) == "{}"
-    assert unsealed("areaproof poem 1", "7f", sealed(KEPT, "7f", "{}")) is None
-    assert unsealed(KEPT, "8a", sealed(KEPT, "7f", "{}")) is None
-    assert unsealed(KEPT, "7f", "") is None
+    assert unseal(KEPT, "7f", seal(KEPT, "7f", "{}")) == "{}"
+    assert unseal("areaproof poem 1", "7f", seal(KEPT, "7f", "{}")) is None
+    assert unseal(KEPT, "8a", seal(KEPT, "7f", "{}")) is None
+    assert unseal(KEPT, "7f", "") is None
 
 
 def test_of_a_sample_of_the_campaigns_damages_all_are_noticed() -> None:
@@ -183,4 +183,4 @@ def test_a_key_of_a_certificate_that_stands_twice_within_it_is_refused(tmp_path:
     path = tmp_path / "twice.json"
     path.write_text(f'{{"format": "{certificates.FORMAT}", "witness": {{"p": "1", "p": "2"}}}}')
     with pytest.raises(InputError, match="a key stands twice"):
-        certificates.checked(path)
+        certificates.check_file(path)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from verify import lockstep
-from verify.lockstep import Course, Pending, alone, meet, together
+from verify.lockstep import Course, Pending, meet, run_alone, run_together
 
 
 class Doubling:
@@ -19,13 +19,13 @@ class Doubling:
     def advance(self, pending: Sequence[Pending]) -> None:
         self.sizes.append(len(pending))
         for each in pending:
-            if each.asked < 0:
-                each.end(None, ValueError(f"{each.asked} is negative"))
-            elif each.asked % 2 and each.state is None and len(pending) > 1:
+            if each.request < 0:
+                each.end(None, ValueError(f"{each.request} is negative"))
+            elif each.request % 2 and each.state is None and len(pending) > 1:
                 each.state = "begun"
             else:
                 each.seconds += 1000.0
-                each.end(2 * each.asked)
+                each.end(2 * each.request)
 
 
 class Four(Doubling):
@@ -42,7 +42,7 @@ def chain(work: Doubling, start: int, times: int) -> Course[int]:
 
 
 def results(courses: Sequence[Course[Any]], most: int) -> dict[int, Any]:
-    return {number: ended.result() for number, ended in together(iter(courses), most)}
+    return {number: ended.result() for number, ended in run_together(iter(courses), most)}
 
 
 def by_itself(value: int) -> Course[int]:
@@ -55,7 +55,7 @@ def by_itself(value: int) -> Course[int]:
 def test_each_gives_what_it_gives_by_itself(most: int) -> None:
     work = Doubling()
     found = results([chain(work, k, k % 4) for k in range(20)], most)
-    assert found == {k: alone(chain(Doubling(), k, k % 4)) for k in range(20)}
+    assert found == {k: run_alone(chain(Doubling(), k, k % 4)) for k in range(20)}
     assert max(work.sizes) <= most
 
 
@@ -92,7 +92,7 @@ def test_nobody_is_left_to_go_on_alone(count: int) -> None:
 
 def test_an_error_is_that_of_its_own_function_alone() -> None:
     work = Doubling()
-    ended = dict(together(iter([chain(work, k, 1) for k in (2, -1, 4)]), 50))
+    ended = dict(run_together(iter([chain(work, k, 1) for k in (2, -1, 4)]), 50))
     assert ended[0].result() == 5
     assert ended[2].result() == 9
     with pytest.raises(ValueError, match="-1 is negative"):
@@ -105,9 +105,9 @@ def test_functions_that_meet_nobody_are_all_called() -> None:
 
 
 def test_without_others_it_is_done_at_once() -> None:
-    assert alone(meet(Doubling(), 21)) == 42
+    assert run_alone(meet(Doubling(), 21)) == 42
     with pytest.raises(ValueError, match="negative"):
-        alone(meet(Doubling(), -3))
+        run_alone(meet(Doubling(), -3))
 
 
 def test_what_a_work_raises_is_raised_where_it_is_waited_for() -> None:
@@ -129,8 +129,8 @@ def test_what_a_work_raises_is_raised_where_it_is_waited_for() -> None:
         return (yield from meet(Doubling(), 3))
 
     with pytest.raises(KeyboardInterrupt):
-        alone(kept(again=False))
-    assert alone(kept(again=True)) == 6
+        run_alone(kept(again=False))
+    assert run_alone(kept(again=True)) == 6
     assert seen == ["kept"] * 2
 
 
@@ -148,7 +148,7 @@ def test_those_that_wait_are_ended_where_nobody_waits_for_them() -> None:
     work = Doubling()
     for first in (by_itself(1), chain(work, 2, 1)):
         seen.clear()
-        whole = together(iter([first, waiting(work), waiting(work)]), 50)
+        whole = run_together(iter([first, waiting(work), waiting(work)]), 50)
         assert isinstance(whole, Generator)
         next(whole)
         whole.close()
@@ -185,7 +185,7 @@ class Interrupted:
     def __call__(self, frame: Any, event: str, _: Any) -> Any:
         if frame.f_code.co_filename != lockstep.__file__:
             return None
-        if event == "line" and frame.f_code.co_name in ("together", "go_on", "_advance"):
+        if event == "line" and frame.f_code.co_name in ("run_together", "resume", "_advance"):
             self.left -= 1
             if self.left == 0:
                 raise KeyboardInterrupt

@@ -7,22 +7,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from verify.prose import Formula, Number, Prose, joined, prose, read_prose
-from verify.scenes.frozen import Said, WithProse
+from verify.prose import Formula, Number, Prose, join_prose, prose, read_prose
+from verify.scenes.frozen import ProseText, WithProse
 
 PARTS = st.lists(st.one_of(st.text(), st.builds(Formula, st.text()), st.builds(Number, st.text())))
 
 
 class Result(WithProse):
-    reason: Said
-    checked: tuple[Said, ...] = ()
+    reason: ProseText
+    checked: tuple[ProseText, ...] = ()
 
 
 @given(PARTS)
 def test_a_prose_is_its_plain_text_and_its_data_give_it_back(parts):
     made = prose(*parts)
     assert made == "".join(parts)
-    for back in (Prose.of_data(made.as_data()), copy.deepcopy(made), copy.copy(made)):
+    for back in (Prose.from_data(made.as_data()), copy.deepcopy(made), copy.copy(made)):
         assert back == made
         assert back.parts == made.parts
         assert [type(p) for p in back.parts] == [type(p) for p in made.parts]
@@ -32,8 +32,8 @@ def test_texts_side_by_side_are_one_and_a_prose_gives_its_parts():
     inner = prose("b", Formula("h^3"))
     found = "a" + inner + "c" + "d"
     assert found.parts == ("ab", "h^3", "cd")
-    assert joined("; ", [inner, "x"]).parts == ("b", "h^3", "; x")
-    assert joined("; ", []) == ""
+    assert join_prose("; ", [inner, "x"]).parts == ("b", "h^3", "; x")
+    assert join_prose("; ", []) == ""
 
 
 @pytest.mark.parametrize(

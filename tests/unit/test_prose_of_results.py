@@ -13,14 +13,14 @@ from verify.integrators.results import Claims
 from verify.papers import check_theorem
 from verify.papers import names as theorems
 from verify.proof.every import prove_every
-from verify.proof.symmetry import by_series
+from verify.proof.symmetry import judge_symmetry
 from verify.prose import Formula, Number, Prose, prose
 from verify.scenes.frozen import PLAIN
 from verify.schemes import get
 from verify.schemes import names as schemes
 from verify.studies.criteria import judge
 from verify.studies.proofs.one import ProofTask
-from verify.studies.separation.growth import growth
+from verify.studies.separation.growth import fit_growth
 from verify.studies.stability.results import run_result
 from verify.studies.stability.trail import Run
 
@@ -47,7 +47,7 @@ def test_proofs_for_every_h_are_marked(name: str, separable: bool) -> None:
 @pytest.mark.parametrize("name", ["lie2", "stormer-verlet", "yoshida4", "rk4", "implicit-midpoint"])
 def test_symmetry_is_marked(name: str) -> None:
     step_map = get(name).step_map(Hamiltonian.parse("p**2/2 + q**3/3"))
-    assert unmarked(by_series(step_map, 3)) == []
+    assert unmarked(judge_symmetry(step_map, 3)) == []
 
 
 @pytest.mark.parametrize("hamiltonian", HAMILTONIANS.values(), ids=HAMILTONIANS)
@@ -119,6 +119,6 @@ def test_stability_is_marked(h: str, q: str) -> None:
 def test_a_growth_of_rounding_is_marked() -> None:
     marks = list(range(100, 100_001, 100))
     for power in (Fraction(0), Fraction(-1)):
-        found = growth(marks, [1 + power * Fraction(1, n) for n in marks], Fraction(1, 10**30))
+        found = fit_growth(marks, [1 + power * Fraction(1, n) for n in marks], Fraction(1, 10**30))
         assert [type(part) for part in found.reason.parts].count(Number) == 2
         assert unmarked(found) == []

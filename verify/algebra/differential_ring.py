@@ -1,6 +1,6 @@
 """A differential ring: polynomials in variables and generators, with relations and derivatives.
 
-What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
+Its purpose, and the decision whether an element is zero, are described in `verify.algebra.ring`.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from verify.algebra.generator import Generator, Poly
-from verify.algebra.identities.polynomials import Polynomials, occurring, split
+from verify.algebra.identities.polynomials import Polynomials, places_in, split
 from verify.late import sympy
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
@@ -21,7 +21,7 @@ class RingFullError(Exception):
 class DifferentialRing(Polynomials):
     """Polynomials in the given variables, with room for `room` generators.
 
-    `verify.algebra.ring.Ring` is the one that is used: it decides, divides and writes too.
+    `verify.algebra.ring.Ring` extends it by the decision of zero, by division and by text.
     """
 
     def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
@@ -38,91 +38,92 @@ class DifferentialRing(Polynomials):
     # -- elements -----------------------------------------------------------------------------
 
     def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂name in normal form, by the chain rule over the generators."""
+        """Return ∂x/∂name in normal form, by the chain rule over the generators."""
         total = x.derivative(self.places[name])
         for index in self._functions_in(x):
             total += x.derivative(index) * self._partial(index, name)
         return self.reduce(total)
 
     def _functions_in(self, x: Poly) -> list[int]:
-        """The generators in x that are no variables, arguments apart."""
+        """Return the generators in x that are no variables, without those in their arguments."""
         if len(self.generators) == len(self.variables):
             return []
+        # Variables have the places from `room` on, generators those before.
         return [index for index, power in enumerate(x.degrees()[: self.room]) if power > 0]
 
     def in_variables(self, x: Poly) -> bool:
-        """Whether x is a polynomial in the variables alone."""
+        """Return True if x is a polynomial in the variables alone."""
         return not self._functions_in(x)
 
     def _partial(self, index: int, name: str) -> Poly:
-        """The partial derivative of a generator."""
+        """Return the partial derivative of a generator."""
         return self.gradient(index).get(name, self.zero)
 
     def terms_of_diff(self, x: Poly, name: str) -> int:
-        """A bound of the number of terms of ∂x/∂name, without making it."""
+        """Bound the number of terms of ∂x/∂name without computing it."""
         total = len(x)
         for index in self._functions_in(x):
             total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
     def generators_in(self, *elements: Poly) -> list[Generator]:
-        """The generators that the elements depend on, arguments included, oldest first."""
-        seen: set[int] = set()
-        stack = [index for x in elements for index in occurring(x)]
+        """Return the generators that the elements depend on, arguments included, oldest first."""
+        visited: set[int] = set()
+        stack = [index for x in elements for index in places_in(x)]
         while stack:
             index = stack.pop()
-            if index not in seen:
-                seen.add(index)
+            if index not in visited:
+                visited.add(index)
                 stack += self._inside_of(index)
-        return [g for g in self.generators if g.index in seen]
+        return [g for g in self.generators if g.index in visited]
 
     def _inside_of(self, index: int) -> list[int]:
-        """The generators in a generator's argument."""
+        """Return the generators in a generator's argument."""
         if index not in self._inside:
             argument = self._by_index[index].argument
-            self._inside[index] = [] if argument is None else occurring(argument)
+            self._inside[index] = [] if argument is None else places_in(argument)
         return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
-        """Whether the variable is in x, or in an argument of its generators."""
-        place, seen, stack = self.places.get(name), set[int](), occurring(x)
+        """Return True if the variable is in x, or in an argument of its generators."""
+        place, visited, stack = self.places.get(name), set[int](), places_in(x)
         while stack:
             index = stack.pop()
             if index == place:
                 return True
-            if index not in seen:
-                seen.add(index)
+            if index not in visited:
+                visited.add(index)
                 stack += self._inside_of(index)
         return False
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
-        """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.
+        """Split x by the powers of one variable: {power: coefficient}, the coefficients non-zero.
 
-        The caller sees to it that no generator in x depends on that variable.
+        The caller ensures that no generator in x depends on that variable.
         """
         return split(x, self.places[name])
 
     # -- generators ---------------------------------------------------------------------------
 
     def add(self, kind: str, argument: Poly | None = None, degree: int = 1) -> Poly:
-        """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
+        """Add a generator; its relation and gradient are set by `relate` and `set_gradient`."""
         if not self.free:
             raise RingFullError(f"more than {self.room} functions and denominators are needed")
-        index = self.made()
+        index = self.reserve_place()
         generator = Generator(index, kind, argument, degree)
         self.generators.append(generator)
         self._by_index[index] = generator
         return self.gens[index]
 
     def find(self, kind: str, argument: Poly | None, degree: int = 1) -> Poly | None:
-        """The generator of that kind for that argument, where there is one."""
+        """Return the generator of that kind for that argument, or None where there is none."""
         for g in self.generators:
             if g.kind == kind and g.degree == degree and g.argument == argument:
                 return self.gens[g.index]
         return None
 
     def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
-        """d generator = outer · d inner."""
+        """Set the gradient by d generator = outer · d inner."""
         partials = ((name, self.diff(inner, name)) for name in self.variables)
         gradient = {
             name: self.multiply(outer, part) for name, part in partials if not part.is_zero()
@@ -130,9 +131,9 @@ class DifferentialRing(Polynomials):
         self.set_partials(generator, gradient)
 
     def set_partials(self, generator: Poly, gradient: dict[str, Poly]) -> None:
-        """The partial derivatives of the generator that are not 0, by the variables' names."""
+        """Set the partial derivatives of the generator that are not 0, by the variables' names."""
         self._gradients[self.gens.index(generator)] = gradient
 
     def gradient(self, index: int) -> dict[str, Poly]:
-        """The partial derivatives of a generator that has a gradient, by the variables' names."""
+        """Return the partial derivatives of a generator that are set, by the variables' names."""
         return self._gradients.get(index, {})

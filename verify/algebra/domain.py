@@ -1,4 +1,4 @@
-"""Where a formula is defined: conditions on p, q, h and the parameters, in few and simple ones."""
+"""The domain of a formula: few and simple conditions on p, q, h and the parameters."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.zero_test import witness
-from verify.effort import limited, unless_long
+from verify.effort import answer_unless_long, limit_effort
 from verify.errors import InputError
 from verify.late import sympy
-from verify.prose import Formula, Prose, joined, prose
+from verify.prose import Formula, Prose, join_prose, prose
 
 _SIGNS = {"!=": "≠", ">=": "≥", ">": ">", "<=": "≤", "<": "<"}
 _REVERSED = {"!=": "!=", ">=": "<=", ">": "<"}
@@ -26,69 +26,73 @@ _PRECISION = 128
 
 @dataclass(frozen=True)
 class Domain:
-    """All points at which every requirement holds, and every one of `words` is true.
+    """All points at which every requirement holds, and every condition in words is true.
 
-    `words`: what is no inequality, such as that the equations of an implicit scheme have a
-    solution.
+    `words`: conditions that are no inequalities, such as that the equations of an implicit scheme
+    have a solution.
     """
 
     requirements: tuple[Requirement, ...] = ()
     words: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, requirements: Iterable[Requirement], *words: str) -> Domain:
-        """The domain in its simplest terms; what always holds is left out."""
-        simple = {r for each in requirements for r in _simplified_soon(each)}
-        return cls(tuple(_merged(simple)), tuple(dict.fromkeys(words)))
+    def from_requirements(cls, requirements: Iterable[Requirement], *words: str) -> Domain:
+        """Simplify the requirements to a domain; those that always hold are dropped."""
+        simple = {r for each in requirements for r in _simplify_or_keep(each)}
+        return cls(tuple(_merge(simple)), tuple(dict.fromkeys(words)))
 
     def __and__(self, other: Domain) -> Domain:
         if not other:
             return self
-        return Domain.of((*self.requirements, *other.requirements), *self.words, *other.words)
+        return Domain.from_requirements(
+            (*self.requirements, *other.requirements), *self.words, *other.words
+        )
 
     def __bool__(self) -> bool:
-        """Whether there is any condition."""
+        """Return True if there is any condition."""
         return bool(self.requirements or self.words)
 
     @cached_property
     def texts(self) -> tuple[str, ...]:
-        """One text for each condition, such as `q >= 0`."""
+        """The conditions as texts, such as `q >= 0`."""
         return (*(" ".join(_sides(r)) for r in self.requirements), *self.words)
 
     @property
-    def shown(self) -> list[str]:
-        """Each requirement in the signs of mathematics, such as q ≥ 0."""
-        return [str(_shown(r)) for r in self.requirements]
+    def requirement_signs(self) -> list[str]:
+        """The requirements in the signs of mathematics, such as q ≥ 0."""
+        return [str(_format_requirement(r)) for r in self.requirements]
 
     @property
     def prose(self) -> Prose:
         """The conditions in one line: q ≥ 0, δ ≠ 0."""
-        shown = [_shown(r) for r in self.requirements]
-        return joined(", ", [*shown, *self.words])
+        formulas = [_format_requirement(r) for r in self.requirements]
+        return join_prose(", ", [*formulas, *self.words])
 
     @property
     def names(self) -> set[str]:
-        """The variables that the requirements speak of."""
+        """The names of the variables in the requirements."""
         return {s.name for r in self.requirements for s in r.expression.free_symbols}
 
     @cached_property
     def _elements(self) -> tuple[Ring, list[Poly]]:
         return embed([r.expression for r in self.requirements], sorted(self.names))
 
-    def replaced(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Domain:
-        """The domain with these values put in; InputError where a requirement then fails."""
+    def substitute(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Domain:
+        """Substitute values in the domain; InputError where a requirement then fails."""
         if not values or not self.requirements:
             return self
-        with limited("domain", ", ".join(self.texts), "to put a value in"):
-            put = [r._replace(expression=r.expression.xreplace(values)) for r in self.requirements]
-        for before, after in zip(self.requirements, put, strict=True):
+        with limit_effort("domain", ", ".join(self.texts), "to put a value in"):
+            results = [
+                r._replace(expression=r.expression.xreplace(values)) for r in self.requirements
+            ]
+        for before, after in zip(self.requirements, results, strict=True):
             if after.expression.is_number and _holds_of_number(after) is False:
-                shown = ", ".join(f"{name} = {value}" for name, value in values.items())
-                raise InputError("parameter", shown, f"is outside of {' '.join(_sides(before))}")
-        return Domain.of(put, *self.words)
+                text = ", ".join(f"{name} = {value}" for name, value in values.items())
+                raise InputError("parameter", text, f"is outside of {' '.join(_sides(before))}")
+        return Domain.from_requirements(results, *self.words)
 
     def contains(self, point: Mapping[str, Fraction]) -> bool | None:
-        """Whether all requirements hold at the point; None where that is not decided.
+        """Return True if all requirements hold at the point; None where that is not decided.
 
         The point gives a value to each of `names`.
         """
@@ -102,36 +106,39 @@ class Domain:
         return False if False in answers else None if None in answers else True
 
     def signs(self, point: Mapping[str, Fraction]) -> list[int | None]:
-        """Of each requirement's expression at the point, 1, 0 or −1; None where it is not known."""
+        """Return the sign of each requirement's expression at the point; None if not decided."""
         ring, elements = self._elements
         return [_sign(enclose(ring, x, point, _PRECISION)) for x in elements]
 
     def left_since(self, before: Sequence[int | None], point: Mapping[str, Fraction]) -> list[str]:
-        """The conditions that do not hold all the way to the point from where the signs were those
-        `before`: they fail there, or what is not to be 0 has the other sign."""
+        """Return the conditions that fail on the way from a point with the signs `before`.
+
+        They fail at the new point, or an expression that must not be 0 has the other sign there.
+        """
         return [
-            str(_shown(r))
+            str(_format_requirement(r))
             for r, one, other in zip(self.requirements, before, self.signs(point), strict=True)
             if (other == -1 and r.relation != "!=") or (one and other == -one)
         ]
 
     def decide(self, ring: Ring, x: Poly) -> Decision:
-        """Whether x is zero in this domain, shown by a point of it; None where none is found.
+        """Decide whether x is zero in this domain, with a witness in it.
 
-        A point outside refutes nothing that is said of the domain, and where it has no point
-        nothing is said at all.
+        A point outside refutes no statement about the domain. Where no point of it is found,
+        nothing is decided.
         """
         decision = ring.decide(x)
         if decision.zero is None or not self.requirements:
             return decision
-        own = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
-        points = self._points(list(dict.fromkeys((*own, *sorted(self.names)))))
+        names = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
+        points = self._points(list(dict.fromkeys((*names, *sorted(self.names)))))
+        # An identity on an empty domain would be vacuous, so a point of the domain is required.
         if decision.zero:
             return Decision(None) if next(points, None) is None else decision
         return witness(partial(enclose, ring, x), points, _PRECISION) or Decision(None)
 
     def _points(self, names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
-        """Points of the domain: small ones, and such as lie about the ends of its conditions."""
+        """Yield points of the domain: small ones, and ones near the boundaries of conditions."""
         ends = {
             symbol.name: Fraction(int(root.p), int(root.q))
             for r in self.requirements
@@ -141,16 +148,16 @@ class Domain:
         }
         for about in ({}, ends) if ends else ({},):
             for point in points(names):
-                moved = {name: x + about.get(name, 0) for name, x in point.items()}
-                if moved.get("h", 1) > 0 and self.contains(moved):
-                    yield moved
+                moved_point = {name: x + about.get(name, 0) for name, x in point.items()}
+                if moved_point.get("h", 1) > 0 and self.contains(moved_point):
+                    yield moved_point
 
 
 EVERYWHERE = Domain()
 
 
 def holds(value: Ball | None, relation: Relation) -> bool | None:
-    """Whether all numbers of a ball are ≠ 0, ≥ 0 or > 0; None where that is not decided."""
+    """Return True if all numbers of a ball are ≠ 0, ≥ 0 or > 0; None where not decided."""
     if value is None or not value.is_finite():
         return None
     if relation == "!=":
@@ -172,52 +179,54 @@ def _holds_of_number(r: Requirement) -> bool | None:
 
 
 @lru_cache(maxsize=512)
-def _simplified_soon(written: Requirement) -> Iterable[Requirement]:
-    """As it is written where sympy does not end."""
-    return unless_long(lambda: list(_simplified(*written)), [Requirement(*written)])
+def _simplify_or_keep(requirement: Requirement) -> Iterable[Requirement]:
+    """Simplify a requirement; return it as it is where sympy takes too long."""
+    return answer_unless_long(lambda: list(_simplify(*requirement)), [Requirement(*requirement)])
 
 
-def _simplified(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
-    """The same condition on simpler expressions; nothing where it always holds."""
+def _simplify(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
+    """Replace a condition by conditions on simpler expressions; none where it always holds."""
     if u.is_number:
         return ()
-    return _unequal(u) if relation == "!=" else _signed(u, relation)
+    return _simplify_unequal(u) if relation == "!=" else _simplify_signed(u, relation)
 
 
-def _unequal(u: sympy.Expr) -> Iterable[Requirement]:
+def _simplify_unequal(u: sympy.Expr) -> Iterable[Requirement]:
     for factor in sympy.Mul.make_args(u):
         base = factor.base if factor.is_Pow and factor.exp.is_Rational else factor
+        # A product is ≠ 0 where each factor is, and a rational power where its base is.
         if base.is_Mul:
-            yield from _unequal(base)
+            yield from _simplify_unequal(base)
         elif not base.is_number and not _always(base, "!="):
             rest = base.primitive()[1] if base.is_Add else base
             yield Requirement(-rest if rest.could_extract_minus_sign() else rest, "!=")
 
 
-def _signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
-    """That a product is ≥ 0 or > 0, of factors which are defined: a root is ≥ 0."""
+def _simplify_signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
+    """Simplify the condition that a product of defined factors is ≥ 0 or > 0; a root is ≥ 0."""
+    # Positive factors do not change the sign of a product.
     positive = [f for f in sympy.Mul.make_args(u) if f.is_positive]
     rest = sympy.Mul(*(f for f in sympy.Mul.make_args(u) if f not in positive))
     number, rest = rest.as_coeff_Mul()
     rest = (rest.primitive()[1] if rest.is_Add else rest) * sympy.sign(number)
     base, exponent = (rest * sympy.sign(number)).as_base_exp()
     if exponent.is_Integer and exponent.p % 2 and exponent != 1:
-        yield from _signed(sympy.sign(number) * base, relation)
+        yield from _simplify_signed(sympy.sign(number) * base, relation)
     elif exponent.is_Rational and exponent != 1 and number > 0:
         if relation == ">":
-            yield from _simplified(base, "!=" if exponent.is_Integer else ">")
+            yield from _simplify(base, "!=" if exponent.is_Integer else ">")
     elif not _always(rest, relation):
         yield Requirement(rest, relation)
 
 
 def _always(u: sympy.Expr, relation: Relation) -> bool:
-    """Whether the condition is seen to hold everywhere."""
+    """Return True if the condition is shown to hold everywhere."""
     from verify.algebra.identities.absolute_values import sign_of  # few formulas have conditions
 
     if relation == "!=":
         return bool(u.is_nonzero) or sign_of(u, strict=True) is not None
-    seen = u.is_positive if relation == ">" else u.is_nonnegative
-    return bool(seen) or sign_of(u, strict=relation == ">") == 1
+    answer = u.is_positive if relation == ">" else u.is_nonnegative
+    return bool(answer) or sign_of(u, strict=relation == ">") == 1
 
 
 def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]:
@@ -226,30 +235,31 @@ def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]
     return [root] if root is not None and root.is_Rational else []
 
 
-def _merged(requirements: Iterable[Requirement]) -> Iterable[Requirement]:
-    """One for each expression, the strictest; ordered by their texts."""
-    ordered = sorted(requirements, key=lambda r: (to_text(_unsigned(r)), to_text(r.expression)))
-    for _, same in groupby(ordered, key=_unsigned):
+def _merge(requirements: Iterable[Requirement]) -> Iterable[Requirement]:
+    """Merge the requirements on one expression to the strictest; order them by their texts."""
+    ordered = sorted(requirements, key=lambda r: (to_text(_without_sign(r)), to_text(r.expression)))
+    for _, same in groupby(ordered, key=_without_sign):
         group = list(same)
         signed = [r for r in group if r.relation != "!="]
         unequal = len(signed) < len(group)
+        # u ≠ 0 together with u ≥ 0 is u > 0; u ≠ 0 beside u > 0 adds nothing.
         for expression in dict.fromkeys(r.expression for r in signed or group):
             relations = {r.relation for r in signed if r.expression == expression}
             strict = ">" in relations or (unequal and ">=" in relations)
             yield Requirement(expression, ">" if strict else ">=" if relations else "!=")
 
 
-def _unsigned(r: Requirement) -> sympy.Expr:
+def _without_sign(r: Requirement) -> sympy.Expr:
     return -r.expression if r.expression.could_extract_minus_sign() else r.expression
 
 
 def _sides(r: Requirement) -> tuple[str, str, str]:
-    """Left side, relation, right side: q <= 0 in place of −q ≥ 0."""
+    """Return left side, relation and right side: q <= 0 in place of −q ≥ 0."""
     if r.expression.could_extract_minus_sign() and not r.expression.is_Add:
         return to_text(-r.expression), _REVERSED[r.relation], "0"
     return to_text(r.expression), r.relation, "0"
 
 
-def _shown(r: Requirement) -> Prose:
-    left, relation, right = _sides(r)
-    return prose(Formula(left), f" {_SIGNS[relation]} ", right)
+def _format_requirement(r: Requirement) -> Prose:
+    left_side, relation, right_side = _sides(r)
+    return prose(Formula(left_side), f" {_SIGNS[relation]} ", right_side)

@@ -1,4 +1,4 @@
-"""From expressions to elements of one ring: which generators they need, and how to write them.
+"""The embedding of expressions as elements of one ring, with the generators that they need.
 
 `embed(expressions, variables)` builds the ring for all of them at once, since the arguments of all
 sines (and of all exponentials) decide together over which basis they are expanded.
@@ -31,13 +31,13 @@ from verify.late import sympy
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
-_EXP = "exp"  # it alone stands for itself where no function of its pair is asked for
+_EXP = "exp"  # a generator of its own where no hyperbolic function of its argument occurs
 
 
 def embed(
     expressions: Sequence[sympy.Expr], variables: Sequence[str], most_terms: int = MAX_TERMS
 ) -> tuple[Ring, list[Poly]]:
-    """The ring of the expressions over the variables, and each expression as its element.
+    """Build the ring of the expressions over the variables, and each expression as its element.
 
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
@@ -45,8 +45,7 @@ def embed(
     levels = levels_of(nodes)
     powers = {node for node in nodes if node.is_Pow and not is_natural(node.exp)}
     functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
-    # What is multiplied out is the faster the fewer generators there are, present or not: the
-    # usual number is tried first.
+    # Multiplication is faster with fewer generators, used or not: the usual number is tried first.
     most = 6 * (functions + rest + len(variables))
     usual = min(2 * functions + 2 * rest, most)
     for room in (usual, most):
@@ -61,7 +60,7 @@ def embed(
 
 
 def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
-    """For each base under a root, the degree of one root that all its roots are powers of."""
+    """Return for each base under a root the degree of one root of which all others are powers."""
     degrees: dict[sympy.Expr, int] = {}
     for power in powers:
         if power.exp.is_Rational:
@@ -76,33 +75,35 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
 
 
 def _function(node: sympy.Expr) -> Function:
-    """The function that the node is of something, as u**v is the exponential of v log u."""
+    """Return the function that the node applies; u**v is the exponential of v log u."""
     function = by_name()[_EXP] if node.is_Pow else function_of(node)
     assert function is not None  # noqa: S101 - the nodes are those of `levels_of`
     return function
 
 
 def _scale(u: Poly, degree: int) -> flint.fmpq:
-    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
-    point; else 1."""
+    """Return 2^k with u/2^(k·degree) close to 1, for a number u too large or small for fixed point.
+
+    Return 1 for other u.
+    """
     number = u.leading_coefficient() if u.is_constant() else flint.fmpq(0)
     bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
     return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
 
 
 class _Builder:
-    """Holds the ring while its generators are made, and what each expression became."""
+    """The builder of a ring's generators; it caches the element of each expression."""
 
     def __init__(self, ring: Ring, root_degrees: dict[sympy.Expr, int], most_terms: int) -> None:
         self.ring = ring
         self.root_degrees = root_degrees
         self.most_terms = most_terms
-        self.known: dict[sympy.Expr, Poly] = {}
+        self.cache: dict[sympy.Expr, Poly] = {}
 
     # -- functions ----------------------------------------------------------------------------
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
-        """Generators for one level of functions, whose arguments are elements by now."""
+        """Add generators for one level of functions, whose arguments are elements already."""
         self.family([f for f in level if is_trigonometric(f)], self.circle, lattice_and_turns)
         exponentials = [f for f in level if _function(f).pair is HYPERBOLA]
         self.family(exponentials, self.exponential, lattice)
@@ -116,7 +117,7 @@ class _Builder:
         make: Callable[[Poly, list[sympy.Expr]], Callable[[int], tuple[Poly, Poly]]],
         find: Callable[[Ring, Sequence[Poly]], tuple[list[Poly], list[list[int]]]],
     ) -> None:
-        """Functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and the addition theorems."""
+        """Express functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and addition theorems."""
         if not functions:
             return
         ring = self.ring
@@ -132,7 +133,7 @@ class _Builder:
             for k, value in zip(row, values, strict=True):
                 c, s = value(k)
                 even, odd = self.sum_of_arguments((even, odd), (c, s), -1 if trigonometric else 1)
-            self.known[function] = self.select(function, even, odd)
+            self.cache[function] = self.select(function, even, odd)
 
     def select(self, function: sympy.Expr, even: Poly, odd: Poly) -> Poly:
         def over(above: Poly, below: Poly) -> Poly:
@@ -143,17 +144,19 @@ class _Builder:
         return self.ring.reduce(parts(odd, even, over))
 
     def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
-        """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
+        """Return k ↦ (cos kb, sin kb), polynomials in cos b and sin b."""
         return partial(self.multiple, *self.pair(b, CIRCLE), sign=CIRCLE.sign)
 
     def exponential(
         self, b: Poly, functions: list[sympy.Expr]
     ) -> Callable[[int], tuple[Poly, Poly]]:
-        """cosh b and sinh b where they are asked for, else exp b and where needed its inverse.
+        """Return k ↦ (even, odd) with even + odd = exp kb.
 
-        Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
+        The generators are cosh b and sinh b where hyperbolic functions occur; else exp b, with its
+        inverse where needed, and odd is 0.
         """
         ring = self.ring
+        # cosh and sinh need a relation, exp does not: exp alone is the simpler generator.
         if ring.find(HYPERBOLA.even, b) is not None or any(
             _function(f).name != _EXP for f in functions
         ):
@@ -165,7 +168,7 @@ class _Builder:
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
     def pair(self, b: Poly, pair: Pair) -> tuple[Poly, Poly]:
-        """The even and the odd one of a pair, of one argument."""
+        """Return the even and the odd function of a pair at one argument."""
         ring, sign = self.ring, pair.sign
         c, s = ring.find(pair.even, b), ring.find(pair.odd, b)
         if c is None or s is None:
@@ -176,7 +179,7 @@ class _Builder:
         return c, s
 
     def multiple(self, c: Poly, s: Poly, k: int, *, sign: int) -> tuple[Poly, Poly]:
-        """(c, s) at k times the argument; `sign` is that of s² in the addition theorem."""
+        """Return (c, s) at k times the argument; `sign` is that of s² in the addition theorem."""
         even, odd = self.ring.one, self.ring.zero
         for _ in range(abs(k)):
             even, odd = self.sum_of_arguments((even, odd), (c, s), sign)
@@ -185,16 +188,16 @@ class _Builder:
     def sum_of_arguments(
         self, one: tuple[Poly, Poly], two: tuple[Poly, Poly], sign: int
     ) -> tuple[Poly, Poly]:
-        """(c, s) at the sum of two arguments, by the addition theorem."""
+        """Return (c, s) at the sum of two arguments, by the addition theorem."""
         (c, s), (d, t), reduce = one, two, self.ring.reduce
         return reduce(c * d + sign * s * t), reduce(s * d + c * t)
 
     def other(self, function: sympy.Expr) -> None:
-        """A function of its own, whose derivative is made of its argument."""
+        """Add a function without a partner, whose derivative is a function of its argument."""
         ring, u, rule = self.ring, self.element(function.args[0]), _function(function)
         same = ring.find(rule.name, u)
         if same is not None:
-            self.known[function] = same
+            self.cache[function] = same
             return
 
         def apply(name: str, x: Poly) -> Poly:
@@ -204,16 +207,16 @@ class _Builder:
         outer = rule.derivative(u, None, apply)
         generator = ring.add(rule.name, u)
         ring.set_gradient(generator, outer, u)
-        self.known[function] = generator
+        self.cache[function] = generator
 
     # -- everything else ----------------------------------------------------------------------
 
     def element(self, node: sympy.Expr) -> Poly:
-        """The element of the expression; InputError where it is not defined or too large."""
-        if node in self.known:
-            return self.known[node]
-        self.known[node] = self.limited(self.build(node), node)
-        return self.known[node]
+        """Return the element of the expression; InputError where it is undefined or too large."""
+        if node in self.cache:
+            return self.cache[node]
+        self.cache[node] = self.check_length(self.build(node), node)
+        return self.cache[node]
 
     def build(self, node: sympy.Expr) -> Poly:
         ring = self.ring
@@ -228,7 +231,7 @@ class _Builder:
         if node.is_Mul:
             total = ring.one
             for argument in node.args:
-                total = self.limited(ring.multiply(total, self.element(argument)), node)
+                total = self.check_length(ring.multiply(total, self.element(argument)), node)
             return total
         if node.is_Pow and node.exp.is_Rational:
             return self.power(node)
@@ -257,7 +260,7 @@ class _Builder:
         if degree == 1 and n > 0 and node.base.is_Symbol:
             return base**n
         if degree == 1:
-            return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
+            return self.power_of_element(base if n > 0 else self.inverse(base, node), abs(n), node)
         finest = self.root_degrees[node.base]
         scale = _scale(base, finest)
         root = self.root(base / scale**finest, finest, node) * scale
@@ -265,8 +268,8 @@ class _Builder:
         if n < 0:
             # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.
             inverse = self.ring.multiply(root ** (finest - 1), self.inverse(base, node))
-            return self.repeated(inverse, -n, node)
-        return self.repeated(root, n, node)
+            return self.power_of_element(inverse, -n, node)
+        return self.power_of_element(root, n, node)
 
     def root(self, u: Poly, degree: int, node: sympy.Expr) -> Poly:
         ring = self.ring
@@ -284,7 +287,7 @@ class _Builder:
         return root
 
     def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
-        """The root of u = c·v^common, |v| being v or −v everywhere: c^(1/n)·|v|^(common/n)."""
+        """Return the root of u = c·v^common, |v| being ±v everywhere: c^(1/n)·|v|^(common/n)."""
         from verify.algebra.where_positive import size_of_base  # which few formulas need
 
         size = size_of_base(self.ring, u, common)
@@ -295,16 +298,17 @@ class _Builder:
         root = v if rest == 1 else self.root(v, rest, node)
         exact = rational_root(c, degree)
         number = self.ring.context.constant(c if exact is None else exact)
+        # The number's own root is one more generator, unless it is rational.
         number = self.root(number, degree, node) if exact is None else number
-        return self.limited(self.ring.multiply(root, number), node)
+        return self.check_length(self.ring.multiply(root, number), node)
 
-    def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
+    def power_of_element(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
         total = self.ring.one
         for _ in range(n):
-            total = self.limited(self.ring.multiply(total, base), node)
+            total = self.check_length(self.ring.multiply(total, base), node)
         return total
 
-    def limited(self, x: Poly, node: sympy.Expr) -> Poly:
+    def check_length(self, x: Poly, node: sympy.Expr) -> Poly:
         if len(x) > self.most_terms:
             raise LimitError("formula", str(node), f"expands to more than {self.most_terms} terms")
         return x

@@ -1,4 +1,4 @@
-"""Enclosing a ring element at a rational point by ball arithmetic, and points to look at."""
+"""Enclosures of ring elements at rational points by ball arithmetic, and points to try."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -20,25 +20,25 @@ _FAR_POINTS = 200
 def enclose(
     ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
 ) -> Ball | None:
-    """A ball (flint.arb) that contains x at the point, or None where x is not defined.
+    """Return a ball (flint.arb) that contains x at the point, or None where x is not defined.
 
     Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
     """
     if ring.in_variables(x):
-        at = [flint.fmpq()] * ring.room
+        values = [flint.fmpq()] * ring.room
         for name, power in zip(ring.variables, x.degrees()[ring.room :], strict=True):
             value = point[name] if power > 0 else Fraction()  # the degree of 0 is −1
-            at.append(flint.fmpq(value.numerator, value.denominator))
+            values.append(flint.fmpq(value.numerator, value.denominator))
         with working_precision(precision):
-            return flint.arb(x(*at))
-    found = Enclosures(ring, [x]).at(point, precision)
-    return None if found is None else found[0]
+            return flint.arb(x(*values))
+    balls = Enclosures(ring, [x]).enclose_at(point, precision)
+    return None if balls is None else balls[0]
 
 
-def enclosed(
+def enclose_defined(
     ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
 ) -> Ball:
-    """As `enclose`, of what is defined there; ValueError where it may not be."""
+    """Enclose x at the point; ValueError where x may be undefined there."""
     ball = enclose(ring, x, point, precision)
     if ball is None:
         raise ValueError(f"an element is not defined at {dict(point)}")
@@ -46,23 +46,23 @@ def enclosed(
 
 
 def enclose_over(ring: DifferentialRing, x: Poly, box: Mapping[str, Ball]) -> Ball | None:
-    """A ball that contains x at every point of a box of balls, or None where x may be undefined.
+    """Return a ball that contains x at every point of a box, or None where x may be undefined.
 
-    In flint's present precision.
+    The box is a product of balls. Computed in flint's present precision.
     """
-    found = enclose_all(ring, [x], box)
-    return None if found is None else found[0]
+    balls = enclose_all(ring, [x], box)
+    return None if balls is None else balls[0]
 
 
 def enclose_all(
     ring: DifferentialRing, elements: Sequence[Poly], box: Mapping[str, Ball]
 ) -> list[Ball] | None:
-    """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
-    return Enclosures(ring, elements).over(box)
+    """Enclose each of the elements as `enclose_over` does; None where one may be undefined."""
+    return Enclosures(ring, elements).enclose_over(box)
 
 
 def power_of(x: Ball, n: int) -> Ball:
-    """xⁿ of a ball, n ≥ 1, as narrow as its squares are."""
+    """Return xⁿ of a ball, n ≥ 1, by squaring, which keeps the ball narrow."""
     # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
     # and is then undefined around 0.
     half = square(power_of(x, n // 2)) if n > 1 else flint.arb(1)
@@ -70,13 +70,13 @@ def power_of(x: Ball, n: int) -> Ball:
 
 
 def _of_balls(function: Function) -> Callable[[Ball, int], Ball]:
-    """The function as it is of balls, in the form that a root has, of a degree."""
+    """Return the function on balls, with an ignored second argument, a root's degree."""
     of_balls: Callable[[Ball], Ball] = function.of_balls(flint.arb)
     return lambda x, _: of_balls(x)
 
 
 def square(x: Ball) -> Ball:
-    """x² of a ball: as narrow as its ends are, which x · x is not."""
+    """Return x² of a ball from its ends, which is narrower than x · x."""
     low, high = x.abs_lower(), x.abs_upper()
     return (low * low).union(high * high)
 
@@ -89,10 +89,10 @@ BALLS: dict[str, Callable[[Ball, int], Ball]] = {
 
 
 def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
-    """Rational points to look for a witness at: small ones first, then ever farther ones.
+    """Yield rational points to look for a witness at: small ones first, then ever farther ones.
 
-    Without a pattern that a formula could share, and of both signs, since a root or a logarithm
-    may be defined on one side only, or far out; the same points in every call.
+    They have no pattern that a formula could share, and both signs, since a root or a logarithm
+    may be defined on one side only, or far out. Every call yields the same points.
     """
     for values in _halton_points(len(names)):
         yield dict(zip(names, values, strict=True))
@@ -100,6 +100,7 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
     for count in range(_FAR_POINTS):
         point = {}
         for name in names:
+            # A linear congruential generator with a fixed seed, so that witnesses are reproducible.
             state = (1103515245 * state + 12345) % 2**31
             reach = 2 + 10 * count // _FAR_POINTS  # up to 2^reach, and down to 2^−reach
             scale = Fraction(2) ** (state // 4096 % (2 * reach) - reach + 1)
@@ -110,23 +111,23 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
 
 @lru_cache(maxsize=16)
 def _halton_points(count: int) -> list[tuple[Fraction, ...]]:
-    """So many coordinates of each of the first points."""
+    """Return the first points, near the origin, with this many coordinates."""
     primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
     size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(count)]
     signs = list(product((1, -1), repeat=min(count, 4))) or [()]
-    found = []
+    values = []
     for scale in (Fraction(1), Fraction(1, 16)):
         for sign in signs:
             full = (*sign, *(1 for _ in range(count - len(sign))))
-            found.append(tuple(scale * s * v for s, v in zip(full, size, strict=True)))
-    return found
+            values.append(tuple(scale * s * v for s, v in zip(full, size, strict=True)))
+    return values
 
 
 Terms = list[tuple[flint.fmpq, list[tuple[int, int]]]]  # coefficients, generators with their powers
 
 
 class Enclosures:
-    """Some elements of a ring that are enclosed again and again, over other boxes: read once.
+    """Elements of a ring prepared once, to be enclosed over many boxes.
 
     Equal elements are evaluated once.
     """
@@ -136,12 +137,12 @@ class Enclosures:
 
     @cached_property
     def _generators(self) -> list[tuple[Generator, Terms]]:
-        used = self.ring.generators_in(*self.elements)
-        return [(g, [] if g.argument is None else _terms(g.argument)) for g in used]
+        generators = self.ring.generators_in(*self.elements)
+        return [(g, [] if g.argument is None else _terms(g.argument)) for g in generators]
 
     @cached_property
     def _distinct(self) -> tuple[list[Terms], list[int]]:
-        """The terms of those elements that differ, and of each element its number among them."""
+        """The terms of the distinct elements, and the number of each element among these."""
         distinct: list[Poly] = []
         numbers = []
         for x in self.elements:
@@ -150,34 +151,36 @@ class Enclosures:
             numbers.append(distinct.index(x))
         return [_terms(x) for x in distinct], numbers
 
-    def at(self, point: Mapping[str, Fraction], precision: int) -> list[Ball] | None:
-        """Balls that contain them at the point, or None where one is not defined there."""
+    def enclose_at(self, point: Mapping[str, Fraction], precision: int) -> list[Ball] | None:
+        """Enclose the elements at the point; None where one is not defined there."""
         with working_precision(precision):
-            return self.over(
+            return self.enclose_over(
                 {
-                    name: flint.arb(flint.fmpq(at.numerator, at.denominator))
-                    for name, at in point.items()
+                    name: flint.arb(flint.fmpq(value.numerator, value.denominator))
+                    for name, value in point.items()
                 }
             )
 
-    def over(self, box: Mapping[str, Ball]) -> list[Ball] | None:
-        """Balls that contain them at every point of the box, or None where one may be undefined.
+    def enclose_over(self, box: Mapping[str, Ball]) -> list[Ball] | None:
+        """Enclose the elements over the box; None where one may be undefined in it.
 
-        In flint's present precision.
+        Computed in flint's present precision.
         """
-        at = _Point()
+        balls_of_generators = _Point()
         for g, argument in self._generators:
-            value = _value(g, argument, at, box)
+            # Generators come oldest first, so the balls of an argument are there when it is
+            # evaluated.
+            value = _value(g, argument, balls_of_generators, box)
             if not value.is_finite():
                 return None
-            at.values[g.index] = value
+            balls_of_generators.values[g.index] = value
         terms, numbers = self._distinct
-        found = [at(own) for own in terms]
-        return [found[k] for k in numbers]
+        balls = [balls_of_generators(terms_of_element) for terms_of_element in terms]
+        return [balls[k] for k in numbers]
 
 
 class _Point:
-    """The balls of generators, and their powers as far as they were asked for."""
+    """The balls of generators, and a cache of their powers."""
 
     def __init__(self) -> None:
         self.values: dict[int, Ball] = {}
@@ -188,20 +191,20 @@ class _Point:
         for coefficient, factors in terms:
             term = flint.arb(coefficient)
             for factor in factors:
-                known = powers.get(factor)
-                if known is None:
-                    known = powers[factor] = power_of(self.values[factor[0]], factor[1])
-                term *= known
+                value = powers.get(factor)
+                if value is None:
+                    value = powers[factor] = power_of(self.values[factor[0]], factor[1])
+                term *= value
             total += term
         return total
 
 
-def _value(g: Generator, argument: Terms, at: _Point, box: Mapping[str, Ball]) -> Ball:
+def _value(g: Generator, argument: Terms, point: _Point, box: Mapping[str, Ball]) -> Ball:
     if g.kind == "variable":
         return box[g.name]
     if g.kind == "pi":
         return flint.arb.pi()
-    return BALLS[g.kind](at(argument), g.degree)
+    return BALLS[g.kind](point(argument), g.degree)
 
 
 def _terms(x: Poly) -> Terms:

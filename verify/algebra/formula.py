@@ -1,8 +1,8 @@
-"""Text to exact expression, by a whitelist over Python's `ast`.
+"""The parser of formulas: text to exact expression, by a whitelist over Python's `ast`.
 
-Nothing of the text is ever evaluated as code. What is allowed: the names the caller knows (or any
-parameter name), exact numbers, + − * / ** (also written ^), `pi`, and the functions in
-`FUNCTIONS`. Decimals are exact: `0.1` is 1/10. Everything else is an InputError.
+The text is never evaluated as code. Allowed are the caller's names (or any parameter name), exact
+numbers, + − * / ** (also written ^), `pi`, and the functions in `FUNCTIONS`. Decimals are exact:
+`0.1` is 1/10. Everything else is an InputError.
 """
 
 from __future__ import annotations
@@ -16,18 +16,23 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
-from verify.algebra.expressions.constant_size import within_reach
+from verify.algebra.expressions.constant_size import is_within_reach
 from verify.algebra.expressions.formula_text import to_text
-from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_of_name
-from verify.algebra.limits import check_power, checked
-from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
+from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_power_of_name
+from verify.algebra.limits import check_expression, check_power
+from verify.algebra.requirement import (
+    Requirement,
+    requirements_of_divisor,
+    requirements_of_function,
+    requirements_of_power,
+)
 from verify.arithmetic.exact import rational
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import InputError, LimitError
 from verify.functions import names as names_of_functions
 from verify.late import sympy
 
-MAX_LENGTH = 5000  # that of a chain of 64 masses is 4,240
+MAX_LENGTH = 5000  # characters; the H of a chain of 64 masses has 4,240
 MAX_DEPTH = 60
 
 FUNCTIONS = names_of_functions()
@@ -49,18 +54,18 @@ _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 
 @lru_cache(maxsize=256)
 def symbol(name: str) -> sympy.Symbol:
-    """The one symbol of that name: real, so that √(q²) is |q| and is seen not to be smooth."""
+    """Return the one symbol of that name: real, so that √(q²) is |q|, which is not smooth."""
     return sympy.Symbol(name, real=True)
 
 
 def function(name: str) -> Callable[[sympy.Expr], sympy.Expr]:
-    """The function of that name, one of `FUNCTIONS`."""
-    made: Callable[[sympy.Expr], sympy.Expr] = getattr(sympy, name)
-    return made
+    """Return the function of that name, one of `FUNCTIONS`."""
+    sympy_function: Callable[[sympy.Expr], sympy.Expr] = getattr(sympy, name)
+    return sympy_function
 
 
 def parameter_name(name: str) -> str:
-    """The name itself, where it may name a parameter; else InputError."""
+    """Return the name if it may name a parameter; else raise InputError."""
     if not name.isascii():
         from verify.algebra.mistakes.characters import strange_character
 
@@ -76,7 +81,7 @@ def parameter_name(name: str) -> str:
 
 
 def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formula") -> sympy.Expr:
-    """The exact expression that `text` writes.
+    """Parse `text` to the exact expression that it writes.
 
     `names`: the names that may occur; None allows p, q, t and any parameter name. `source` is the
     name under which an error speaks of the text. Raises InputError, never anything else.
@@ -87,7 +92,11 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
 def read(
     text: str, names: Iterable[str] | None = None, *, source: str = "formula"
 ) -> tuple[sympy.Expr, list[Requirement]]:
-    """As `parse`, with all that what is written asks for to be defined, simplified away or not."""
+    """Parse `text`, and collect the requirements for it to be defined as it is written.
+
+    They include requirements of parts that sympy's simplification removes; see
+    `verify.algebra.requirement`. The arguments are those of `parse`.
+    """
     if not isinstance(text, str):
         raise InputError(source, text, "is not text; write a formula such as 'p**2/2 + q**2/2'")
     if not text.strip():
@@ -100,18 +109,18 @@ def read(
         raise InputError(source, text, strange_character(text))
     line = " ".join(text.replace("^", "**").split())
     tree = _tree(line, text, source)
-    known = None if names is None else frozenset(names)
-    reader = _Reader(source, text, line, known)
+    allowed_names = None if names is None else frozenset(names)
+    reader = _Reader(source, text, line, allowed_names)
     result = reader.read(tree, 0)
     if not isinstance(tree, ast.BinOp):
-        checked(result, source, text)
+        check_expression(result, source, text)
     return result, reader.required
 
 
 def _tree(line: str, text: str, source: str) -> ast.expr:
     offset = None
     try:
-        if "#" not in line:  # what follows would be a comment, and not be read
+        if "#" not in line:  # Python would skip the rest of the line as a comment
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # Python's own remarks on the text, such as '1if'
                 return ast.parse(line, mode="eval").body
@@ -125,38 +134,38 @@ def _tree(line: str, text: str, source: str) -> ast.expr:
 
 
 def _nodes() -> ModuleType:
-    """What is said of a part that no formula has: not imported for a formula that is read."""
+    """Import the module of messages about mistakes, only when there is one."""
     from verify.algebra.mistakes import nodes
 
     return nodes
 
 
 class _Reader:
-    """Turns one syntax tree into an expression; each method takes a node and its depth."""
+    """A reader of one syntax tree into an expression; its methods take a node and its depth."""
 
     def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
         self.required: list[Requirement] = []
-        self.effort = limited(source, text, "to read it")
+        self.effort = limit_effort(source, text, "to read it")
 
-    def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
-        return InputError(self.source, self.text, self.placed(problem, at))
+    def fail(self, problem: str, place: ast.expr | int | None = None) -> InputError:
+        return InputError(self.source, self.text, self.with_place(problem, place))
 
-    def beyond(self, problem: str, at: ast.expr | None = None) -> LimitError:
-        return LimitError(self.source, self.text, self.placed(problem, at))
+    def exceed_limit(self, problem: str, at: ast.expr | None = None) -> LimitError:
+        return LimitError(self.source, self.text, self.with_place(problem, at))
 
-    def placed(self, problem: str, at: ast.expr | int | None) -> str:
-        """The problem, with the place in the text of that node or offset of the line."""
-        if at is None:
+    def with_place(self, problem: str, position: ast.expr | int | None) -> str:
+        """Prefix the problem with the place in the text of that node or offset of the line."""
+        if position is None:
             return problem
         from verify.algebra.mistakes.place import index_of, place
 
-        offset = at if isinstance(at, int) else at.col_offset
+        offset = position if isinstance(position, int) else position.col_offset
         return f"at {place(self.text, index_of(self.text, offset))}: {problem}"
 
     def read(self, node: ast.expr, depth: int) -> sympy.Expr:
         if depth > MAX_DEPTH:
-            raise self.beyond(f"nested deeper than {MAX_DEPTH}")
+            raise self.exceed_limit(f"nested deeper than {MAX_DEPTH}")
         match node:
             case ast.Constant():
                 return self.number(node)
@@ -176,16 +185,16 @@ class _Reader:
 
     def number(self, node: ast.Constant) -> sympy.Expr:
         # The source text, not node.value: that is already a rounded float.
-        written = self.line[node.col_offset : node.end_col_offset]
+        digits = self.line[node.col_offset : node.end_col_offset]
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
-            raise self.fail(_nodes().no_number(node.value, written), node)
-        if written.isdecimal() and len(written) <= _SHORT:
-            return sympy.Integer(int(written))
+            raise self.fail(_nodes().no_number(node.value, digits), node)
+        if digits.isdecimal() and len(digits) <= _SHORT:
+            return sympy.Integer(int(digits))
         try:
-            value = rational(written, self.source)
+            value = rational(digits, self.source)
         except InputError as error:
-            known = self.beyond if _DECIMAL.fullmatch(written) else self.fail
-            raise known(f"{written[:40]}: {error.problem}", node) from None
+            refuse = self.exceed_limit if _DECIMAL.fullmatch(digits) else self.fail
+            raise refuse(f"{digits[:40]}: {error.problem}", node) from None
         return sympy.Rational(value.numerator, value.denominator)
 
     def name(self, name: str, at: ast.expr | None = None) -> sympy.Expr:
@@ -203,28 +212,33 @@ class _Reader:
         name = node.func.id if isinstance(node.func, ast.Name) else "?"
         if name in NOT_SMOOTH:
             listed = ", ".join(sorted(FUNCTIONS))
-            raise self.beyond(f"{name} is not smooth, and H must be; allowed: {listed}", node)
+            raise self.exceed_limit(f"{name} is not smooth, and H must be; allowed: {listed}", node)
         if name not in FUNCTIONS:
-            known = hasattr(math, name) or isinstance(getattr(sympy, name, None), type(sympy.sin))
+            is_in_library = hasattr(math, name) or isinstance(
+                getattr(sympy, name, None), type(sympy.sin)
+            )
             problem = _nodes().unknown_function(node, self.line, FUNCTIONS)
-            raise self.beyond(problem, node) if known else self.fail(problem, node)
+            raise self.exceed_limit(problem, node) if is_in_library else self.fail(problem, node)
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
             raise self.fail(_nodes().wrong_arguments(name, node, self.line), node)
         argument = self.read(node.args[0], depth + 1)
-        self.required += of_function(name, argument)
+        self.required += requirements_of_function(name, argument)
         # sympy sums and simplifies as it builds: infinities must not get into it.
+        # A root is a power here, so that it is subject to the same limits as u**(1/2).
         if name == "sqrt":
             return self.power(argument, sympy.S.Half)
         if name == "exp" and argument.has(sympy.log):  # a power, which has limits of its own
             return self.finite(self.exponential(argument))
-        if not argument.free_symbols and not within_reach(argument):
-            raise self.beyond(f"{name} of a constant that is too large, or not defined")
-        value = self.finite(self.apply(function(name), argument, shown=f"{name} of that argument"))
+        if not argument.free_symbols and not is_within_reach(argument):
+            raise self.exceed_limit(f"{name} of a constant that is too large, or not defined")
+        value = self.finite(
+            self.apply(function(name), argument, description=f"{name} of that argument")
+        )
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 
     def exponential(self, argument: sympy.Expr) -> sympy.Expr:
-        """exp of a sum with logarithms: sympy makes powers of them, whose exponents have limits."""
+        """Return exp of a sum with logarithms, which become powers with limited exponents."""
         result = sympy.S.One
         for term in sympy.Add.make_args(argument):
             logs = [f for f in sympy.Mul.make_args(term) if isinstance(f, sympy.log)]
@@ -235,7 +249,7 @@ class _Reader:
         return result
 
     def operation(self, node: ast.BinOp, depth: int) -> sympy.Expr:
-        """A chain of + and −, or of * and /, read from its left end: its length is no depth."""
+        """Read a chain of + and −, or of * and /, from its left end; its length adds no depth."""
         if isinstance(node.op, ast.Pow):
             base, exponent = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
             return self.power(base, exponent, node.right)
@@ -253,19 +267,19 @@ class _Reader:
             minus, first = True, first.operand  # −a/b reads back as −(a/b), as it is printed
         value = self.read(first, depth + 1)
         factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
-        if value.is_Rational and all(op is ast.Mult and is_of_name(x) for op, x in factors):
+        if value.is_Rational and all(op is ast.Mult and is_power_of_name(x) for op, x in factors):
             # sympy remembers a product of names, and makes a number times it at once.
             value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
             return self.finite(-value if minus else value)
         for (op, right), step in zip(factors, reversed(chain), strict=True):
-            if op is ast.Div and self.apply(_is_zero, right, shown="a divisor in it"):
+            if op is ast.Div and self.apply(_is_zero, right, description="a divisor in it"):
                 raise self.fail("division by zero", step.right)
-            self.required += of_divisor(right) if op is ast.Div else ()
-            value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
+            self.required += requirements_of_divisor(right) if op is ast.Div else ()
+            value = self.apply(_APPLY[op], value, right, description="a product or quotient in it")
         return self.finite(-value if minus else value)
 
     def sum(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> sympy.Expr:
-        """What a chain of + and − sums, summed at once as it may be long."""
+        """Read the terms of a chain of + and −, and sum them at once as it may be long."""
         signs = [(step.right, -1 if isinstance(step.op, ast.Sub) else 1) for step in chain]
         plain, others = Monomials(self.line, self.name), []
         for node, sign in ((first, 1), *reversed(signs)):
@@ -275,27 +289,29 @@ class _Reader:
         return sympy.Add(*others, plain.sum())
 
     def power(
-        self, base: sympy.Expr, exponent: sympy.Expr, at: ast.expr | None = None
+        self, base: sympy.Expr, exponent: sympy.Expr, node: ast.expr | None = None
     ) -> sympy.Expr:
         if not exponent.is_Rational:
-            raise self.beyond(_nodes().exponent_with_names(to_text(base), to_text(exponent)), at)
+            raise self.exceed_limit(
+                _nodes().exponent_with_names(to_text(base), to_text(exponent)), node
+            )
         check_power(base, exponent, self.source, self.text)
-        if exponent.q != 1 and not base.free_symbols and not within_reach(base):
-            raise self.beyond("a root of a constant that is too large, or not defined")
-        if exponent <= 0 and self.apply(_is_zero, base, shown="a power in it"):
+        if exponent.q != 1 and not base.free_symbols and not is_within_reach(base):
+            raise self.exceed_limit("a root of a constant that is too large, or not defined")
+        if exponent <= 0 and self.apply(_is_zero, base, description="a power in it"):
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
-        self.required += of_power(base, exponent)
-        return self.finite(self.apply(operator.pow, base, exponent, shown="a power in it"))
+        self.required += requirements_of_power(base, exponent)
+        return self.finite(self.apply(operator.pow, base, exponent, description="a power in it"))
 
     def apply(
-        self, operation: Callable[..., sympy.Expr], *operands: sympy.Expr, shown: str
+        self, operation: Callable[..., sympy.Expr], *operands: sympy.Expr, description: str
     ) -> sympy.Expr:
-        """What sympy makes of it; sympy fails on a few, such as roots of enormous numbers."""
+        """Apply an operation of sympy; LimitError where it fails, as for roots of huge numbers."""
         with self.effort:
             try:
                 return operation(*operands)
             except (ArithmeticError, AttributeError, TypeError, ValueError, RecursionError):
-                raise self.beyond(f"{shown} cannot be handled exactly") from None
+                raise self.exceed_limit(f"{description} cannot be handled exactly") from None
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
-        return checked(value, self.source, self.text)
+        return check_expression(value, self.source, self.text)

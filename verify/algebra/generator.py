@@ -1,4 +1,4 @@
-"""How a generator of a ring is written: its function of an argument."""
+"""The expression of a ring's generator: its function of an argument."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from verify.late import sympy
 
 
 def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:
-    """The generator's function of an expression, which is not read where it has no argument."""
+    """Apply the generator's function to an expression, which is ignored by a variable and π."""
     if g.kind == "variable":
         return symbol(g.name)
     return _FUNCTIONS[g.kind](argument, g.degree)
@@ -34,5 +34,5 @@ _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
 
 
 def rational_of(value: flint.fmpq) -> sympy.Rational:
-    """A flint rational as sympy's."""
+    """Convert a flint rational to sympy's."""
     return sympy.Rational(int(value.numer()), int(value.denom()))

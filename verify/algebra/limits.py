@@ -1,4 +1,4 @@
-"""What an expression must be to be handled exactly: finite, real, smooth and of bounded size."""
+"""Limits of exact expressions: they must be finite, real, smooth and of bounded size."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 from verify.algebra.expressions.functions_used import function_of
 from verify.algebra.expressions.monomials import monomials_of
-from verify.effort import limited, unless_long
+from verify.effort import answer_unless_long, limit_effort
 from verify.errors import InputError, LimitError
 from verify.late import sympy
 
@@ -15,25 +15,31 @@ MAX_NUMBER_BITS = 4000
 MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
 
 
-def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
-    """The expression itself, where it is finite, real, smooth and of bounded size."""
+def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
+    """Return the expression if it is finite, real, smooth and of bounded size.
+
+    |v| is replaced where v has one sign. Raises InputError or LimitError, which name `source` and
+    `text`, for other expressions.
+    """
     if _small_polynomial(result):
         return result
     result = _one_product(result)
     numbers, powers, others = _by_kind(result)
+    # sympy makes |x| of √(x²); where x has one sign the root is smooth and the formula allowed.
     if any(isinstance(node, sympy.Abs) for node in others):
         from verify.algebra.identities.absolute_values import without_absolute_values
 
-        with limited(source, text, "to see the signs in it"):
+        with limit_effort(source, text, "to see the signs in it"):
             result = without_absolute_values(result)
         numbers, powers, others = _by_kind(result)
-    if any(node in no_numbers() or isinstance(node, sympy.AccumBounds) for node in others):
+    if any(node in undefined_values() or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
-    if any(_has_an_edge(node) for node in others):
+    if any(_is_not_smooth(node) for node in others):
         raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
     for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
             raise LimitError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
+    # Powers are checked here again, as sympy may have combined exponents to larger ones.
     for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             check_power(power.base, power.exp, source, text)
@@ -42,19 +48,19 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     return result
 
 
-def no_numbers() -> tuple[sympy.Expr, ...]:
-    """What is infinite, or not defined."""
+def undefined_values() -> tuple[sympy.Expr, ...]:
+    """Return sympy's values that are infinite or undefined."""
     return sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
 
 
-def _has_an_edge(node: sympy.Expr) -> bool:
-    """Whether it is a function that is not smooth."""
+def _is_not_smooth(node: sympy.Expr) -> bool:
+    """Return True if the node is a function that is not smooth."""
     edged = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
     return isinstance(node, edged)
 
 
 def _small_polynomial(x: sympy.Expr) -> bool:
-    """Whether it is a polynomial with nothing in it that is too large; no, where it is one term."""
+    """Return True if x is a polynomial of several terms with no large number or exponent."""
     terms = monomials_of(x) if x.is_Add else None
     return terms is not None and all(
         max(number.p.bit_length(), number.q.bit_length()) <= MAX_NUMBER_BITS
@@ -64,7 +70,10 @@ def _small_polynomial(x: sympy.Expr) -> bool:
 
 
 def _one_product(x: sympy.Expr) -> sympy.Expr:
-    """2·(−p) as −2·p: of √(−p)·√(−p) sympy makes a product in a product, or several numbers."""
+    """Flatten a product: 2·(−p) to −2·p.
+
+    From √(−p)·√(−p) sympy makes a product within a product, or one with several numbers.
+    """
     nested = x.is_Mul and (
         any(factor.is_Mul for factor in x.args) or sum(f.is_Number for f in x.args) > 1
     )
@@ -72,7 +81,7 @@ def _one_product(x: sympy.Expr) -> sympy.Expr:
 
 
 def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
-    """The rational numbers, the powers, and what is no sum, product or name, within it."""
+    """Return the rational numbers, the powers, and the other nodes but sums, products, names."""
     numbers, powers, others = [], [], []
     waiting = [expression]
     while waiting:
@@ -89,21 +98,22 @@ def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr]
 
 
 def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
-    """InputError where that rational power is not real, or may be too large for sympy."""
+    """Raise InputError where that rational power is not real, or may be too large for sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and _is_nonpositive(base) and not base.is_zero:
         raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
+    # sympy tries to factor the number under a root, which takes unbounded time for large ones.
     if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
         raise LimitError(source, text, "a root of a number in it has too many digits")
 
 
 def _is_nonpositive(x: sympy.Expr) -> bool:
-    return unless_long(lambda: bool(x.is_nonpositive), otherwise=False)
+    return answer_unless_long(lambda: bool(x.is_nonpositive), otherwise=False)
 
 
 def _is_of_nonpositive(node: sympy.Expr) -> bool:
-    """Whether it is a function as log, of what is not positive."""
+    """Return True if the node is log, or a function like it, of a nonpositive argument."""
     function = function_of(node)
     if function is None or function.domain is None or function.domain.relation != ">":
         return False
@@ -111,7 +121,7 @@ def _is_of_nonpositive(node: sympy.Expr) -> bool:
 
 
 def _root_bits(base: sympy.Expr) -> int:
-    """Bits of the largest number among its constant factors, times the indices of their roots."""
+    """Return the bits of the largest constant factor, times the indices of the roots in it."""
     constant, _ = base.as_independent(*base.free_symbols, as_Add=False)
     numbers, powers, _ = _by_kind(constant)
     bits = max((max(n.p.bit_length(), n.q.bit_length()) for n in numbers), default=0)

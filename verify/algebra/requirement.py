@@ -1,6 +1,6 @@
-"""What an operation asks of its operand to be defined, as it is written.
+"""The requirements for an operation to be defined, taken from a formula as it is written.
 
-sympy simplifies as it builds: √q·√q becomes q, δ²/δ becomes δ, and what they ask for would be lost.
+sympy simplifies as it builds: √q·√q becomes q and δ²/δ becomes δ, which loses their requirements.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ Relation = Literal["!=", ">=", ">"]
 
 
 class Requirement(NamedTuple):
-    """`expression` ≠ 0, ≥ 0 or > 0."""
+    """The requirement that `expression` is ≠ 0, ≥ 0 or > 0."""
 
     expression: sympy.Expr
     relation: Relation
 
 
-def of_power(base: sympy.Expr, exponent: sympy.Rational) -> list[Requirement]:
-    """What base^exponent asks for: a root's base is not negative, nor any divisor 0."""
+def requirements_of_power(base: sympy.Expr, exponent: sympy.Rational) -> list[Requirement]:
+    """Return the requirements of base^exponent: no negative base of a root, no divisor 0."""
     if exponent.q == 1:
-        return of_divisor(base) if exponent < 0 else []
+        return requirements_of_divisor(base) if exponent < 0 else []
     return [] if base.is_number else [Requirement(base, ">" if exponent < 0 else ">=")]
 
 
-def of_divisor(divisor: sympy.Expr) -> list[Requirement]:
-    """What a division by it asks for."""
+def requirements_of_divisor(divisor: sympy.Expr) -> list[Requirement]:
+    """Return the requirements of a division: the divisor is not 0."""
     return [] if divisor.is_number else [Requirement(divisor, "!=")]
 
 
-def of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
-    """What the function of that name asks of its argument."""
+def requirements_of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
+    """Return the requirements of the function of that name on its argument."""
     domain = by_name()[name].domain
     if argument.is_number or domain is None:
         return []
@@ -45,18 +45,24 @@ def of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
     return [Requirement(inside, domain.relation)]
 
 
-def of_expression(expression: sympy.Expr, *, smooth: bool = False) -> list[Requirement]:
-    """What an expression asks for as it stands; `smooth`: also to be smooth, as no root is at 0."""
-    found: list[Requirement] = []
+def requirements_of_expression(
+    expression: sympy.Expr, *, smooth: bool = False
+) -> list[Requirement]:
+    """Return the requirements of an expression as it stands.
+
+    `smooth`: also those for it to be smooth, as a root is not at 0.
+    """
+    requirements: list[Requirement] = []
     if monomials_of(expression) is not None:
-        return found
+        return requirements
     for node in sympy.preorder_traversal(expression):
         if node.is_Pow and node.exp.is_Rational:
-            for expected in of_power(node.base, node.exp):
+            # At u = 0 a root is defined and has no derivative, so smoothness needs u > 0.
+            for expected in requirements_of_power(node.base, node.exp):
                 root = smooth and expected.relation == ">="
-                found.append(Requirement(expected.expression, ">") if root else expected)
+                requirements.append(Requirement(expected.expression, ">") if root else expected)
         elif node.is_Pow and not node.base.is_number:  # exp(x·log(y)), as sympy writes it
-            found.append(Requirement(node.base, ">"))
+            requirements.append(Requirement(node.base, ">"))
         elif node.args and (function := function_of(node)):
-            found += of_function(function.name, node.args[0])
-    return found
+            requirements += requirements_of_function(function.name, node.args[0])
+    return requirements

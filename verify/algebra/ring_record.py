@@ -1,8 +1,7 @@
-"""A ring and an element of it as plain data, from which both are made again without reading a
-formula.
+"""A ring and an element of it as plain data, from which both are rebuilt without parsing.
 
-What is written is what `verify.algebra.embedding.embed` has made: generators with their relations
-and gradients, nothing that schemes add.
+The record has what `verify.algebra.embedding.embed` builds: generators with their relations and
+gradients, without additions by schemes.
 """
 
 from collections.abc import Mapping
@@ -18,31 +17,33 @@ _Terms = list[tuple[list[int], str, str]]  # exponents, numerator, denominator
 
 
 def record_of(ring: Ring, x: Poly) -> Record:
-    """The ring and its element x, as data that JSON writes."""
-    made = [g for g in ring.generators if g.kind != "variable"]
+    """Return the ring and its element x as data for JSON."""
+    functions = [g for g in ring.generators if g.kind != "variable"]
     return {
         "variables": ring.variables,
         "room": ring.room,
         "generators": [
-            [g.kind, None if g.argument is None else _terms(g.argument), g.degree] for g in made
+            [g.kind, None if g.argument is None else _terms(g.argument), g.degree]
+            for g in functions
         ],
         "relations": [
             [index, power, _terms(relation)] for index, power, relation in ring.relations
         ],
         "gradients": [
             [g.index, {name: _terms(part) for name, part in ring.gradient(g.index).items()}]
-            for g in made
+            for g in functions
         ],
         "element": _terms(x),
     }
 
 
-def recorded(record: Mapping[str, Any]) -> tuple[Ring, Poly]:
-    """The ring and the element of which that is the record."""
+def ring_from_record(record: Mapping[str, Any]) -> tuple[Ring, Poly]:
+    """Rebuild the ring and the element from their record."""
     ring = Ring(record["variables"], record["room"], spare=0)
     places = ring.context.gens()
     for kind, argument, degree in record["generators"]:
         ring.add(kind, None if argument is None else _poly(ring, argument), degree)
+    # Generators come before relations and gradients, which refer to them by their places.
     for index, power, relation in record["relations"]:
         ring.relate(places[index], power, _poly(ring, relation))
     for index, gradient in record["gradients"]:

@@ -1,8 +1,7 @@
-"""Whether a ring element is the zero function, and a witness if it is not; see
-`verify.algebra.ring`.
+"""The decision whether a ring element is the zero function; see `verify.algebra.ring`.
 
-Its normal form decides, or a point at which it is not 0; where neither does, and no power of a
-denominator is hidden in it, `verify.algebra.hidden_zero` looks further.
+The normal form decides, or a witness, a point at which it is not 0. Where neither does, the
+denominators are cleared, and then `verify.algebra.hidden_zero` looks further.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -18,54 +17,57 @@ from verify.algebra.identities.polynomials import split
 
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
-_MOST_ENCLOSED = 80_000  # terms, at all points looked at with one precision
+_MOST_ENCLOSED = 80_000  # terms evaluated with one precision, over all points
 
 Value = Callable[[Mapping[str, Fraction], int], Ball | None]  # of a point and bits
 
 
 @dataclass(frozen=True)
 class Decision:
-    """Whether an element is zero: True, False or None (undecided), with the witness of False."""
+    """The answer whether an element is zero: True, False with a witness, or None (undecided)."""
 
     zero: bool | None
     witness: dict[str, Fraction] = field(default_factory=dict)
     enclosure: str = ""
 
 
-def decided(ring: DifferentialRing, x: Poly) -> Decision:
-    """Of x in normal form."""
+def decide_zero(ring: DifferentialRing, x: Poly) -> Decision:
+    """Decide whether x, which is in normal form, is the zero function."""
     if x.is_zero():
         return Decision(True)
-    used = ring.generators_in(x)
-    names = [g.name for g in used if g.kind == "variable"]
+    generators = ring.generators_in(x)
+    names = [g.name for g in generators if g.kind == "variable"]
     # A point usually tells at once; clearing denominators can be long work.
     value = _values(ring, x)
-    found = witness(value, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
-    if found is None and (clear_inverses(ring, x).is_zero() or _is_hidden(ring, x)):
+    decision = witness(value, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
+    if decision is None and (clear_inverses(ring, x).is_zero() or _is_hidden(ring, x)):
         return Decision(True)
-    terms = len(x) + sum(len(g.argument) for g in used if g.argument is not None)
+    terms = len(x) + sum(len(g.argument) for g in generators if g.argument is not None)
     most = max(_FIRST_POINTS, _MOST_ENCLOSED // terms)
+    # Points near a zero need more bits, so the search is repeated with higher precision.
     for precision in _PRECISIONS:
-        found = found or witness(value, islice(points(names), most), precision)
-    return found or Decision(None)
+        decision = decision or witness(value, islice(points(names), most), precision)
+    return decision or Decision(None)
 
 
 def _values(ring: DifferentialRing, x: Poly) -> Value:
-    """Encloses x at a point; exactly, where it is a polynomial in the variables."""
+    """Return a function that encloses x at a point; polynomials are evaluated exactly."""
     if ring.in_variables(x):
         return partial(enclose, ring, x)
     enclosures = Enclosures(ring, [x])
 
     def value(point: Mapping[str, Fraction], precision: int) -> Ball | None:
-        balls = enclosures.at(point, precision)
+        balls = enclosures.enclose_at(point, precision)
         return None if balls is None else balls[0]
 
     return value
 
 
-def witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) -> Decision | None:
-    """The first of the points at which the value is seen not to be 0."""
-    for point in at:
+def witness(
+    value: Value, points_to_try: Iterable[dict[str, Fraction]], precision: int
+) -> Decision | None:
+    """Return the decision by the first point at which the value is shown not to be 0, or None."""
+    for point in points_to_try:
         ball = value(point, precision)
         if ball is not None and not ball.contains(0):
             return Decision(False, point, ball.str(12))
@@ -73,7 +75,7 @@ def witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) -> 
 
 
 def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
-    """x times the powers of denominators that remove every inverse, in normal form."""
+    """Multiply x by the powers of denominators that remove every inverse; in normal form."""
     for g in reversed([g for g in ring.generators if g.kind == "inverse"]):
         parts = split(x, g.index)
         highest = max(parts, default=0)

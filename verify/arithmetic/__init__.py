@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import unknown
+from verify.errors import unknown_name
 
 if TYPE_CHECKING:
     from verify.arithmetic.number_system import Arithmetic, NumberSystem
@@ -24,12 +24,13 @@ _FILES = Catalogue(f"{__name__}.systems", [f"{folder}/systems" for folder in __p
 
 
 def names() -> tuple[str, ...]:
-    """The names of all number systems."""
+    """Return the names of all number systems."""
     return _FILES.names
 
 
 def get(name: str, digits: int) -> "Arithmetic":
-    """The arithmetic of that name with at least `digits` decimal digits (float64 has its own).
+    """Return the arithmetic of that name with at least `digits` decimal digits (float64 has its
+    own).
 
     Raises InputError where there is none of that name.
     """
@@ -37,7 +38,7 @@ def get(name: str, digits: int) -> "Arithmetic":
 
 
 def about(name: str) -> "NumberSystem":
-    """What the number system of that name says of itself; no library is imported.
+    """Return the description of the number system of that name; no library is imported.
 
     Raises InputError where there is none of that name.
 
@@ -45,25 +46,28 @@ def about(name: str) -> "NumberSystem":
     (17, None)
     """
     if name not in _FILES:
-        raise unknown("arithmetic", name, (AUTO, *names()), aliases=ALIASES)
+        raise unknown_name("arithmetic", name, (AUTO, *names()), aliases=ALIASES)
     system: NumberSystem = _FILES.module(name).NUMBER_SYSTEM
     return system
 
 
 @cache
 def automatic() -> "tuple[NumberSystem, ...]":
-    """Those that `auto` tries, the fastest first; the last has every range and function."""
+    """Return the number systems that `auto` tries, the fastest first; the last has every range
+    and function."""
     systems = (about(name) for name in names())
     return tuple(sorted((x for x in systems if x.automatic), key=lambda x: x.cost))
 
 
 def step_cost(name: str) -> int:
-    """About how many float64 steps a step is worth; of `auto` in the one that it tries first."""
+    """Return how many float64 steps a step is worth, about; of `auto` in the one that it tries
+    first."""
     return _first(name).cost
 
 
 def in_lanes(name: str) -> bool:
-    """Whether several orbits are stepped together; of `auto` by the one that it tries first."""
+    """Return True if several orbits are stepped together; of `auto` by the one that it tries
+    first."""
     return _first(name).in_lanes
 
 

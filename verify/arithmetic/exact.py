@@ -35,7 +35,7 @@ class Mpf(Protocol):
 
 
 def rational(value: Exact, name: str = "number") -> Fraction:
-    """The exact value of a user's number.
+    """Return the exact value of a user's number.
 
     Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
     infinities, booleans, other types, exponents beyond ±1000, and more than 8000 bits; so `text`
@@ -58,7 +58,7 @@ def rational(value: Exact, name: str = "number") -> Fraction:
 
 
 def positive(value: Exact, name: str) -> Fraction:
-    """The exact value; InputError unless it is greater than zero."""
+    """Return the exact value; InputError unless it is greater than zero."""
     number = rational(value, name)
     if number <= 0:
         raise InputError(name, value, "must be greater than 0")
@@ -66,18 +66,20 @@ def positive(value: Exact, name: str) -> Fraction:
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:
-    """The value, where it is a whole number from `least` to `most`; else InputError."""
+    """Return the value, where it is a whole number from `least` to `most`; else raise
+    InputError."""
     count = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
     if count is None or count < least or (most is not None and count > most):
-        allowed = f"{least} or more" if most is None else f"{least} … {most}"
+        range_text = f"{least} or more" if most is None else f"{least} … {most}"
         raise InputError(
-            name, value, f"must be a whole number, {allowed}{as_whole(value, least, most)}"
+            name, value, f"must be a whole number, {range_text}{as_whole(value, least, most)}"
         )
     return count
 
 
 def as_whole(value: Any, least: int = 1, most: int | None = None) -> str:
-    """What to write for 1e6, 10.0 and 1,000; empty where that is no whole number of the range."""
+    """Return advice what to write for 1e6, 10.0 and 1,000; empty where that is no whole number
+    of the range."""
     try:
         number = rational(re.sub("[,_]", "", value) if isinstance(value, str) else value)
     except InputError:
@@ -112,20 +114,20 @@ def _too_long(name: str, value: Exact) -> InputError:
 
 
 def _is_float(value: object) -> TypeGuard[float]:
-    """A float, or one of numpy's; numpy itself is not imported for that."""
+    """Return True for a float, or one of numpy's; numpy itself is not imported for that."""
     of_numpy = type(value).__module__ == "numpy" and isinstance(value, Real)
     return isinstance(value, float) or (of_numpy and not isinstance(value, Integral))
 
 
 def _from_float(value: float, name: str) -> Fraction:
-    shown = str(value)  # the shortest decimal, of numpy's floats as well
-    if not re.search(r"\d", shown):
+    shortest = str(value)  # the shortest decimal, of numpy's floats as well
+    if not re.search(r"\d", shortest):
         raise InputError(name, value, "not a finite number")
-    return Fraction(shown)
+    return Fraction(shortest)
 
 
 def text(value: Fraction) -> str:
-    """A short exact text of a rational: a decimal where it ends, else a quotient.
+    """Return a short exact text of a rational: a decimal where it ends, else a quotient.
 
     >>> text(Fraction(1, 8)), text(Fraction(1, 3))
     ('0.125', '1/3')
@@ -145,7 +147,7 @@ def text(value: Fraction) -> str:
 
 
 def plain(value: Fraction, digits: int) -> str:
-    """So many significant digits, without an exponent where the number is of ordinary size.
+    """Return so many significant digits, without an exponent where the number is of ordinary size.
 
     >>> plain(Fraction(1, 3), 5)
     '0.33333'
@@ -155,46 +157,46 @@ def plain(value: Fraction, digits: int) -> str:
 
 
 def short(value: Fraction) -> str:
-    """Its exact text where that is short, else three significant digits of it.
+    """Return the exact text where that is short, else three significant digits.
 
     >>> short(Fraction(1, 3)), short(Fraction(1, 3**30))
     ('1/3', '4.86e-15')
     """
-    written = text(value)
-    return written if len(written) <= _SHORT else decimal(value, 3)
+    exact_text = text(value)
+    return exact_text if len(exact_text) <= _SHORT else decimal(value, 3)
 
 
 def quotient(x: Any) -> Any:
-    """A float, a number of MPFR or a rational as gmpy2's rational, which compares, subtracts and
-    divides some ten times as fast as a Fraction."""
+    """Return a float, a number of MPFR or a rational as gmpy2's rational, which compares,
+    subtracts and divides some ten times as fast as a Fraction."""
     return gmpy2.mpq(*x.as_integer_ratio())  # given x itself it takes four times as long
 
 
 def fraction(x: Any) -> Fraction:
-    """The Fraction that a rational of gmpy2 or a finite number of MPFR is."""
+    """Return the Fraction that a rational of gmpy2 or a finite number of MPFR is."""
     numerator, denominator = x.as_integer_ratio()
     return Fraction(int(numerator), int(denominator))
 
 
 def of_mpf(x: Mpf) -> Fraction:
-    """The rational that a finite number of mpmath is."""
+    """Return the rational that a finite number of mpmath is."""
     sign, mantissa, exponent, _ = x._mpf_
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -size if sign else size
 
 
 def decimal(value: Fraction, digits: int) -> str:
-    """`value` rounded half-even to `digits` significant digits, in scientific notation.
+    """Return `value` rounded half-even to `digits` significant digits, in scientific notation.
 
     >>> decimal(Fraction(1, 3), 4)
     '3.333e-01'
     """
     if value == 0:
         return "0"
-    return _written(*rounded_units(value, digits), digits)
+    return _format_units(*rounded_units(value, digits), digits)
 
 
-def _written(units: int, exponent: int, digits: int) -> str:
+def _format_units(units: int, exponent: int, digits: int) -> str:
     mantissa = gmpy2.mpz(abs(units)).digits()  # str() stops at 4300 digits
     exponent += len(mantissa) - 1
     mantissa = mantissa[:digits]  # 9.99… rounded up to 10 has one more
@@ -204,7 +206,8 @@ def _written(units: int, exponent: int, digits: int) -> str:
 
 
 def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
-    """(units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits` digits.
+    """Return (units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits`
+    digits.
 
     >>> rounded_units(Fraction(1, 3), 4)
     (3333, -4)
@@ -217,13 +220,13 @@ def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
 
 
 def _in_units(value: Fraction, exponent: int) -> tuple[int, int]:
-    """value/10^exponent as a quotient that is not in lowest terms, which would take long."""
+    """Return value/10^exponent as a quotient that is not in lowest terms, which would take long."""
     top, bottom = value.numerator, value.denominator
     return (top * 10**-exponent, bottom) if exponent < 0 else (top, bottom * 10**exponent)
 
 
 def magnitude(value: Fraction) -> int:
-    """The decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1).
+    """Return the decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1).
 
     >>> magnitude(Fraction(1234))
     3
@@ -242,7 +245,8 @@ def magnitude(value: Fraction) -> int:
 
 
 def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]:
-    """`value` with the digits that `bound` allows (at most `most`), and the printed text's bound.
+    """Return `value` with the digits that `bound` allows (at most `most`), and the printed text's
+    bound.
 
     The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
     The returned bound includes the rounding of the text. Where no digit is known the text is "0".
@@ -250,33 +254,35 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
     >>> known_digits(Fraction(1, 3), Fraction(1, 10**5), 12)
     ('3.333e-01', '4.34e-05')
     """
-    digits = _known(value, bound, most)
+    digits = _count_known_digits(value, bound, most)
     if not digits:
         return "0", upper(abs(value) + bound)
     units, exponent = rounded_units(value, digits)
     off = abs(value - units * Fraction(10) ** exponent)
-    return _written(units, exponent, digits), upper(bound + off)
+    return _format_units(units, exponent, digits), upper(bound + off)
 
 
 def known_text(value: Fraction, bound: Fraction, most: int) -> str:
-    """The text of `known_digits` alone, where its bound is not asked for.
+    """Return the text of `known_digits` alone, where its bound is not needed.
 
     >>> known_text(Fraction(1, 3), Fraction(1, 10**5), 12)
     '3.333e-01'
     """
-    digits = _known(value, bound, most)
+    digits = _count_known_digits(value, bound, most)
     return decimal(value, digits) if digits else "0"
 
 
-def _known(value: Fraction, bound: Fraction, most: int) -> int:
-    """How many digits the bound allows, `most` at most; 0 where none is known, or value = 0."""
+def _count_known_digits(value: Fraction, bound: Fraction, most: int) -> int:
+    """Return how many digits the bound allows, `most` at most; 0 where none is known, or value =
+    0."""
     if not value:
         return 0
+    # The last printed digit must have a unit of at least twice the bound.
     return min(most, max(0, magnitude(value) - magnitude(2 * bound))) if bound else most
 
 
 def upper(bound: Fraction) -> str:
-    """A bound rounded up to three significant digits.
+    """Return a bound rounded up to three significant digits.
 
     >>> upper(Fraction(1, 3))
     '3.34e-01'
@@ -285,4 +291,4 @@ def upper(bound: Fraction) -> str:
         return "0"
     exponent = magnitude(bound) - 2
     top, bottom = _in_units(bound, exponent)
-    return _written(-(-top // bottom), exponent, 3)
+    return _format_units(-(-top // bottom), exponent, 3)

@@ -14,14 +14,16 @@ _ONE_THREAD = RLock()
 
 @contextmanager
 def working_precision(bits: int) -> Iterator[None]:
-    """Ball arithmetic with so many bits, by one thread at a time; leaves flint's as it was."""
+    """Set ball arithmetic with so many bits, by one thread at a time; leave flint's as it was."""
+    # The precision is one for the process: another thread that set its own meanwhile would change
+    # ours.
     with _ONE_THREAD, flint.ctx.workprec(bits):
         yield
 
 
 @contextmanager
 def length_of_series(terms: int) -> Iterator[None]:
-    """Power series of so many terms; leaves flint's length of them as it was."""
+    """Set power series of so many terms; leave flint's length of them as it was."""
     before, flint.ctx.cap = flint.ctx.cap, terms
     try:
         yield
@@ -30,23 +32,23 @@ def length_of_series(terms: int) -> Iterator[None]:
 
 
 class AtEachPrecision(Generic[T]):
-    """What `make` gives at flint's precision, made once for each."""
+    """A value computed by `make` at flint's precision, once for each precision."""
 
-    __slots__ = ("_made", "_make")
+    __slots__ = ("_make", "_values")
 
     def __init__(self, make: Callable[[], T]) -> None:
         self._make = make
-        self._made: dict[int, T] = {}
+        self._values: dict[int, T] = {}
 
     def __call__(self) -> T:
         bits = flint.ctx.prec
-        if bits not in self._made:
-            self._made[bits] = self._make()
-        return self._made[bits]
+        if bits not in self._values:
+            self._values[bits] = self._make()
+        return self._values[bits]
 
 
 def sign_of(value: Callable[[], flint.arb]) -> int:
-    """The sign, 1 or −1, of a real number that is known not to be 0.
+    """Return the sign, 1 or −1, of a real number that is known not to be 0.
 
     `value` gives an enclosure in flint's precision, which is raised until it excludes 0.
     """

@@ -13,7 +13,8 @@ _PI = "3.14159265358979323846264338327950288419716939937510582"
 
 
 class FloatContext:
-    """What formulas ask of `mp`, elementwise, in float64 or in the C compiler's long double.
+    """The part of `mp` that formulas use, elementwise, in float64 or in the C compiler's long
+    double.
 
     `wide`: long double, which has 64 bits or more on most machines, and 53 on the others.
     """
@@ -48,7 +49,9 @@ class FloatContext:
         return self._np.asarray(x, dtype=self.type)[()]
 
     def rational(self, x: Fraction) -> Number:
-        """An exact rational, rounded once."""
+        """Return an exact rational, rounded once."""
+        # The float64 nearest to x and the remainder, added in long double: rounded once, except
+        # where the remainder itself is rounded across a tie.
         high = float(x)
         return self.type(high) + (float(x - Fraction(high)) if self.wide else 0)
 
@@ -63,7 +66,7 @@ class FloatContext:
 
 
 def number(mp: Context, x: Fraction) -> Number:
-    """An exact rational, rounded once."""
+    """Return an exact rational, rounded once."""
     if isinstance(mp, FloatContext):
         return mp.rational(x)
     return mp.mpf(x.numerator) / x.denominator

@@ -6,7 +6,8 @@ Number = object  # of some number system: its own functions alone take it apart
 
 
 class Element(Protocol):
-    """What may be added, multiplied and divided by integers: of a ring, a field, or a ball."""
+    """A number that can be added, multiplied and divided by integers: of a ring, a field, or a
+    ball."""
 
     def __neg__(self) -> Self: ...
 

@@ -1,4 +1,4 @@
-"""What is likely meant by a text that is no number: the number to write instead."""
+"""A guess at the number that a text was meant to be: the number to write instead."""
 
 import re
 import unicodedata
@@ -14,8 +14,8 @@ _LONGEST = 60  # characters of a text for which a number is looked for
 
 
 def number_mistake(text: str) -> str:
-    """Why the text is no exact number, and what to write."""
-    meant = next(_meant(text), None) if len(text) <= _LONGEST else None
+    """Return why the text is no exact number, and what to write."""
+    meant = next(_guess_numbers(text), None) if len(text) <= _LONGEST else None
     if meant is not None:
         return f"is no number as it is written; write {meant}"
     plain = _plain(text[:_LONGEST]).lower()
@@ -34,8 +34,8 @@ def number_mistake(text: str) -> str:
     return f"not a finite number: {more}; {ALLOWED}"
 
 
-def _meant(text: str) -> Iterator[str]:
-    """Numbers that the text may be meant for, the likeliest first."""
+def _guess_numbers(text: str) -> Iterator[str]:
+    """Yield numbers that the text may be meant for, the likeliest first."""
     plain = _plain(text)
     if _GROUPED.fullmatch(plain):
         thousands = plain.replace(",", "")
@@ -51,20 +51,20 @@ def _meant(text: str) -> Iterator[str]:
         plain.replace("_", ""),
         re.sub(r"\*?10(?:\*\*|\^)\(?([+-]?\d+)\)?$", r"e\1", plain.replace("·", "*")),
     )
-    for found in tries:
-        if _NUMBER.fullmatch(found):
-            yield found
+    for candidate in tries:
+        if _NUMBER.fullmatch(candidate):
+            yield candidate
     if plain.endswith("%") and _NUMBER.fullmatch(plain[:-1] + "/100"):
         yield plain[:-1] + "/100"
     if re.fullmatch(r"0[xXbBoO][0-9a-fA-F]+", plain):
-        yield from _of_other_base(plain)
+        yield from _from_other_base(plain)
     if (parts := _QUOTIENT.fullmatch(plain)) and not re.search(r"[eE][+-]?\d{3}", plain):
         above, below = map(Fraction, parts.groups())
         if below:
             yield str(above / below)
 
 
-def _of_other_base(text: str) -> Iterator[str]:
+def _from_other_base(text: str) -> Iterator[str]:
     try:
         yield str(int(text, 0))
     except ValueError:
@@ -72,7 +72,8 @@ def _of_other_base(text: str) -> Iterator[str]:
 
 
 def _plain(text: str) -> str:
-    """In ASCII where there is such a character, without quotation marks and brackets around it."""
-    found = re.sub("[−‐-―]", "-", unicodedata.normalize("NFKC", text)).replace("⁄", "/")
-    found = re.sub(r"\s*([/*^])\s*|^([+-])\s+", r"\1\2", found)
-    return re.sub(r"""^[\s=({\['"“„‘]+|[\s)}\]'"”’;]+$""", "", found)
+    """Return the text in ASCII where there is such a character, without quotation marks and
+    brackets around it."""
+    plain = re.sub("[−‐-―]", "-", unicodedata.normalize("NFKC", text)).replace("⁄", "/")
+    plain = re.sub(r"\s*([/*^])\s*|^([+-])\s+", r"\1\2", plain)
+    return re.sub(r"""^[\s=({\['"“„‘]+|[\s)}\]'"”’;]+$""", "", plain)

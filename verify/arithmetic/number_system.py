@@ -1,4 +1,4 @@
-"""A number system: what it says of itself, and what a kernel needs of it at one precision."""
+"""A number system: its description, and what a kernel needs of it at one precision."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -56,7 +56,7 @@ class Arithmetic:
     walk: "Walk | None" = field(default=None, compare=False)
 
     def expect(self, kernel: Callable[..., Any], steps: int) -> None:
-        """Said before: so many steps of the kernel will be asked for, of one orbit or of many."""
+        """Announce that so many steps of the kernel will be requested, of one orbit or of many."""
         if self.walk is not None:
             kernel.expect(steps)  # type: ignore[attr-defined]
 
@@ -67,17 +67,17 @@ class Arithmetic:
         stops: int,
         fixed: State,
         state: State,
-        beyond: int = 0,
+        later_steps: int = 0,
     ) -> Course[list[State]]:
-        """What a kernel carries after `every` steps, twice as many, … from a state, `stops` times;
-        fewer where a number left the arithmetic's range on the way.
+        """Return what a kernel carries after `every` steps, twice as many, … from a state, `stops`
+        times; fewer where a number left the arithmetic's range on the way.
 
-        `fixed`: its arguments between the number of steps and what it carries. `beyond`: so many
-        steps of this orbit will be asked for after these.
+        `fixed`: its arguments between the number of steps and what it carries. `later_steps`: the
+        number of steps of this orbit that will be requested after these.
         """
         if self.walk is not None:
-            return (yield from self.walk(kernel, every, stops, fixed, state, beyond))
-        found: list[State] = []
+            return (yield from self.walk(kernel, every, stops, fixed, state, later_steps))
+        reached: list[State] = []
         try:
             with self.context():
                 after = state
@@ -85,29 +85,30 @@ class Arithmetic:
                     done, *after = kernel(every, *fixed, *after)
                     if done < every or not all(map(self._in_range, after)):
                         break
-                    found.append(after)
+                    reached.append(after)
         except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
             if stops > 1:
                 return (yield from self._one_by_one(kernel, every, stops, fixed, state))
             return []
-        return found
+        return reached
 
     def _one_by_one(
         self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
     ) -> Course[list[State]]:
-        """The same, each stop in a context of its own: one that they share does not say at which of
-        them a number left the range, and may say so at the end only."""
-        found: list[State] = []
-        while len(found) < stops:
-            last = found[-1] if found else state
+        """Return the same, each stop in a context of its own: a shared context does not tell at
+        which stop a number left the range, and may do so at the end only."""
+        states: list[State] = []
+        while len(states) < stops:
+            last = states[-1] if states else state
             after = yield from self.states(kernel, every, 1, fixed, last)
             if not after:
                 break
-            found += after
-        return found
+            states += after
+        return states
 
     def _in_range(self, x: Any) -> bool:
-        """Of what is carried in float64 beside the arithmetic's numbers nothing is said here."""
+        """Return False for a number out of range; float64 carried beside the arithmetic's
+        numbers always passes."""
         return isinstance(x, float) or self.finite(x)
 
 
@@ -144,27 +145,31 @@ MOST_EXPONENT = 1 << 20  # and of what is carried beside it: more takes time and
 
 
 def relative(bits: int, functions: int = 1) -> Rounding:
-    """That of so many significant bits, to nearest; functions are within so many times as much."""
+    """Return the rounding bound for so many significant bits, to nearest; functions are within
+    so many times as much."""
 
-    def own(kind: str, _degree: int, size: "Ball") -> "Ball":
+    def bound_rounding(kind: str, _degree: int, size: "Ball") -> "Ball":
         return size * type(size)(2) ** -bits * (1 if kind in _CORRECT else functions)
 
-    return own
+    return bound_rounding
 
 
 def bits_for(digits: int) -> int:
-    """The bits of a binary mantissa that holds so many decimal digits."""
+    """Return the bits of a binary mantissa that holds so many decimal digits."""
+    # One bit more than the digits carry, so that half a unit in the last bit is below half a unit
+    # of the last digit.
     return math.ceil(digits * math.log2(10)) + 1
 
 
 @lru_cache(maxsize=64)
 def _code(source: str, name: str) -> CodeType:
-    """Compiled once for all precisions, whose kernels differ in their constants alone."""
+    """Compile the source once for all precisions, whose kernels differ in their constants alone."""
     return compile(source, f"<kernel {name}>", "exec")
 
 
-def interpreted(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """The function of that name as plain Python: the `compile` of what has no compiler."""
+def interpret(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """Return the function of that name as plain Python: the `compile` of systems without a
+    compiler."""
     scope = dict(namespace)
     exec(_code(source, name), scope)  # noqa: S102 - our own source
     function: Callable[..., Any] = scope[name]

@@ -1,4 +1,5 @@
-"""What this machine's processor has, and how many 64-bit words one of its registers holds."""
+"""The features of this machine's processor, and how many 64-bit words one of its registers
+holds."""
 
 from functools import cache
 
@@ -7,7 +8,7 @@ from llvmlite import binding as llvm
 
 @cache
 def features() -> dict[str, bool]:
-    """By LLVM's names, whether it is there."""
+    """Return the processor's features by LLVM's names, and whether each is present."""
     return dict(llvm.get_host_cpu_features())
 
 

@@ -1,4 +1,4 @@
-"""The claims that are made for an integrator of others, each with its verdict and evidence."""
+"""The claims that are made for someone else's integrator, each with its verdict and evidence."""
 
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
@@ -6,7 +6,7 @@ from functools import partial, singledispatch
 
 from verify.audits import reproductions
 from verify.audits.methods.integrator import (
-    Compared,
+    Comparison,
     ExactTableau,
     FloatStep,
     ReleasedIntegrator,
@@ -21,15 +21,15 @@ from verify.audits.methods.tableau import (
     repair,
     symplecticity,
 )
-from verify.audits.methods.tabled import FloatTable, tabled
-from verify.audits.second.look import Look, at_claim, at_step, at_table, looked_at_again
+from verify.audits.methods.tabled import FloatTable, table_integrator
+from verify.audits.second.look import Look, at_claim, at_step, at_table, look_again
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import Severity, severity_of
-from verify.integrators.tables.told import TableClaim
-from verify.prose import Formula, Number, Prose, joined, prose, read_prose
+from verify.integrators.tables.table_claim import TableClaim
+from verify.prose import Formula, Number, Prose, join_prose, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.printed.sentences import Judgement, of_digits, of_printed
+from verify.schemes.printed.sentences import Judgement, judgement_of_digits, judgement_of_order
 from verify.schemes.printed.splitting_order import judge_order
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
@@ -47,22 +47,25 @@ _Claim = tuple[TableClaim, str, Callable[[], Look | None]]
 
 
 def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
-    """One claim for the order and one for symplecticity, where they are made; of a printed table
-    one for the order and one for its digits. `prefix` begins the ids."""
+    """Yield one claim for the order and one for symplecticity, where they are made; of a printed
+    table one for the order and one for its digits. `prefix` begins the ids."""
     for claim, code, look in _claims(integrator.method, integrator):
         ending = f". Driven: {integrator.driven}"
-        made = result_of(claim, prefix, integrator.name, section, integrator.source, ending, look)
-        told = made.verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or claim.kind in _ALWAYS_TOLD
-        yield made.model_copy(update={"reproduction": code if told else ""})
+        result = result_of(claim, prefix, integrator.name, section, integrator.source, ending, look)
+        shows_code = (
+            result.verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or claim.kind in _ALWAYS_TOLD
+        )
+        yield result.model_copy(update={"reproduction": code if shows_code else ""})
 
 
 def result_of(
     claim: TableClaim, prefix: str, name: str, section: str, source: str, ending: str,
     look: Callable[[], Look | None],
 ) -> ClaimResult:  # fmt: skip
-    """The claim as it stands after a second look. `ending`: of its evidence, in plain words."""
+    """Return the claim as it stands after a second look. `ending`: of its evidence, in plain
+    words."""
     severity = claim.severity or ""
-    verdict, evidence = looked_at_again(claim.verdict, claim.evidence, severity, look)
+    verdict, evidence = look_again(claim.verdict, claim.evidence, severity, look)
     return ClaimResult(
         id=f"{prefix}/{name}/{claim.kind}",
         kind=claim.kind,
@@ -82,9 +85,10 @@ def _no_look() -> None:
 
 
 def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
-    """Without those that fail since the order does: of one mistake one thing is told."""
+    """Leave out the claims that fail since the order does: one mistake is reported once."""
     wrong = False
     for claim in claims:
+        # A wrong coefficient that costs the order breaks these conditions as well.
         follows = claim.kind in _FOLLOWING or (
             claim.kind == "order in time" and claim.severity == Severity.WRONG_ORDER
         )
@@ -95,14 +99,14 @@ def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
 
 @singledispatch
 def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
-    """What is claimed of an integrator, by the kind of its method."""
+    """Yield the claims of an integrator, by the kind of its method."""
     raise TypeError(f"{integrator.name}: no method is a {type(method).__name__}")
 
 
 @_claims.register
-def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
-    verdict, told, details = method.compare()
-    said, severity = prose(told), Severity.OF_WORDS
+def _(method: Comparison, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    verdict, evidence, details = method.compare()
+    said, severity = prose(evidence), Severity.OF_WORDS
     claim = TableClaim(method.kind, method.statement, verdict, said, details, severity)
     yield claim, integrator.reproduction, _no_look
 
@@ -111,15 +115,15 @@ def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     order = integrator.order
     assert order is not None  # noqa: S101 - of printed tables it is always claimed
-    found = judge_order(method, order)
-    said = of_printed(found, order)
+    judgement = judge_order(method, order)
+    said = judgement_of_order(judgement, order)
     claim = TableClaim("order", f"order {order}", *said, Severity.WRONG_ORDER)
     yield claim, integrator.reproduction, _no_look
-    if found.verdict is not Verdict.REFUTED and method.printed.units:
-        code = reproductions.of_digits(method, found.nearest, order)
+    if judgement.verdict is not Verdict.REFUTED and method.printed.units:
+        code = reproductions.write_digits_program(method, judgement.nearest, order)
         exact = "every digit is right, to one unit of the last"
-        severity = severity_of(found, Severity.WRONG_ORDER) or Severity.OF_WORDS
-        yield TableClaim("digits", exact, *of_digits(found), severity), code, _no_look
+        severity = severity_of(judgement, Severity.WRONG_ORDER) or Severity.OF_WORDS
+        yield TableClaim("digits", exact, *judgement_of_digits(judgement), severity), code, _no_look
 
 
 @_claims.register
@@ -136,7 +140,7 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         order = order_of(table, claimed, rounded)
         wrong = order.order < claimed and not rounded
         repaired = repair(table, claimed) if wrong else NONE
-        said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
+        said = judge_exact_order(claimed, order, symplecticity(table, rounded), rounded, repaired)
         embedded = "embedded" in integrator.name
         severity = Severity.WRONG_WEIGHTS if embedded else Severity.WRONG_ORDER
         claim = TableClaim("order", f"order {claimed}", *said, severity)
@@ -145,13 +149,13 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         area = symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
         severity = Severity.NOT_SYMPLECTIC
-        claim = TableClaim("area", _SYMPLECTIC, verdict[area.holds], area.said, (), severity)
+        claim = TableClaim("area", _SYMPLECTIC, verdict[area.holds], area.evidence, (), severity)
         yield claim, integrator.reproduction, _no_look
 
 
 def _at_tableau(method: ExactTableau, name: str, claimed: int) -> Look:
     table = method.tableau
-    entry = tabled(
+    entry = table_integrator(
         name, "runge-kutta", "", "", order=claimed,
         a=[[str(x) for x in row] for row in table.rows], b=[str(x) for x in table.weights],
     ).method.entry  # fmt: skip
@@ -166,92 +170,101 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     if order is not None:
         statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
         severity = Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER
-        said = of_measured_order(order, finding(method), area)
+        said = judge_measured_order(order, finding(method), area)
         claim = TableClaim("order", statement, *said, severity)
-        script = reproductions.of_order(code, point, order, timed)
+        script = reproductions.write_order_program(code, point, order, timed)
         yield claim, script, partial(at_step, integrator, order)
     elif timed:
-        claim = TableClaim("in time", _UNSAID, *of_unsaid(finding(method)))
-        yield claim, reproductions.of_time(code, point), _no_look
+        claim = TableClaim("in time", _UNSAID, *report_unclaimed(finding(method)))
+        yield claim, reproductions.write_time_program(code, point), _no_look
     if area:
-        said = of_measured_area(finding(method))
+        said = judge_measured_area(finding(method))
         claim = TableClaim("area", _SYMPLECTIC, *said, Severity.NOT_SYMPLECTIC)
-        yield claim, reproductions.of_area(code, point), _no_look
+        yield claim, reproductions.write_area_program(code, point), _no_look
 
 
 # -- tableaux -------------------------------------------------------------------------------------
 
 
-def of_tableau(
-    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: Prose = NONE
+def judge_exact_order(
+    claimed: int,
+    tableau_order: TableauOrder,
+    area: Symplecticity,
+    rounded: bool,
+    repaired: Prose = NONE,
 ) -> Judgement:
-    """Of exact coefficients by proof; of floats up to their rounding."""
-    of_next = prose("; of ", Formula(f"h^{found.order + 1}"), ", ", Formula(found.next))
-    by = prose(" fails by ", Number(f"{found.residue:.3g}"))
-    ends = prose(of_next, by) if found.next else NONE
+    """Judge the order of exact coefficients by proof; of floats up to their rounding."""
+    of_next = prose(
+        "; of ", Formula(f"h^{tableau_order.order + 1}"), ", ", Formula(tableau_order.next)
+    )
+    by = prose(" fails by ", Number(f"{tableau_order.residue:.3g}"))
+    ends = prose(of_next, by) if tableau_order.next else NONE
     symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
-    beside = prose(f". {_NOT_CLAIMED}")
+    remark = prose(f". {_NOT_CLAIMED}")
     if symplectic:
-        beside = prose(beside, f"; {symplectic}: ", area.said)
-    if found.order >= claimed:
-        more = f", and even order {found.order}" if found.order > claimed else ""
-        shown = f"order {claimed}{more} by {found.by}"
+        remark = prose(remark, f"; {symplectic}: ", area.evidence)
+    if tableau_order.order >= claimed:
+        more = f", and even order {tableau_order.order}" if tableau_order.order > claimed else ""
+        text = f"order {claimed}{more} by {tableau_order.by}"
         if rounded:
-            shown += (
-                f", with residues up to `{found.largest:.1e}`, as its floats' rounding leaves them"
-            )
+            largest = f"`{tableau_order.largest:.1e}`"
+            text += f", with residues up to {largest}, as its floats' rounding leaves them"
         verdict = Verdict.MEASURED if rounded else Verdict.PROVED
-        return verdict, prose(read_prose(shown), ends, beside), ()
-    if rounded and found.residue < float(WRONG):
-        said = read_prose(
-            f"its floats satisfy `{found.next}` but for `{found.residue:.2e}`, more than rounding "
-            "and less than a wrong method: digits are missing"
+        return verdict, prose(read_prose(text), ends, remark), ()
+    if rounded and tableau_order.residue < float(WRONG):
+        reason = read_prose(
+            f"its floats satisfy `{tableau_order.next}` but for `{tableau_order.residue:.2e}`, "
+            "more than rounding and less than a wrong method: digits are missing"
         )
-        return Verdict.UNDECIDED, said, ()
-    fails = f"`{found.next}` fails by `{found.residue:.5g}`"
-    said = read_prose(f"its order is {found.order}: of `h^{found.order + 1}`, {fails}")
+        return Verdict.UNDECIDED, reason, ()
+    fails = f"`{tableau_order.next}` fails by `{tableau_order.residue:.5g}`"
+    reason = read_prose(
+        f"its order is {tableau_order.order}: of `h^{tableau_order.order + 1}`, {fails}"
+    )
     mend = prose(". ", repaired) if repaired else NONE
-    return Verdict.REFUTED, prose(said, mend, beside), ()
+    return Verdict.REFUTED, prose(reason, mend, remark), ()
 
 
 # -- floats ---------------------------------------------------------------------------------------
 
 
-def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> Judgement:
-    """A measured order against the claimed one; what is not known refutes nothing."""
-    order, known = found.convergence_order, found.order_decided
-    beside = ""
-    if area_claimed is None and found.area_preserving is False:
-        beside = f". {_NOT_CLAIMED}, and area is not preserved"
-    notes = joined("", (prose(". ", _capital(note)) for note in found.notes[:1]))
-    if known and (order is None or order >= claimed):
-        return Verdict.MEASURED, prose(found.reason, beside, notes), ()
-    if known and order is not None and order < 1:
-        said = "nothing of H's flow is seen in it, as where it is driven in a wrong way; "
-        return Verdict.UNDECIDED, prose(said, found.reason), ()
-    if known and order is not None:
-        return Verdict.REFUTED, prose(found.reason, notes), ()
-    return Verdict.UNDECIDED, prose(found.reason, notes), ()
+def judge_measured_order(claimed: int, measured: Finding, area_claimed: bool | None) -> Judgement:
+    """Judge a measured order against the claimed one; what is not known refutes nothing."""
+    order, is_decided = measured.convergence_order, measured.order_decided
+    remark = ""
+    if area_claimed is None and measured.area_preserving is False:
+        remark = f". {_NOT_CLAIMED}, and area is not preserved"
+    notes = join_prose("", (prose(". ", _capital(note)) for note in measured.notes[:1]))
+    if is_decided and (order is None or order >= claimed):
+        return Verdict.MEASURED, prose(measured.reason, remark, notes), ()
+    # An order below 1 would mean that no scheme is there at all. It is more likely that we drive
+    # the library wrongly, so that nothing is refuted.
+    if is_decided and order is not None and order < 1:
+        prefix = "nothing of H's flow is seen in it, as where it is driven in a wrong way; "
+        return Verdict.UNDECIDED, prose(prefix, measured.reason), ()
+    if is_decided and order is not None:
+        return Verdict.REFUTED, prose(measured.reason, notes), ()
+    return Verdict.UNDECIDED, prose(measured.reason, notes), ()
 
 
-def of_unsaid(found: Finding) -> Judgement:
-    """What is measured where nothing is claimed: it refutes nothing, whatever it is."""
-    verdict = Verdict.MEASURED if found.order_decided else Verdict.UNDECIDED
-    return verdict, found.reason, ()
+def report_unclaimed(measured: Finding) -> Judgement:
+    """Report what is measured where nothing is claimed: it refutes nothing, whatever it is."""
+    verdict = Verdict.MEASURED if measured.order_decided else Verdict.UNDECIDED
+    return verdict, measured.reason, ()
 
 
 def _capital(note: Prose) -> Prose:
-    """With a capital, where it opens with a text."""
+    """Return the note with a capital, where it opens with a text."""
     first, *rest = note.parts
     return prose(f"{first[0].upper()}{first[1:]}" if type(first) is str else first, *rest)
 
 
-def of_measured_area(found: Finding) -> Judgement:
-    """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
-    error = "unknown" if found.probe_error is None else f"`{found.probe_error:.1e}`"
-    if found.area_preserving:
+def judge_measured_area(measured: Finding) -> Judgement:
+    """Refute for an area defect above the probe's own error; none that is seen is MEASURED."""
+    error = "unknown" if measured.probe_error is None else f"`{measured.probe_error:.1e}`"
+    if measured.area_preserving:
         return Verdict.MEASURED, read_prose(f"no area defect above the probe's error {error}"), ()
-    if found.area_preserving is False and found.largest is not None:
-        said = f"|det J − 1| is up to `{found.largest:.3g}`, where the probe's error is {error}"
-        return Verdict.REFUTED, prose(read_prose(said), "; ", found.reason), ()
-    return Verdict.UNDECIDED, found.reason, ()
+    if measured.area_preserving is False and measured.largest is not None:
+        text = f"|det J − 1| is up to `{measured.largest:.3g}`, where the probe's error is {error}"
+        return Verdict.REFUTED, prose(read_prose(text), "; ", measured.reason), ()
+    return Verdict.UNDECIDED, measured.reason, ()

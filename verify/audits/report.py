@@ -23,7 +23,7 @@ from verify.execution.executors import Placement, open_place
 from verify.execution.provenance import provenance
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.cost import Severity
-from verify.integrators.user_code.step import contained, last_line
+from verify.integrators.user_code.step import contain_effects, last_line
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
@@ -36,9 +36,9 @@ TITLE = "The integrators of others, verified"
 
 
 @dataclass(frozen=True)
-class Found:
-    """What was found in one part. `version`: of a library, None where it is not installed, and ""
-    for what needs none; `broken`: whether some of it fails here."""
+class PartResult:
+    """The claims of one part. `version`: of a library, None where it is not installed, and "" for
+    what needs none; `broken`: whether some of it fails here."""
 
     title: str
     version: str | None
@@ -50,15 +50,15 @@ class Found:
 def make_integrators_report(
     command: str, on_library: Callable[[str], None] = lambda _: None, workers: int = 1
 ) -> Report:
-    """The report of all libraries that are installed, and of the printed tables.
+    """Make the report of all libraries that are installed, and of the printed tables.
 
-    `on_library` is called with what each part is called before it is looked at. `workers`:
-    processes; with one, all is looked at here.
+    `on_library` is called with the title of each part before it is looked at. `workers`: processes;
+    with one, all is looked at here.
     """
-    begun = time.perf_counter()
+    start = time.perf_counter()
     parts = look_at_each(workers, on_library)
     claims = [claim for part in parts for claim in part.claims]
-    told = provenance(command, begun, kept=0, computed=len(claims))
+    origin = provenance(command, start, kept=0, computed=len(claims))
     versions = {part.title: part.version for part in parts if part.version}
     return Report(
         title=TITLE,
@@ -66,11 +66,11 @@ def make_integrators_report(
         scenes=(),
         left_out=tuple(row for part in parts for row in part.left_out),
         preface=tuple(_preface(parts, claims)),
-        provenance=told.model_copy(update={"versions": told.versions | versions}),
+        provenance=origin.model_copy(update={"versions": origin.versions | versions}),
     )
 
 
-def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[str]:
+def _preface(parts: Sequence[PartResult], claims: Sequence[ClaimResult]) -> Iterator[str]:
     installed = ", ".join(f"{x.title} {x.version}" for x in parts if x.version) or "none"
     yield f"Installed here: {installed}; printed tables need no library."
     missing = [x.title for x in parts if x.version is None and not x.broken]
@@ -93,32 +93,34 @@ def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[
 
 
 def names() -> list[str]:
-    """Of all parts: readers of libraries, then files of tables, the longest first."""
+    """Return the names of all parts: readers of libraries, then files of tables, the longest
+    first."""
+    # The longest files are begun first, so that no worker is left alone with one at the end.
     files = sorted(printed_libraries.files(), key=lambda path: (-path.stat().st_size, path.name))
     return [*libraries.names(), *map(str, files)]
 
 
 def title_of(name: str) -> str:
-    """What a part is called."""
+    """Return the title of a part."""
     return Path(name).stem if name.endswith(".toml") else str(libraries.get(name).TITLE)
 
 
-def look_at(name: str) -> Found:
-    """One part. Raises what our own tables raise, and nothing of a library."""
+def look_at(name: str) -> PartResult:
+    """Judge one part. Raises what our own tables raise, and nothing of a library."""
     return _tables(Path(name)) if name.endswith(".toml") else _library(name)
 
 
-def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[Found]:
-    """All parts, in their order. A process that is lost is one whose library ends it."""
+def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[PartResult]:
+    """Judge all parts, in their order. A process that is lost is one whose library ends it."""
     every = names()
     if workers == 1:
-        found = []
+        results = []
         for name in every:
             on_part(title_of(name))
-            found.append(look_at(name))
-        return found
-    told, waiting = dict[str, Found](), [*every]
-    running: dict[Future[Found], str] = {}
+            results.append(look_at(name))
+        return results
+    by_name, waiting = dict[str, PartResult](), [*every]
+    running: dict[Future[PartResult], str] = {}
     with open_place(Placement(workers)) as processes:
         while waiting or running:
             while waiting and len(running) < workers:
@@ -128,37 +130,39 @@ def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[Found]:
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 name, error = running.pop(future), future.exception()
                 processes.release(future)
+                # A process that died did so by a library's fault, which must not end the report; an
+                # exception of ours must.
                 if error is not None and not processes.lost(error):
                     raise error
-                told[name] = _lost(name) if error is not None else future.result()
-    return [told[name] for name in every]
+                by_name[name] = _report_lost(name) if error is not None else future.result()
+    return [by_name[name] for name in every]
 
 
-def _lost(name: str) -> Found:
+def _report_lost(name: str) -> PartResult:
     title = title_of(name)
-    return Found(title, None, (), ((title, "ends the process that it is looked at in"),), True)
+    return PartResult(title, None, (), ((title, "ends the process that it is looked at in"),), True)
 
 
-def _tables(path: Path) -> Found:
+def _tables(path: Path) -> PartResult:
     tables = read_tables(path)
     left_out = tuple((f"{tables.title}: {what}", why) for what, why in tables.left_out)
-    return Found(tables.title, "", tuple(printed_libraries.claims_of(tables)), left_out)
+    return PartResult(tables.title, "", tuple(printed_libraries.claims_of(tables)), left_out)
 
 
-def _library(name: str) -> Found:
-    module, version = libraries.get(name), libraries.installed(name)
+def _library(name: str) -> PartResult:
+    module, version = libraries.get(name), libraries.installed_version(name)
     if version is None:
         why = _LEAST.format(getattr(module, "EXTRA", "peers"))
-        return Found(module.TITLE, None, (), ((module.TITLE, why),))
-    with contained():
+        return PartResult(module.TITLE, None, (), ((module.TITLE, why),))
+    with contain_effects():
         claims, failed = _claims(module, f"{module.TITLE} {version}".strip())
     left_out = (*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT))
-    return Found(module.TITLE, version, tuple(claims), left_out, bool(failed))
+    return PartResult(module.TITLE, version, tuple(claims), left_out, bool(failed))
 
 
 def _claims(module: ModuleType, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
-    """The claims of one file; and what of it could not be looked at since the library fails, each
-    with its error: that refutes nothing, and does not end the report."""
+    """Return the claims of one file; and what of it could not be looked at since the library fails,
+    each with its error: that refutes nothing, and does not end the report."""
     prefix = str(module.TITLE).replace(" ", "-")
     failed: list[tuple[str, str]] = []
     claims: list[ClaimResult] = []
@@ -175,7 +179,7 @@ def _claims(module: ModuleType, section: str) -> tuple[list[ClaimResult], list[t
 
 
 def _integrators(module: ModuleType, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
-    """Its integrators, up to where the library fails: most fail when they are imported."""
+    """Yield its integrators, up to where the library fails: most fail when they are imported."""
     try:
         if module.LIBRARY is not None:
             import_module(module.LIBRARY)
@@ -187,11 +191,11 @@ def _integrators(module: ModuleType, failed: list[tuple[str, str]]) -> Iterator[
 
 
 def _shears(section: str, prefix: str) -> ClaimResult:
-    """What holds of all tables at once, whatever their coefficients are."""
+    """Build the claim that holds of all tables at once, whatever their coefficients are."""
     conditions: Sequence[Condition] = Splitting(
         (("kick", S.One), ("drift", S.One))
     ).area_conditions()
-    proved = all(c.holds for c in conditions)
+    all_hold = all(c.holds for c in conditions)
     return ClaimResult(
         id=f"{prefix}/all/area",
         kind="area",
@@ -199,7 +203,7 @@ def _shears(section: str, prefix: str) -> ClaimResult:
         section=section,
         statement=prose("kicks and drifts are symplectic, whatever their coefficients are"),
         scene="",
-        verdict=Verdict.PROVED if proved else Verdict.UNDECIDED,
+        verdict=Verdict.PROVED if all_hold else Verdict.UNDECIDED,
         evidence=prose(
             "every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
             "every composition of them has; a wrong coefficient costs order, not area"

@@ -98,12 +98,15 @@ def defect(p, q, h, d=2.0**-10):  # of J^T W J = W, by differences of the second
 print([(h, defect({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
 
 
-def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order: int) -> str:
-    """By how much one step with the printed digits, and one with the nearest exact numbers where
-    they are known, differ from the flow of one H, in exact fractions."""
+def write_digits_program(
+    table: PrintedTable, nearest: Mapping[str, Fraction] | None, order: int
+) -> str:
+    """Write a program that prints by how much one step with the printed digits, and one with the
+    nearest exact numbers where they are known, differ from the flow of one H, in exact
+    fractions."""
     quadratic = table.kind == "nystrom"
     names = ", ".join(table.printed.units)
-    printed = _listed(
+    printed = _wrap_items(
         [f'F("{table.printed.numbers[name].strip()}")' for name in table.printed.units], "    "
     )
     exact = ",\n    ".join(
@@ -128,27 +131,29 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order
     ]
     kinetic = "p²/2" if quadratic else "p²/2 + p³/3"
     speed = "p" if quadratic else "[a + b for a, b in zip(p, mul(p, p))]"
-    shown = (
+    compared_rows = (
         '("printed", printed), ("nearest exact", nearest)' if nearest else '("printed", printed),'
     )
-    return "\n".join(lines) + "\n" + _SERIES.format(kinetic=kinetic, speed=speed, shown=shown)
+    return (
+        "\n".join(lines) + "\n" + _SERIES.format(kinetic=kinetic, speed=speed, shown=compared_rows)
+    )
 
 
 def _parts(table: PrintedTable) -> list[str]:
-    """Kicks and drifts; a composition is one of kick–drift–kick."""
+    """Write the kicks and drifts; a composition is one of kick–drift–kick."""
     if table.kind != "composition":
-        made = _listed([f'("{kind}", {_exact(size)})' for kind, size in table.parts], " " * 8)
-        return [f"    return [\n{made}\n    ]"]
-    made = _listed([_exact(size) for _, size in table.parts], " " * 8)
+        items = _wrap_items([f'("{kind}", {_exact(size)})' for kind, size in table.parts], " " * 8)
+        return [f"    return [\n{items}\n    ]"]
+    items = _wrap_items([_exact(size) for _, size in table.parts], " " * 8)
     return [
-        f"    w = [\n{made}\n    ]",
+        f"    w = [\n{items}\n    ]",
         '    kdk = ("kick", F(1, 2)), ("drift", F(1)), ("kick", F(1, 2))',
         "    return [(kind, share * x) for x in w for kind, share in kdk]",
     ]
 
 
-def _listed(items: Sequence[str], indent: str) -> str:
-    """The items with commas, on lines that are not too long."""
+def _wrap_items(items: Sequence[str], indent: str) -> str:
+    """Join the items with commas, on lines that are not too long."""
     lines = [indent]
     for item in items:
         if len(lines[-1]) + len(item) > _WIDTH and lines[-1] != indent:
@@ -158,19 +163,20 @@ def _listed(items: Sequence[str], indent: str) -> str:
 
 
 def _exact(size: str) -> str:
-    """A formula whose quotients are no floats."""
+    """Write a formula whose quotients are no floats."""
     return _INTEGER.sub(r"F(\g<0>)", size)
 
 
-def of_order(code: str, point: Point, order: int, timed: bool = False) -> str:
-    """`code`, which defines step(p, q, h), or step(p, q, t, h), and the slopes of its error."""
+def write_order_program(code: str, point: Point, order: int, timed: bool = False) -> str:
+    """Append the slopes of its error to `code`, which defines step(p, q, h), or step(p, q, t,
+    h)."""
     clock, claimed = _IN_TIME if timed else _STILL, f"; claimed: order {order}"
     return _with(code, _ORDER.format(**_start(point), **clock, claimed=claimed))
 
 
 def _start(point: Point) -> dict[str, str]:
-    """p and q as they are written, of several degrees of freedom as arrays, and how far two states
-    x and y are apart."""
+    """Write p and q, of several degrees of freedom as arrays, and the distance of two states x and
+    y."""
     half = len(point) // 2
     if half == 1:
         p, q = map(float, point)
@@ -181,21 +187,21 @@ def _start(point: Point) -> dict[str, str]:
     return {"p": f"np.array({one})", "q": f"np.array({other})", "distance": apart}
 
 
-def of_time(code: str, point: Point) -> str:
-    """The same of step(p, q, t, h) where no order is claimed."""
+def write_time_program(code: str, point: Point) -> str:
+    """Append the slopes to `code`, which defines step(p, q, t, h), where no order is claimed."""
     return _with(code, _ORDER.format(**_start(point), **_IN_TIME, claimed=""))
 
 
-def of_area(code: str, point: Point) -> str:
-    """`code`, which defines step(p, q, h), and the determinant of its Jacobian, or of several
+def write_area_program(code: str, point: Point) -> str:
+    """Append to `code`, which defines step(p, q, h), the determinant of its Jacobian, or of several
     degrees of freedom the largest entry of JᵀΩJ − Ω."""
     tail = _AREA if len(point) == 2 else _SYMPLECTIC
     return _with(code, tail.format(**_start(point)))
 
 
-def of_clock(entry: TableEntry) -> str:
-    """The step of a splitting with its printed clock, for a driven pendulum, and the slopes of its
-    error; empty for a table without one."""
+def write_clock_program(entry: TableEntry) -> str:
+    """Write the step of a splitting with its printed clock, for a driven pendulum, and the slopes
+    of its error; empty for a table without one."""
     parts = timed_parts(entry)
     if not parts:
         return ""
@@ -216,7 +222,7 @@ def step(p, q, t, h):  # H = (1 + cos(t)/4) (p**4/4 + p**2/2) - (1 + cos(2*t)/2)
             q += a * h * (1 + math.cos(t + s * h) / 4) * (p + p**3)
     return p, q
 """
-    return of_time(code, (Fraction(1, 3), Fraction(3, 5)))
+    return write_time_program(code, (Fraction(1, 3), Fraction(3, 5)))
 
 
 def _with(code: str, tail: str) -> str:

@@ -1,1 +1,1 @@
-"""What is called from Python, one call a file: each takes a system and a scheme, however given."""
+"""The calls from Python, one a file; each takes a system and a scheme in any of their forms."""

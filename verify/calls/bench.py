@@ -3,7 +3,7 @@
 from typing import Any
 
 from verify.arithmetic.exact import Exact
-from verify.calls.given import GivenParameters, GivenSystem, listed, scene_of
+from verify.calls.inputs import ParametersLike, SystemLike, as_list, scene_of
 from verify.calls.progress import Progress, progress_of
 from verify.errors import InputError
 from verify.hamiltonians.start import Given
@@ -12,7 +12,7 @@ from verify.studies.kinds.work_precision import work_precision_task
 
 
 def bench(
-    system: GivenSystem,
+    system: SystemLike,
     scheme: Any,
     *,
     q: Given,
@@ -20,19 +20,19 @@ def bench(
     step_sizes: Any,
     time: Exact,
     t0: Exact = 0,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     repeats: int = 5,
     peers: bool = False,
     progress: Progress = None,
 ) -> WorkPrecisionResult:
-    """Solution error at `time` against run time in seconds, and area error, of schemes.
+    """Measure the work–precision of schemes: error at `time` against run time in seconds.
 
     The arguments are those of `verify.run`; `scheme` may be a list. `step_sizes`: two at least;
-    N is time/h, rounded down. `repeats`: timings of each point. `peers`: solvers of other
-    libraries beside them, where they are installed. `verify.plot_work_precision` draws it. Raises
-    InputError, one line.
+    N is time/h, rounded down. `repeats`: timings of each point. `peers`: also solvers of other
+    installed libraries. Returns the errors of the solution and of area (Λ), which
+    `verify.plot_work_precision` draws. Raises InputError, one line.
     """
-    sizes = listed("step_sizes", step_sizes)
+    sizes = as_list("step_sizes", step_sizes)
     if len(sizes) < 2:
         raise InputError("step_sizes", step_sizes, "is one; an order takes two at least")
     section = {
@@ -45,5 +45,6 @@ def bench(
     scene = scene_of(system, scheme, parameters, t0=t0, work_precision=section)
     task = work_precision_task(scene)
     points = len(task.schemes) * len(task.step_sizes)
-    with progress_of(progress, "errors", points, adding=True) as tell:
-        return task.measure(tell or (lambda _: None))
+    # One unit of the bar is the error of one point.
+    with progress_of(progress, "errors", points, adding=True) as report:
+        return task.measure(report or (lambda _: None))

@@ -1,6 +1,6 @@
-"""`verify.check`: a step function of one's own, or any scheme, held to what it claims.
+"""`verify.check`: verification of a user's step function, or of any scheme, against its claims.
 
-`verify.check_map`: any map of one's own, without an H: is it symplectic?
+`verify.check_map`: whether any map of a user's own, without an H, is symplectic.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -9,10 +9,10 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import Exact, positive, rational, whole
-from verify.calls.given import (
-    GivenParameters,
-    GivenScheme,
-    GivenSystem,
+from verify.calls.inputs import (
+    ParametersLike,
+    SchemeLike,
+    SystemLike,
     hamiltonian_from,
     scheme_from,
     step_map_from,
@@ -32,10 +32,10 @@ from verify.schemes.scheme import Scheme
 
 
 def check(
-    system: GivenSystem,
-    step: Callable[..., Any] | GivenScheme,
+    system: SystemLike,
+    step: Callable[..., Any] | SchemeLike,
     *,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     order: int | None = None,
     area_preserving: bool = False,
     symplectic: bool = False,
@@ -46,27 +46,27 @@ def check(
     within: Exact | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding | Proof:
-    """Whether a step is a scheme for H and what it preserves: proved, else measured.
+    """Decide whether a step is a scheme for H and what it preserves: by proof, else by measuring.
 
     Parameters
     ----------
     system, parameters: as in `verify.run`.
-    step: a function step(p, q, h), or step(p, q, t, h) for an H in t, that returns p' and q', and
-        is called; a scheme's name,
-        'p_next = …; q_next = …', a Scheme or a StepMap is proved.
-    order: the order of convergence that is claimed of it, at least; a scheme's own where left out.
+    step: a function step(p, q, h), or step(p, q, t, h) for an H in t, that returns p' and q'; it
+        is called. Or a scheme's name, 'p_next = …; q_next = …', a Scheme or a StepMap, which is
+        proved.
+    order: the least claimed order of convergence; by default that which a scheme itself claims.
     area_preserving, symplectic: whether det J ≡ 1 is claimed of it, or JᵀΩJ ≡ Ω, which is the same
         in one degree of freedom.
     arguments: such as "q,p,h", where the function's arguments are not named so.
-    p, q: a state to look at first, numbers or, in n degrees of freedom, lists of n; `step_size`:
-        the largest that is looked at; `within`: a defect that is allowed.
-    time_limit: seconds for all that is done.
+    q, p: the first state to look at, numbers or, in n degrees of freedom, lists of n; `step_size`:
+        the largest step size to look at; `within`: an allowed defect.
+    time_limit: seconds for the whole check.
 
     Returns a Finding of a function, with its `verdict` and `reason`; a Proof of a scheme. Raises
     InputError, one line.
 
-    >>> found = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
-    >>> str(found.verdict), found.area_preserving, found.order
+    >>> euler = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
+    >>> str(euler.verdict), euler.area_preserving, euler.order
     ('PROVED', False, 2)
     """
     exact = hamiltonian_from(system, parameters)
@@ -76,15 +76,17 @@ def check(
         if not isinstance(claimed, bool):
             raise InputError(name, claimed, "must be True or False")
     if not callable(step) or isinstance(step, Scheme):
-        found = scheme_from(step)
-        step_map = step_map_from(found, exact)
+        scheme = scheme_from(step)
+        step_map = step_map_from(scheme, exact)
         keeps = symplectic or (area_preserving and exact.degrees == 1)
+        # det J ≡ 1 is weaker than JᵀΩJ ≡ Ω where n > 1, and a scheme's proof decides the latter.
         if area_preserving and not keeps:
             problem = "of a scheme in several degrees of freedom symplectic=True is claimed"
             raise InputError("area_preserving", area_preserving, problem)
-        if isinstance(found, Scheme) and order is None and not keeps:
-            return prove(step_map, found)
-        return prove(step_map, _claiming(found, order, keeps))
+        # Without a claim of the caller the scheme's own claims are checked.
+        if isinstance(scheme, Scheme) and order is None and not keeps:
+            return prove(step_map, scheme)
+        return prove(step_map, _with_claims(scheme, order, keeps))
     callee = callee_from(
         step, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
         time_limit=time_limit,
@@ -103,7 +105,7 @@ def check_map(
     within: Exact | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding:
-    """Whether a map of one's own is symplectic, JᵀΩJ = Ω everywhere: proved, else measured.
+    """Decide whether a map is symplectic, JᵀΩJ = Ω everywhere: by proof, else by measuring.
 
     Parameters
     ----------
@@ -111,16 +113,16 @@ def check_map(
         else; or map(z) → z' of one array of 2·degrees numbers. It is called.
     arguments: where the coordinates stand in z, such as "q1,p1,q2,p2"; else p1, …, pn, q1, …, qn.
     parameters: further arguments that it takes by name, exact.
-    point: p1, …, pn, q1, …, qn of a point to look at first; `within`: a defect that is allowed;
+    point: p1, …, pn, q1, …, qn of the first point to look at; `within`: an allowed defect;
         `time_limit`: seconds for all calls.
 
     Raises InputError, one line.
 
-    >>> found = check_map(lambda p, q: ([p[0] - q[1], p[1] - q[0]], q), degrees=2)
-    >>> str(found.verdict), found.symplectic
+    >>> shear = check_map(lambda p, q: ([p[0] - q[1], p[1] - q[0]], q), degrees=2)
+    >>> str(shear.verdict), shear.symplectic
     ('PROVED', True)
-    >>> found = check_map(lambda p, q: ([2 * p[0], p[1]], [q[0], q[1] / 2]), degrees=2)
-    >>> str(found.verdict), found.entry, found.area_preserving
+    >>> mixed = check_map(lambda p, q: ([2 * p[0], p[1]], [q[0], q[1] / 2]), degrees=2)
+    >>> str(mixed.verdict), mixed.entry, mixed.area_preserving
     ('REFUTED', 'dp1∧dq1', True)
     """
     if not callable(function):
@@ -129,6 +131,7 @@ def check_map(
     names = coordinates_in(degrees)
     values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
     callee = callee_from(
+        # Not `stepped`: the map has no step size h among its arguments.
         function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
         time_limit=time_limit,
     )  # fmt: skip
@@ -137,8 +140,8 @@ def check_map(
         z = tuple(rational(x, "point") for x in point)
         if len(z) != len(names):
             raise InputError("point", point, f"has {len(z)} numbers; allowed: {len(names)}")
-    allowed = None if within is None else positive(within, "within")
-    return judge_map(callee, Request(z=z, within=allowed))
+    tolerance = None if within is None else positive(within, "within")
+    return judge_map(callee, Request(z=z, within=tolerance))
 
 
 def request_of(
@@ -148,15 +151,15 @@ def request_of(
     step_size: Exact | None = None,
     within: Exact | None = None,
 ) -> Request:
-    """Where to look, as a caller says it. Raises InputError."""
+    """Return the places to look at, read from a caller's arguments. Raises InputError."""
     if (p is None) != (q is None):
         raise InputError("p, q", p if p is not None else q, "give both or none")
     z: list[Fraction] = []
-    for name, given in (("p", p), ("q", q)):
-        numbers: list[Any] = [] if given is None else _listed(given)
-        if given is not None and len(numbers) != exact.degrees:
+    for name, values in (("p", p), ("q", q)):
+        numbers: list[Any] = [] if values is None else _as_numbers(values)
+        if values is not None and len(numbers) != exact.degrees:
             problem = f"has {len(numbers)} numbers; allowed: {exact.degrees}"
-            raise InputError(name, given, problem)
+            raise InputError(name, values, problem)
         z += [rational(x, name) for x in numbers]
     return Request(
         z=tuple(z) or None,
@@ -165,15 +168,16 @@ def request_of(
     )
 
 
-def _listed(given: Any) -> list[Any]:
-    several = hasattr(given, "__len__") and not isinstance(given, str)
-    return list(given) if several else [given]
+def _as_numbers(value: Any) -> list[Any]:
+    # A text such as "1/3" is one number, though it has a length.
+    several = hasattr(value, "__len__") and not isinstance(value, str)
+    return list(value) if several else [value]
 
 
-def _claiming(found: Any, order: int | None, area_preserving: bool) -> Scheme | None:
-    """A scheme that claims just that; None where nothing is claimed."""
-    if isinstance(found, Scheme):
-        return replace(found, order=order or 1, area_preserving=area_preserving)
+def _with_claims(scheme: Any, order: int | None, area_preserving: bool) -> Scheme | None:
+    """Return the scheme with these claims alone; None for a step map without any."""
+    if isinstance(scheme, Scheme):
+        return replace(scheme, order=order or 1, area_preserving=area_preserving)
     if order is None and not area_preserving:
         return None
-    return Scheme("the step map", order or 1, area_preserving, True, False, "", lambda _: found)
+    return Scheme("the step map", order or 1, area_preserving, True, False, "", lambda _: scheme)

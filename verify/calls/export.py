@@ -1,10 +1,10 @@
 """`verify.export`: a step map, its Jacobian and ΔJ as code."""
 
 from verify.algebra.expressions.formula_text import to_text
-from verify.calls.given import (
-    GivenParameters,
-    GivenScheme,
-    GivenSystem,
+from verify.calls.inputs import (
+    ParametersLike,
+    SchemeLike,
+    SystemLike,
     hamiltonian_from,
     scheme_from,
     step_map_from,
@@ -15,14 +15,14 @@ from verify.schemes.scheme import Scheme
 
 
 def export(
-    system: GivenSystem,
-    scheme: GivenScheme,
+    system: SystemLike,
+    scheme: SchemeLike,
     language: str = "python",
     *,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     name: str = "step",
 ) -> str:
-    """The step map, its Jacobian and ΔJ as a text in C, Python, Julia or LaTeX.
+    """Return the step map, its Jacobian and ΔJ as a text in C, Python, Julia or LaTeX.
 
     Parameters
     ----------
@@ -35,30 +35,32 @@ def export(
     The functions take p, q and h, and where H depends on time p, q, t and h; J is taken at that t.
 
     Numbers in the code are the doubles nearest to the exact ones, which comments beside them give.
-    Raises InputError, one line, for what is none of this, and for a map that is given by equations.
+    Raises InputError, one line, for a bad argument, and for a map that is given by equations.
 
     >>> code = export("harmonic", "symplectic-euler", "python", parameters={"omega": 1})
-    >>> made = {}
-    >>> exec(code, made)
-    >>> made["step"](p=1.0, q=0.0, h=0.5), made["step_delta_j"](1.0, 0.0, 0.5)
+    >>> module = {}
+    >>> exec(code, module)
+    >>> module["step"](p=1.0, q=0.0, h=0.5), module["step_delta_j"](1.0, 0.0, 0.5)
     ((1.0, 0.5), 0)
     """
-    return get(language).written(program(system, scheme, language, parameters, name))
+    return get(language).render(build_program(system, scheme, language, parameters, name))
 
 
-def program(
-    system: GivenSystem,
-    scheme: GivenScheme,
+def build_program(
+    system: SystemLike,
+    scheme: SchemeLike,
     language: str,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     name: str = "step",
 ) -> Program:
-    """What is written: the map as assignments, with its constants; see `export`."""
+    """Return the map as assignments, with its constants, for a language; see `export`."""
     exact = hamiltonian_from(system, parameters)
-    found = scheme_from(scheme)
-    step_map = step_map_from(found, exact)
-    if isinstance(found, Scheme):
-        called = found.name
+    scheme_or_map = scheme_from(scheme)
+    step_map = step_map_from(scheme_or_map, exact)
+    if isinstance(scheme_or_map, Scheme):
+        scheme_text = scheme_or_map.name
     else:
-        called = f"p_next = {to_text(found.p_next)}; q_next = {to_text(found.q_next)}"
-    return program_of(step_map, called, name, get(language).RESERVED)
+        scheme_text = (
+            f"p_next = {to_text(scheme_or_map.p_next)}; q_next = {to_text(scheme_or_map.q_next)}"
+        )
+    return program_of(step_map, scheme_text, name, get(language).RESERVED)

@@ -1,6 +1,6 @@
-"""A progress bar in a notebook: tqdm's where that is installed, else one line that is written anew.
+"""A progress bar in a notebook: tqdm's where that is installed, else one line that is rewritten.
 
-Nothing is imported before a bar is shown, and none is shown in a script unless it is asked for.
+Nothing is imported before a bar is shown, and a script shows none unless it is requested.
 """
 
 import sys
@@ -16,7 +16,7 @@ _SECONDS = 0.5  # until a bar appears, and between two lines
 
 
 def in_notebook() -> bool:
-    """Whether this is a notebook's kernel, as Jupyter has it."""
+    """Return True in a kernel of Jupyter, where a notebook runs."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None
     return type(shell).__name__ == "ZMQInteractiveShell"
@@ -26,21 +26,21 @@ def in_notebook() -> bool:
 def progress_of(
     progress: Progress, label: str, total: int, *, adding: bool = False
 ) -> Iterator[Callable[[int], None] | None]:
-    """Yields what is called with the number of steps done, of `total`; None where nobody looks.
+    """Yield the function to call with the number of steps done, of `total`; None without a bar.
 
     `progress`: None for a bar in a notebook, True for one anywhere, False for none, or a function
-    of the caller's own, which is called itself. `adding`: it is called with those just done.
+    of the caller's own, which is yielded itself. `adding`: it is called with the steps just done.
     """
     if callable(progress):
         yield progress
         return
     if progress is not None and not isinstance(progress, bool):
         raise InputError("progress", progress, "allowed: True, False, None, or a function")
-    shown = in_notebook() or (progress and sys.stderr is not None)  # None: it is closed
-    if progress is False or not shown:
+    is_visible = in_notebook() or (progress and sys.stderr is not None)  # None: it is closed
+    if progress is False or not is_visible:
         yield None
         return
-    bar = _bar(label, total)
+    bar = _create_bar(label, total)
     try:
         yield _Counter(bar, adding)
     finally:
@@ -48,16 +48,16 @@ def progress_of(
 
 
 class _Counter:
-    """Tells a bar how far the work is; a run that is done again begins again."""
+    """The function that moves a bar; a run that is done again begins again."""
 
     def __init__(self, bar: Any, adding: bool) -> None:
         self.bar, self.adding = bar, adding
 
-    def __call__(self, done: int) -> None:
-        self.bar.update(done if self.adding else done - self.bar.n)
+    def __call__(self, count: int) -> None:
+        self.bar.update(count if self.adding else count - self.bar.n)
 
 
-def _bar(label: str, total: int) -> Any:
+def _create_bar(label: str, total: int) -> Any:
     try:
         from tqdm.auto import tqdm
     except ImportError:
@@ -66,31 +66,34 @@ def _bar(label: str, total: int) -> Any:
 
 
 class _Lines:
-    """A bar as tqdm has it, in one line that is written anew: in a notebook, else on stderr."""
+    """A bar with tqdm's methods, in one line that is rewritten: in a notebook, else on stderr."""
 
     def __init__(self, label: str, total: int) -> None:
         self.label, self.total, self.n = label, total, 0
-        self.shown: Any = None
+        self.display: Any = None
         self.last = time.monotonic()
 
     def update(self, more: int) -> None:
         self.n += more
+        # At most two lines a second: a notebook renders each of them.
         if time.monotonic() - self.last >= _SECONDS:
             self.last = time.monotonic()
             self._show(f"{self.label}: {self.n:,} of {self.total:,} ({self.n / self.total:.0%})")
 
     def close(self) -> None:
-        if self.shown is not None:
+        if self.display is not None:
             self._show("")
 
     def _show(self, line: str) -> None:
         if not in_notebook():
-            self.shown = True
+            self.display = True
             sys.stderr.write(f"\r{line:78}")
             sys.stderr.flush()
             return
         content = {"text/plain": line}
-        if self.shown is None:
-            self.shown = sys.modules["IPython"].display.display(content, raw=True, display_id=True)
+        if self.display is None:
+            self.display = sys.modules["IPython"].display.display(
+                content, raw=True, display_id=True
+            )
         else:
-            self.shown.update(content, raw=True)
+            self.display.update(content, raw=True)

@@ -1,9 +1,9 @@
 """`verify.prove`: the order of ΔJ and of the map, by exact algebra."""
 
-from verify.calls.given import (
-    GivenParameters,
-    GivenScheme,
-    GivenSystem,
+from verify.calls.inputs import (
+    ParametersLike,
+    SchemeLike,
+    SystemLike,
     hamiltonian_from,
     scheme_from,
     step_map_from,
@@ -16,14 +16,14 @@ from verify.schemes.scheme import Scheme
 
 
 def prove(
-    system: GivenSystem | StepMap,
-    scheme: GivenScheme | None = None,
+    system: SystemLike | StepMap,
+    scheme: SchemeLike | None = None,
     *,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
 ) -> Proof:
     """Prove the order in h of ΔJ = det J − 1, that of the map, and what the scheme claims.
 
-    Of an H in p1 … pn and q1 … qn that of S = JᵀΩJ − Ω is proved.
+    For an H in p1 … pn and q1 … qn, the order of S = JᵀΩJ − Ω is proved in place of that of ΔJ.
 
     Parameters
     ----------
@@ -33,10 +33,10 @@ def prove(
     parameters: exact values by name; one without a value stays a symbol, and the proof holds for
         all its values but those that `domain` names.
 
-    Raises InputError, one line, for what is none of this.
+    Raises InputError, one line, for a bad argument.
 
-    >>> found = prove("duffing", "lie2")
-    >>> str(found.verdict), found.order, found.leading
+    >>> proof = prove("duffing", "lie2")
+    >>> str(proof.verdict), proof.order, proof.leading
     ('PROVED', 3, 3*delta*p*q)
     >>> several = prove("p1**2/2 + p2**2/2 - cos(q1 - q2)", "lie2")
     >>> several.order, several.symplectic, several.telescopes
@@ -53,5 +53,8 @@ def prove(
     exact = hamiltonian_from(system, parameters)
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
-    found = scheme_from(scheme)
-    return prove_map(step_map_from(found, exact), found if isinstance(found, Scheme) else None)
+    scheme_or_map = scheme_from(scheme)
+    return prove_map(
+        step_map_from(scheme_or_map, exact),
+        scheme_or_map if isinstance(scheme_or_map, Scheme) else None,
+    )

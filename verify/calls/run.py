@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 from verify.arithmetic.exact import Exact, whole
 from verify.arithmetic.systems import float64
-from verify.calls.given import (
-    GivenParameters,
-    GivenScheme,
-    GivenSystem,
+from verify.calls.inputs import (
+    ParametersLike,
+    SchemeLike,
+    SystemLike,
     hamiltonian_from,
     is_list,
     scheme_name,
@@ -17,8 +17,8 @@ from verify.calls.run_result import RunResult
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.start import Given, check_start
-from verify.lockstep import Course, alone
-from verify.runs.run import AskedRun
+from verify.lockstep import Course, run_alone
+from verify.runs.run import RequestedRun
 from verify.scenes.results.orbit import MOST_POINTS
 from verify.scenes.values import AUTO, steps_from
 
@@ -26,8 +26,8 @@ _DIGITS = 17
 
 
 def run(
-    system: GivenSystem,
-    scheme: GivenScheme,
+    system: SystemLike,
+    scheme: SchemeLike,
     *,
     q: Given,
     p: Given,
@@ -35,7 +35,7 @@ def run(
     steps: int | None = None,
     time: Exact | None = None,
     t0: Exact = 0,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     arithmetic: str | None = None,
     digits: int | None = None,
     observables: Sequence[str] | None = None,
@@ -52,11 +52,11 @@ def run(
     q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10. In n
         degrees of freedom q and p are lists.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
-    t0: when the run starts, for an H that depends on t.
+    t0: the time at the start, for an H that depends on t.
     parameters: exact values by name, beside those that the Hamiltonian has.
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
         Left out: float64, or auto where `digits` is given.
-    digits: significant digits wanted; float64 gives those that it knows.
+    digits: the requested significant digits; float64 gives those that it can certify.
     observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max, and energy_error_max, the
         greatest |H − H₀|; in n degrees of freedom also symplectic_defect_max, the greatest |entry|
         of any S = JᵀΩJ − Ω, and symplectic_defect, that of all steps together. Left out: those that
@@ -71,14 +71,14 @@ def run(
     `t`, `p`, `q`, `energy_error`, `delta_j`, `lambda_`, all without units, made when it is looked
     at.
 
-    Raises InputError, one line, for what is none of this, for h ≤ 0, N < 1, a parameter without a
-    value.
+    Raises InputError, one line, for a bad argument: h ≤ 0, N < 1, a parameter without a value, ….
 
-    >>> found = run("duffing", "lie2", parameters={"delta": 1}, q=1.5, p=0, step_size=0.01, steps=9)
-    >>> found.values["lambda"] < 0, found.orbit.t.tolist()[:3], found.orbit.texts("p")[1]
+    >>> result = run("duffing", "lie2", parameters={"delta": 1}, q=1.5, p=0, step_size=0.01,
+    ...              steps=9)
+    >>> result.values["lambda"] < 0, result.orbit.t.tolist()[:3], result.orbit.texts("p")[1]
     (True, [0.0, 0.01, 0.02], '-0.04875')
     """
-    return alone(
+    return run_alone(
         run_in_turn(
             system, scheme, q=q, p=p, step_size=step_size, steps=steps, time=time, t0=t0,
             parameters=parameters, arithmetic=arithmetic, digits=digits, observables=observables,
@@ -88,32 +88,33 @@ def run(
 
 
 def run_in_turn(
-    system: GivenSystem, scheme: GivenScheme, *, q: Given, p: Given, step_size: Exact,
-    steps: int | None, time: Exact | None, t0: Exact = 0, parameters: GivenParameters,
+    system: SystemLike, scheme: SchemeLike, *, q: Given, p: Given, step_size: Exact,
+    steps: int | None, time: Exact | None, t0: Exact = 0, parameters: ParametersLike,
     arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
     points: int = 0, progress: Progress, keeper: Keeper = NOTHING,
 ) -> Course[RunResult]:  # fmt: skip
-    """The same beside others."""
+    """Return the run as a course, which can be stepped together with others."""
     exact = hamiltonian_from(system, parameters)
     check_start(exact, q, p, t0)
     name = scheme_name(scheme, exact)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
     digits = None if digits is None else whole("digits", digits, 1)
+    # Requested digits need an arithmetic that can certify them; else float64 is the fastest.
     arithmetic = arithmetic or (float64.NAME if digits is None else AUTO)
     if not isinstance(arithmetic, str):
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
-    with progress_of(progress, f"{name[:30]}, steps", count) as tell:
-        asked = AskedRun(
+    with progress_of(progress, f"{name[:30]}, steps", count) as report:
+        request = RequestedRun(
             exact, name, q=q, p=p, step_size=step_size, steps=count, t0=t0, arithmetic=arithmetic,
-            digits=digits or _DIGITS, observables=_names(observables), points=int(points),
-            keeper=keeper,
+            digits=digits or _DIGITS, observables=_observable_names(observables),
+            points=int(points), keeper=keeper,
         )  # fmt: skip
-        result = yield from asked.result(tell)
-    return RunResult.of(result).with_points(int(points))
+        result = yield from request.result(report)
+    return RunResult.from_result(result).with_points(int(points))
 
 
-def _names(observables: Sequence[str] | None) -> tuple[str, ...] | None:
+def _observable_names(observables: Sequence[str] | None) -> tuple[str, ...] | None:
     if observables is None:
         return None
     return tuple(observables) if is_list(observables) else (str(observables),)

@@ -1,4 +1,4 @@
-"""A run's result as `verify.run` gives it, which does the run again for more than its values."""
+"""The result of `verify.run`, which does the run again for more than its values."""
 
 from fractions import Fraction
 from functools import cached_property
@@ -13,14 +13,14 @@ from verify.scenes.results.run import EnergyDrift
 class RunResult(results.RunResult):
     """One run of N steps of a scheme, in one arithmetic, which can be done again.
 
-    `values` holds p, q and the observables asked for, each with its bound; `status` says how it
-    ended, and `error_kind` whether every bound is rigorous. All fields are told at
-    `verify.scenes.results.run.RunResult`.
+    `values` holds q, p and the requested observables, each with its bound; `status` says how the
+    run ended, and `error_kind` whether every bound is rigorous.
+    `verify.scenes.results.run.RunResult` describes all fields.
     """
 
     @classmethod
-    def of(cls, result: results.RunResult) -> Self:
-        """The same result."""
+    def from_result(cls, result: results.RunResult) -> Self:
+        """Return the result as one that can do its run again."""
         return cls.model_construct(result.model_fields_set, **dict(result))
 
     @cached_property
@@ -34,14 +34,16 @@ class RunResult(results.RunResult):
         return orbit_of(self, self._points)
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
-        """(t, |z − φ_t(z₀)|) at so many states at most; InputError where no exact solution is
-        known."""
+        """Return (t, |z − φ_t(z₀)|) at so many states at most.
+
+        Raises InputError where no exact solution is known.
+        """
         from verify.runs.solution_error import solution_errors
 
         return solution_errors(self, points)
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
-        """H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
+        """Return H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
 
         Raises InputError where the scheme has no H̃ but H.
         """

@@ -1,16 +1,16 @@
-"""`verify.stability`: runs judged, stable or not, and whose fault it is."""
+"""`verify.stability`: verdicts on runs, stable or not, and for which reason."""
 
 from typing import Any
 
 from verify.arithmetic.exact import Exact
-from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
+from verify.calls.inputs import ParametersLike, SystemLike, as_list, perform, scene_of
 from verify.hamiltonians.start import Given
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.kinds.stability import findings_of, need_stability
 
 
 def stability(
-    system: GivenSystem,
+    system: SystemLike,
     scheme: Any,
     *,
     q: Given,
@@ -18,7 +18,7 @@ def stability(
     step_size: Any,
     steps: int | None = None,
     time: Exact | None = None,
-    parameters: GivenParameters = None,
+    parameters: ParametersLike = None,
     t0: Exact | None = None,
     workers: int = 1,
 ) -> tuple[StabilityResult, ...]:
@@ -34,10 +34,10 @@ def stability(
     [('euler', 'unstable: scheme'), ('stormer-verlet', 'stable')]
     """
     section = {
-        "step_sizes": listed("step_size", step_size),
+        "step_sizes": as_list("step_size", step_size),
         "initial_values": [{"q": q, "p": p}],
         "steps": steps,
         "time": time,
     }
     scene = scene_of(system, scheme, parameters, t0=t0, stability=[section])
-    return findings_of([scene], performed(scene, need_stability, workers)).stability
+    return findings_of([scene], perform(scene, need_stability, workers)).stability

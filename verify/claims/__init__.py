@@ -1,1 +1,1 @@
-"""What a paper states: the kinds of claim, the file that holds them, and the judge."""
+"""The claims of a paper: their kinds, the file that holds them, and their verdicts."""

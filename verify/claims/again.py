@@ -1,4 +1,4 @@
-"""The base of claims that make other claims again, of the same runs with other values in them."""
+"""The base of claims that repeat other claims on the same runs with changed values."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Self
@@ -29,39 +29,42 @@ class AgainClaim(RunClaim):
         return self
 
     def claims(self) -> list[RunClaim]:
-        """The claims that are made again."""
-        return list(self._made())
+        """Return the claims that are repeated."""
+        return list(self._build_claims())
 
-    def _made(self) -> Iterator[RunClaim]:
+    def _build_claims(self) -> Iterator[RunClaim]:
         for n, table in enumerate(self.again, start=1):
             kind = table.get("kind")
             model = models().get(kind) if isinstance(kind, str) else None
+            # AgainClaim is excluded: a list of claims within one of them could nest forever.
             if model is None or not issubclass(model, RunClaim) or issubclass(model, AgainClaim):
                 raise InputError("again", kind, "is no kind of claim on runs")
+            # The stamp comes last: a table must not leave the scene and scheme of this claim.
             stamp = {"id": f"{self.id}-{n}", "scene": self.scene, "scheme": self.scheme}
             yield model.model_validate({**table, **stamp})
 
-    def twice(
-        self, findings: Findings, changed: Mapping[str, RunResult]
+    def compare_twice(
+        self, findings: Findings, changed_runs: Mapping[str, RunResult]
     ) -> list[tuple[ClaimResult, ClaimResult]]:
-        """Each claim's results by the runs as they are, and with the changed ones among them."""
-        again = Findings(findings.scenes, {**findings.results, **changed})
+        """Return each claim's results by the original runs and by the changed ones."""
+        again = Findings(findings.scenes, {**findings.results, **changed_runs})
         return [(claim.compare(findings), claim.compare(again)) for claim in self.claims()]
 
     def rows(self, both: Sequence[tuple[ClaimResult, ClaimResult]]) -> list[list[str]]:
-        """For each claim its keys in words, and on which side of its question it is, twice.
+        """Return a row for each claim: its keys in words, then both of its verdicts.
 
-        How sure it is of that, its result says.
+        A verdict that holds is written as `holds`, whether it is PROVED or MEASURED: both results
+        are compared by the side that they take, and not by how certain they are.
         """
         words = (
             ", ".join(f"{k} {v}" for k, v in table.items() if isinstance(v, str | int))
             for table in self.again
         )
         return [
-            [said, *("holds" if x.verdict.holds else x.verdict.lower() for x in pair)]
-            for said, pair in zip(words, both, strict=True)
+            [description, *("holds" if x.verdict.holds else x.verdict.lower() for x in pair)]
+            for description, pair in zip(words, both, strict=True)
         ]
 
     def refuses(self, claim: RunClaim) -> str:
-        """Why this claim cannot be made again; empty where it can."""
+        """Return why this claim cannot be repeated; empty if it can."""
         return "takes runs of its own" if claim.always_own else ""

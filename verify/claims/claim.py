@@ -1,7 +1,7 @@
-"""A claim: a precise reading of what a paper states, with all that is asked of it.
+"""A claim: a precise reading of a statement in a paper, and how it is judged.
 
-A kind of claim is one file in `verify.claims.kinds`: a subclass that has the keys, says of which
-scene and runs it speaks, which tasks it needs, and judges. A claim's own value stands under the
+A kind of claim is one file in `verify.claims.kinds`: a subclass with the claim's keys, which names
+the scene, the runs and the tasks it needs, and judges. A claim's own value stands under the
 name of its kind where it has one (`order = 3`); its verdict always comes with evidence.
 """
 
@@ -26,16 +26,15 @@ from verify.verdict import Verdict
 
 
 class Claim(Frozen):
-    """What claims of every kind have; this base is of what algebra decides of one H.
+    """The base of all claims; on its own, one that algebra decides for a single H.
 
-    `exact`: decided by algebra alone, so that it costs no run. `on_scene`: it speaks of a scheme
-    and a scene. `run_keys`: the keys that say of which runs it speaks, and `one_run` whether it
-    speaks of one only. `autonomous`: whether it speaks of no H that depends on time; `planar`:
-    whether of an H in one degree of freedom only. `only_here`: why other scenes cannot be asked the
-    same; empty where they can. `warning`: what a reader of the claim may take amiss; empty where
-    nothing is. Formulas in `statement` and `reading` stand between backticks.
-    `reading_of`, `reading` and `standing`: of which statement it is a reading, see
-    `verify.claims.readings`.
+    `exact`: algebra alone decides it, so that it costs no run. `on_scene`: it is about a scheme
+    and a scene. `run_keys`: the keys that select its runs; `one_run`: it is about one run only.
+    `autonomous`: H must not depend on time; `planar`: H must have one degree of freedom.
+    `only_here`: the reason why the claim cannot be transferred to other scenes; empty where it can.
+    `warning`: how a reader may misunderstand the claim; empty where there is no such danger.
+    Formulas in `statement` and `reading` stand between backticks. `reading_of`, `reading` and
+    `standing` connect a reading with its statement; see `verify.claims.readings`.
     """
 
     exact: ClassVar[bool] = True
@@ -48,25 +47,25 @@ class Claim(Frozen):
     warning: ClassVar[str] = ""
 
     id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
-    """What the claim is called, each its own."""
+    """The claim's name, unique in its file."""
     kind: str
-    """Which kind of claim it is."""
+    """The kind of claim."""
     source: str = ""
-    """Where the paper states it, such as `Eq. 19`."""
+    """The place in the paper, such as `Eq. 19`."""
     section: str = ""
-    """Under which headline a report has it."""
+    """The headline under which a report lists it."""
     statement: str = ""
-    """What the paper states, in words; a formula stands between backticks."""
+    """The paper's statement in words; a formula stands between backticks."""
     reading_of: str = ""
-    """Of which statement it is one reading."""
+    """The statement of which this is a reading."""
     reading: str = ""
-    """How that reading takes the statement, in words."""
+    """The interpretation of the statement, in words."""
     standing: Standing = "fair"
-    """How close the reading is to what is printed."""
+    """The standing of the reading: its closeness to the printed text."""
     remark: str = ""
-    """What a reader of the verdict should know beside it; formulas as in `statement`."""
+    """A remark for readers of the verdict; formulas as in `statement`."""
     confirmed_by: str = ""
-    """What computes it again with other code, such as the name of a test."""
+    """An independent computation that confirms it, such as the name of a test."""
     scene: str = ""
     """The scene that it speaks of: a `[[scene]]` of the file, or a file beside it."""
     scheme: SchemeName
@@ -77,43 +76,43 @@ class Claim(Frozen):
     def scene_of_its_own(
         self, label: str, scene: Scene, runs: Mapping[str, Any]
     ) -> tuple[str, Scene]:
-        """The scene for the claim's own H, with its `runs`, under a name that no other has."""
+        """Return a unique name, and the scene for the claim's own H with its `runs`."""
         return f"{label}: claim {self.id}", scene
 
     def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
-        """The scene that the claim speaks of and its name, where it names this one.
+        """Return the name and the scene of a claim that refers to this scene.
 
-        Raises InputError where the scene has nothing that it speaks of.
+        Raises InputError if the scene lacks what the claim is about.
         """
         if self.scheme not in scene.schemes:
-            known = ", ".join(scene.schemes)
-            raise InputError("scheme", self.scheme, f"is not in scene {name}: {known}")
+            names = ", ".join(scene.schemes)
+            raise InputError("scheme", self.scheme, f"is not in scene {name}: {names}")
         return name, scene
 
     def check_scene(self, scene: Scene) -> None:
-        """Raises InputError where the scene cannot be asked what the claim says."""
+        """Raise InputError if the claim cannot be judged on this scene."""
 
     # -- what it needs, and its verdict -----------------------------------------------------------
 
     def tasks(self, scene: Scene) -> Iterable[Task]:
-        """What is to be computed before the claim can be judged."""
+        """Return the tasks whose results the claim's verdict needs."""
         return ()
 
     def tasks_without_scene(self) -> Iterable[Task]:
-        """The same of a claim that speaks of no scene."""
+        """Return the tasks of a claim that has no scene."""
         return ()
 
-    def closer(self, scene: Scene) -> Scene | None:
-        """The scene with runs that may decide what those of this one leave open; None: there are
-        none."""
+    def refined_scene(self, scene: Scene) -> Scene | None:
+        """Return the scene with more accurate runs, which may decide the claim; None if there is
+        no such scene."""
         return None
 
     @abstractmethod
     def judge(self, findings: Findings) -> ClaimResult:
-        """The verdict with its evidence. Raises InputError where a scene or a run is missing."""
+        """Return the verdict with its evidence. Raises InputError if a scene or run is missing."""
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        """Who checked the proof by which it was `found`, one text each; none where nobody did."""
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Return who checked the proof of this `result`, one text each; empty if nobody did."""
         return ()
 
     def result(
@@ -124,7 +123,7 @@ class Claim(Frozen):
         proof: str = "",
         domain: Domain = EVERYWHERE,
     ) -> ClaimResult:
-        """The result for the claim; `details` is a table whose first row is its head."""
+        """Build the claim's result; `details` is a table whose first row is its head."""
         return ClaimResult(
             id=self.id,
             kind=self.kind,
@@ -147,27 +146,32 @@ class Claim(Frozen):
     # -- the same of other scenes -----------------------------------------------------------------
 
     def why_only_here(self) -> str:
-        """Why drawn scenes cannot be asked what the claim says; empty where they can."""
+        """Return why the claim cannot be made on drawn scenes; empty if it can."""
         return self.only_here
 
-    def of_one(self, hamiltonian: Hamiltonian) -> Self:
-        """What a claim of every H says of this one."""
+    def for_hamiltonian(self, hamiltonian: Hamiltonian) -> Self:
+        """Return the claim for this H alone that follows from a claim for every H."""
         return self
 
     def drawn_runs(self, step_size: Fraction, steps: int) -> dict[str, Any]:
-        """The keys of its runs, for a drawn run of so many steps."""
+        """Return the keys of its runs for a drawn run with this step size and number of steps."""
         return {"step_size": step_size, "steps": steps}
 
 
 # -- one that cannot be read ----------------------------------------------------------------------
 
+# These keys can be read even where the claim itself cannot: they keep its place in the
+# report and in the count of its statement.
 _OF_READINGS = ("reading_of", "reading", "standing")
 _KEPT = ("id", "kind", "source", "section", "statement", "scheme", *_OF_READINGS)
 
 
 class OutsideClaim(Claim):
-    """One that is too large, or in functions that are not known; so it is undecided, and the others
-    of its file are none the worse for it. `problem`: what is beyond the limits, in one line."""
+    """A claim that exceeds the limits or uses unknown functions.
+
+    It is UNDECIDED, so that the other claims of its file are still judged. `problem` says in one
+    line which limit it exceeds.
+    """
 
     on_scene = False
     only_here = "it could not be read"
@@ -178,6 +182,9 @@ class OutsideClaim(Claim):
 
 
 def outside(table: Mapping[str, Any], problem: str) -> OutsideClaim:
-    """The claim of that table. Raises pydantic's ValidationError where its texts are none."""
-    known = {key: table[key] for key in _KEPT if key in table}
-    return OutsideClaim.model_validate({"scheme": "", **known, "problem": problem})
+    """Build the undecided claim from its TOML table.
+
+    Raises pydantic's ValidationError if one of its texts is not a text.
+    """
+    texts = {key: table[key] for key in _KEPT if key in table}
+    return OutsideClaim.model_validate({"scheme": "", **texts, "problem": problem})

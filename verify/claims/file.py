@@ -1,4 +1,4 @@
-"""The file that holds claims, in TOML: read, and every error said with its line.
+"""The reader of claims files in TOML, which reports each error with its line.
 
     title = "A paper"
 
@@ -14,9 +14,10 @@
     kind = "defect_order"
     defect_order = 3
 
-`title` names the whole; `about` lines say what it is, before all else, and `[[left_out]]` tables
-name with `what` and `why` what of the paper is not claimed. See `verify.claims.readings` for claims
-See `verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of,
+`title` names the whole; `about` lines describe it at the head of a report, and `[[left_out]]`
+tables name, with `what` and `why`, the parts of the paper that no claim covers. See
+`verify.claims.readings` for claims that are readings of one statement,
+`verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of,
 `verify.scenes.paper_figures` for `[[figure]]`, and `verify.scenes.causes` for `[[cause]]`. A scene
 that a claim names is a `[[scene]]` of this file, or the file of that name beside it.
 """
@@ -34,19 +35,20 @@ from verify.claims.claim import Claim, outside
 from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
 from verify.claims.quantified import QuantifiedClaim
-from verify.claims.readings import settled
+from verify.claims.readings import settle_reading
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
-from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
+from verify.errors import NOT_GIVEN, InputError, LimitError, unknown_name
 from verify.files import read_text
 from verify.prose import read_prose
 from verify.scenes.causes import Cause
-from verify.scenes.mistakes.values import one_line
+from verify.scenes.mistakes.values import describe_first_error
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene
 from verify.scenes.toml_file import Lines, lines_of, read_toml, tables_of
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
-# Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
+# A claim needs one key of each group. If it gives one itself, it takes none of that group from the
+# defaults: `steps` of a claim would otherwise contradict a shared `time`.
 _GROUPS = (
     HAMILTONIAN_KEYS,
     ("time", "steps"),
@@ -54,14 +56,16 @@ _GROUPS = (
     ("q", "p", "initial_values"),
     ("printed", "lg_printed", "rows"),
 )
+# Errors name single values, which may stand in the file under a plural key; `number` stands under
+# none, and must not be looked up as `numbers`.
 _ALSO = {"parameter": ("parameters",), "step_size": ("step_sizes",), "number": ()}
 
 
 @dataclass
 class ClaimsFile:
-    """The claims in their order, with the scenes they speak of by the names they have for them.
+    """The claims in their order, with their scenes by the names that the claims use.
 
-    `about`: what a report says before all else; `left_out`: what is not claimed of it, and why.
+    `about`: the first lines of a report; `left_out`: what is not claimed, and why.
     """
 
     name: str
@@ -75,101 +79,114 @@ class ClaimsFile:
     lines: Lines = field(default_factory=lambda: Lines({}))
 
     def warnings(self, claims: Collection[Claim]) -> list[str]:
-        """What readers may take amiss of these claims, one line each, with its place."""
+        """Return a line with its place for each claim that readers may misunderstand."""
+        line_of = self.lines.line_of
         return [
-            f"{self.name}:{self.lines.of('claim', k, 'kind')}: claim {claim.id}: {claim.warning}"
+            f"{self.name}:{line_of('claim', k, 'kind')}: claim {claim.id}: {claim.warning}"
             for k, claim in enumerate(self.claims)
             if claim.warning and claim in claims
         ]
 
-    def located(self, index: int, claim: str, error: InputError) -> InputError:
-        """The error with the file, the claim and the line of the key that it names."""
-        said = error.name.removeprefix(f"claim {claim}").removeprefix(": ")
-        key = re.split(r"[^A-Za-z0-9_]", said)[0]
+    def locate_error(self, index: int, claim: str, error: InputError) -> InputError:
+        """Return the error with the file, the claim and the line of the key that it names."""
+        error_name = error.name.removeprefix(f"claim {claim}").removeprefix(": ")
+        key = re.split(r"[^A-Za-z0-9_]", error_name)[0]
         keys = (key, *_ALSO.get(key, (f"{key}s",)))
         # A key that is missing is looked for beside those that stand for it.
         others = [k for group in _GROUPS if set(keys) & set(group) for k in group]
         lines = self.lines
-        line = lines.of("claim", index, *keys, *others)
+        line = lines.line_of("claim", index, *keys, *others)
         if not any(lines.has("claim", index, k) for k in (*keys, *others)):
             shared = [k for k in keys if lines.has("defaults", 0, k)]
-            line = lines.of("defaults", 0, *shared) if shared else line
+            line = lines.line_of("defaults", 0, *shared) if shared else line
         where = f"{self.name}:{line}: claim {claim}"
-        return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
+        return type(error)(
+            f"{where}: {error_name}" if error_name else where, error.value, error.problem
+        )
 
 
 def load_claims(path: Path) -> ClaimsFile:
-    """The claims in a TOML file; InputError names the file, the line, the claim and the problem."""
+    """Read the claims in a TOML file; InputError names file, line, claim and problem."""
     data = read_toml(path)
-    found = ClaimsFile(path.name, "", lines=lines_of(read_text(path)))
+    file = ClaimsFile(path.name, "", lines=lines_of(read_text(path)))
     tables = data.get("claim")
     if not isinstance(tables, list) or not tables:
         raise InputError(
             "file", path.name, "must hold [[claim]] tables; a scene goes with verify report"
         )
+    # Sorted, so that the error does not depend on the order of a set.
     for key in sorted(set(data) - set(_ROOT)):
-        at = found.lines.of("", 0, key) if key in found.lines.tables[""][0].keys else (
-            found.lines.of(key)
+        line = file.lines.line_of("", 0, key) if key in file.lines.tables[""][0].keys else (
+            file.lines.line_of(key)
         )  # fmt: skip
         raise InputError(
-            f"{path.name}:{at}: {key}", data[key], "unknown; allowed: " + ", ".join(_ROOT)
+            f"{path.name}:{line}: {key}", data[key], "unknown; allowed: " + ", ".join(_ROOT)
         )
-    found.title = str(data.get("title", path.stem))
-    found.about = _texts(found, "about", data.get("about", []))
-    found.left_out = _left_out(found, data.get("left_out", []))
-    defaults = _defaults(found, data.get("defaults", {}))
-    scenes = NamedScenes(path, data.get("scene", []), found.lines)
+    file.title = str(data.get("title", path.stem))
+    file.about = _texts(file, "about", data.get("about", []))
+    file.left_out = _left_out(file, data.get("left_out", []))
+    defaults = _defaults(file, data.get("defaults", {}))
+    scenes = NamedScenes(path, data.get("scene", []), file.lines)
     for index, table in enumerate(tables):
         name = table.get("id") if isinstance(table, dict) else None
         name = name if isinstance(name, str) and name else f"number {index + 1}"
         try:
-            _add(found, table, defaults, scenes)
+            _add(file, table, defaults, scenes)
         except (ValidationError, InputError) as error:
-            said = error if isinstance(error, InputError) else one_line(error, f"claim {name}")
-            told = found.located(index, name, said)
-            if not isinstance(told, LimitError):
-                raise told from None
-            _append(found, outside({**defaults, **table}, str(told)))
-    _settle_readings(found)
-    _add_causes(found, data.get("cause", []))
-    _add_figures(found, data.get("figure", []), scenes)
-    return found
+            input_error = (
+                error
+                if isinstance(error, InputError)
+                else describe_first_error(error, f"claim {name}")
+            )
+            located_error = file.locate_error(index, name, input_error)
+            # A claim beyond the limits is kept as undecided; every other error ends the reading.
+            if not isinstance(located_error, LimitError):
+                raise located_error from None
+            _append(file, outside({**defaults, **table}, str(located_error)))
+    _settle_all_readings(file)
+    _add_causes(file, data.get("cause", []))
+    _add_figures(file, data.get("figure", []), scenes)
+    return file
 
 
-def _texts(file: ClaimsFile, key: str, given: Any) -> tuple[str, ...]:
-    """A list of texts under a key of the file itself."""
-    if not isinstance(given, list) or not all(isinstance(text, str) for text in given):
-        at = file.lines.of("", 0, key)
-        raise InputError(f"{file.name}:{at}: {key}", given, "is not a list of texts")
-    return tuple(given)
+def _texts(file: ClaimsFile, key: str, value: Any) -> tuple[str, ...]:
+    """Check a list of texts that stands under a top-level key of the file."""
+    if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
+        line = file.lines.line_of("", 0, key)
+        raise InputError(f"{file.name}:{line}: {key}", value, "is not a list of texts")
+    return tuple(value)
 
 
 def _left_out(file: ClaimsFile, tables: Any) -> tuple[tuple[str, str], ...]:
-    """What is not claimed, each with the reason."""
+    """Return what is not claimed, each with the reason."""
     for index, table in enumerate(tables_of(file.name, "left_out", tables)):
         if not isinstance(table, dict) or set(table) != {"what", "why"}:
-            at = file.lines.of("left_out", index)
-            raise InputError(f"{file.name}:{at}: left_out", table, "has `what` and `why`, both")
+            line = file.lines.line_of("left_out", index)
+            raise InputError(f"{file.name}:{line}: left_out", table, "has `what` and `why`, both")
     return tuple((str(table["what"]), str(table["why"])) for table in tables)
 
 
-def _settle_readings(file: ClaimsFile) -> None:
-    """Each reading with the texts of its statement; in a second pass, for it may stand later."""
-    found = []
+def _settle_all_readings(file: ClaimsFile) -> None:
+    """Give each reading the texts of its statement.
+
+    This is a second pass over the claims: whether statements are counted at all depends on claims
+    that may stand later in the file.
+    """
+    claims = []
     for index, claim in enumerate(file.claims):
         try:
-            found.append(settled(file.claims, index))
+            claims.append(settle_reading(file.claims, index))
         except InputError as error:
-            raise file.located(index, claim.id, error) from None
-    file.claims = found
+            raise file.locate_error(index, claim.id, error) from None
+    file.claims = claims
 
 
 def _add_causes(file: ClaimsFile, tables: Any) -> None:
-    """What explains several statements, after the claims that it speaks of."""
+    """Add the causes that explain several statements, once all claims are known."""
     ids = {claim.id for claim in file.claims}
     statements = {claim.reading_of for claim in file.claims if claim.reading_of}
     for index, table in enumerate(tables_of(file.name, "cause", tables)):
-        with _named(f"{file.name}:{file.lines.of('cause', index)}: cause"):
+        with _errors_located_at(f"{file.name}:{file.lines.line_of('cause', index)}: cause"):
             says = table.get("says") if isinstance(table, dict) else None
             if not isinstance(says, str) or not says:
                 raise InputError("says", says or NOT_GIVEN, "is a sentence; none stands here")
@@ -179,21 +196,21 @@ def _add_causes(file: ClaimsFile, tables: Any) -> None:
 
 
 @contextmanager
-def _named(where: str) -> Iterator[None]:
-    """Says of an error in a table of the file where it stands."""
+def _errors_located_at(where: str) -> Iterator[None]:
+    """Add the place in the file to the errors raised inside."""
     try:
         yield
     except ValidationError as error:
-        raise one_line(error, where) from None
+        raise describe_first_error(error, where) from None
     except InputError as error:
         raise InputError(f"{where}: {error.name}", error.value, error.problem) from None
 
 
 def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
-    """The figures to be made again, after the claims that they speak of."""
+    """Add the paper's figures that are to be drawn again, once all claims are known."""
     ids = {claim.id for claim in file.claims}
     for index, table in enumerate(tables_of(file.name, "figure", tables)):
-        with _named(f"{file.name}:{file.lines.of('figure', index)}: figure"):
+        with _errors_located_at(f"{file.name}:{file.lines.line_of('figure', index)}: figure"):
             figure = PaperFigure.model_validate(table)
             if figure.label in {other.label for other in file.figures}:
                 raise InputError("label", figure.label, "stands twice")
@@ -202,24 +219,26 @@ def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
 
 
 def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:
-    """The keys that claims share; each must be one that some kind of claim has."""
+    """Check the keys that claims share; each must be a key of some kind of claim."""
     if not isinstance(table, dict):
         raise InputError(f"{file.name}: defaults", table, "is not a table")
-    known = {key for model in models().values() for key in model.model_fields}
+    claim_keys = {key for model in models().values() for key in model.model_fields}
     for key in table:
-        if key == "id" or key not in known | {*HAMILTONIAN_KEYS, *RunKeys.model_fields}:
-            at = file.lines.of("defaults", 0, key)
-            raise InputError(f"{file.name}:{at}: defaults: {key}", table[key], "no claim shares it")
+        if key == "id" or key not in claim_keys | {*HAMILTONIAN_KEYS, *RunKeys.model_fields}:
+            line = file.lines.line_of("defaults", 0, key)
+            raise InputError(
+                f"{file.name}:{line}: defaults: {key}", table[key], "no claim shares it"
+            )
     return table
 
 
 def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: NamedScenes) -> None:
-    """Adds one claim with its scene, checked as far as that is possible before anything runs."""
+    """Add one claim with its scene, checked as far as possible before anything runs."""
     if not isinstance(table, dict):
         raise InputError("", table, "is not a table")
     kind = table.get("kind", defaults.get("kind", ""))
     if not isinstance(kind, str) or kind not in models():
-        raise unknown("kind", kind, models())
+        raise unknown_name("kind", kind, models())
     model = models()[kind]
     if not model.on_scene:
         _append(file, model.model_validate(table))
@@ -231,19 +250,22 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: Name
     keys = _with_defaults(model, table, defaults)
     hamiltonian_keys = {key: keys.pop(key) for key in HAMILTONIAN_KEYS if key in keys}
     runs = {key: keys[key] for key in model.run_keys if key in keys}
+    # The keys of runs that are no fields of the model were moved into `runs`; pydantic would refuse
+    # them as unknown keys.
     for key in set(runs) - set(model.model_fields):
         del keys[key]
     if "every" in hamiltonian_keys:
         keys["every"] = hamiltonian_keys["every"]
     claim = model.model_validate(keys)
     if isinstance(claim, QuantifiedClaim) and claim.every:
-        _of_every_alone(hamiltonian_keys)
+        _check_every_alone(hamiltonian_keys)
         claim.check_every()
         _append(file, claim)
         return
     name, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
     claim.check_scene(scene)
     _append(file, claim.model_copy(update={"scene": name}))
+    # Several claims may share one scene, which is then stored once, under its name.
     file.scenes.setdefault(name, scene)
 
 
@@ -253,7 +275,7 @@ def _append(file: ClaimsFile, claim: Claim) -> None:
     file.claims.append(claim)
 
 
-def _of_every_alone(hamiltonian_keys: Mapping[str, Any]) -> None:
+def _check_every_alone(hamiltonian_keys: Mapping[str, Any]) -> None:
     for key in hamiltonian_keys:
         if key != "every":
             problem = "says which H, and `every` says every H"
@@ -263,20 +285,21 @@ def _of_every_alone(hamiltonian_keys: Mapping[str, Any]) -> None:
 def _with_defaults(
     model: type[Claim], table: Mapping[str, Any], defaults: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """The claim's keys, with those of the defaults that its kind has and it does not say itself."""
+    """Return the claim's keys, completed by the defaults that apply to its kind."""
     fields = set(model.model_fields)
-    taken = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters"}
-    taken -= set() if "every" in fields else {"every"}
+    keys = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters"}
+    keys -= set() if "every" in fields else {"every"}
     if model.run_keys:
+        # Of the defaults a claim on one run prefers single values, and other claims prefer lists.
         one = model.one_run
-        taken |= set(model.run_keys)
-        taken -= {"initial_values"} if one and "q" in defaults else set()
-        taken -= {"step_sizes"} if one or "step_size" in fields else set()
-        taken -= {"step_size"} if not one and "step_sizes" in defaults else set()
-        taken -= {"q", "p"} if not one and "initial_values" in defaults else set()
+        keys |= set(model.run_keys)
+        keys -= {"initial_values"} if one and "q" in defaults else set()
+        keys -= {"step_sizes"} if one or "step_size" in fields else set()
+        keys -= {"step_size"} if not one and "step_sizes" in defaults else set()
+        keys -= {"q", "p"} if not one and "initial_values" in defaults else set()
     for group in _GROUPS:
-        taken -= set(group) if set(group) & set(table) else set()
+        keys -= set(group) if set(group) & set(table) else set()
     # `parameters` alone are of the H that the claims share.
     if not set(HAMILTONIAN_SOURCES) & set(table):
-        taken |= {key for key in HAMILTONIAN_SOURCES if key != "every" or "every" in fields}
-    return {**{key: value for key, value in defaults.items() if key in taken}, **table}
+        keys |= {key for key in HAMILTONIAN_SOURCES if key != "every" or "every" in fields}
+    return {**{key: value for key, value in defaults.items() if key in keys}, **table}

@@ -1,10 +1,10 @@
-"""What was found for the scenes that claims speak of."""
+"""The results computed for the scenes of claims."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.proof import ProofResult
@@ -30,33 +30,33 @@ class Findings:
     results: Mapping[str, Frozen] = field(default_factory=dict)
 
     def scene(self, name: str) -> Scene:
-        """The scene of that name. InputError where there is none."""
+        """Return the scene of that name. Raises InputError if there is none."""
         if name not in self.scenes:
-            raise unknown("claim.scene", name, self.scenes)
+            raise unknown_name("claim.scene", name, self.scenes)
         return self.scenes[name]
 
     def scene_of(self, claim: _Speaking) -> Scene:
-        """The claim's scene, which must have its scheme."""
+        """Return the claim's scene, which must have its scheme."""
         scene = self.scene(claim.scene)
-        _has_scheme(scene, claim.scheme)
+        _check_scheme(scene, claim.scheme)
         return scene
 
     def proof(self, scene: Scene, scheme: str) -> ProofResult:
-        """What was proved for the scene's H. InputError where the scene has not this scheme."""
-        _has_scheme(scene, scheme)
+        """Return the proof for the scene's H. Raises InputError if the scene lacks the scheme."""
+        _check_scheme(scene, scheme)
         result = self.results[proof_task(scene, scheme).key]
         assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's
         return result
 
     def runs(self, scene: Scene, scheme: str) -> list[RunResult]:
-        """The grid's runs by initial value, then step size; empty where none were needed."""
+        """Return the grid's runs by initial value, then step size; empty if none were needed."""
         return grid_runs(scene, scheme, self.results)
 
     def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
         return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))
 
 
-def _has_scheme(scene: Scene, scheme: str) -> None:
+def _check_scheme(scene: Scene, scheme: str) -> None:
     if scheme not in scene.schemes:
-        known = ", ".join(scene.schemes)
-        raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {known}")
+        names = ", ".join(scene.schemes)
+        raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {names}")

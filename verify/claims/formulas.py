@@ -1,10 +1,9 @@
-"""Claims that print formulas in p, q and h, held against the exact map of the scheme.
+"""Claims that print formulas in p, q and h, compared with the exact map of the scheme.
 
-A parameter that a formula of the claim names is a symbol there, so that the claim is checked for
-all its values; one that none of them names has the scene's value, where it has one.
-The difference between the printed and the computed expression is decided to be zero or not in the
-ring; where it is not, the evidence is the difference and a point at which it is enclosed away
-from zero.
+A parameter named in one of the claim's formulas is a symbol, so that the claim is checked for all
+its values; any other parameter has the scene's value, where there is one.
+The ring decides whether the difference between the printed and the computed expression is zero.
+Where it is not, the evidence is the difference and a point at which its enclosure excludes zero.
 """
 
 import re
@@ -30,12 +29,12 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
 from verify.proof.order import prove
 from verify.proof.proof import Proof
-from verify.prose import Formula, Number, Prose, joined, prose
+from verify.prose import Formula, Number, Prose, join_prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.schemes.maps.closed_form import h_inside
-from verify.schemes.maps.step_map import StepMap, grouped
+from verify.schemes.maps.step_map import StepMap, group_by_powers
 from verify.verdict import Verdict
 
 
@@ -47,7 +46,7 @@ class FormulaClaim(Claim):
 
     @abstractmethod
     def formulas(self) -> dict[str, str]:
-        """The claim's formulas by the keys under which they stand."""
+        """Return the claim's formulas by the keys under which they stand."""
 
     def check_scene(self, scene: Scene) -> None:
         self.read_formulas(_names(scene.exact_hamiltonian()))
@@ -55,73 +54,84 @@ class FormulaClaim(Claim):
     def read_formulas(
         self, others: Sequence[str]
     ) -> tuple[dict[str, sympy.Expr], list[Requirement]]:
-        """The formulas as expressions in p, q, h and these names, and what they ask for.
+        """Parse the formulas in p, q, h and these names; return them with their requirements.
 
-        InputError names which is none.
+        InputError names the formula that cannot be parsed.
         """
-        found, asked = {}, list[Requirement]()
-        for key, written in self.formulas().items():
-            more = ["p_next"] if key == "q_next" else []
-            names = ("p", "q", "h", *others, *more)
-            found[key], required = read(written, names, source=f"claim {self.id}: {key}")
-            asked += required
-        return found, asked
+        expressions, requirements = {}, list[Requirement]()
+        for key, text in self.formulas().items():
+            extra_names = ["p_next"] if key == "q_next" else []
+            names = ("p", "q", "h", *others, *extra_names)
+            expressions[key], required = read(text, names, source=f"claim {self.id}: {key}")
+            requirements += required
+        return expressions, requirements
 
     def read(self, findings: Findings) -> "Printed":
-        """The scheme's exact map, and the formulas with the same parameters as symbols."""
-        given = findings.scene_of(self).exact_hamiltonian()
-        formulas, asked = self.read_formulas(_names(given))
-        named = set(re.findall(r"[A-Za-z]\w*", " ".join(self.formulas().values())))
-        values = tuple((name, value) for name, value in given.values if name not in named)
+        """Return the scheme's exact map, and the formulas with the same parameters as symbols."""
+        hamiltonian = findings.scene_of(self).exact_hamiltonian()
+        formulas, requirements = self.read_formulas(_names(hamiltonian))
+        # A parameter that the formula names must stay a symbol; the others get the scene's values.
+        used_names = set(re.findall(r"[A-Za-z]\w*", " ".join(self.formulas().values())))
+        values = tuple(
+            (name, value) for name, value in hamiltonian.values if name not in used_names
+        )
         try:
-            step_map = step_map_of(replace(given, values=values), self.scheme)
+            step_map = step_map_of(replace(hamiltonian, values=values), self.scheme)
         except InputError:  # a scheme may take H for the given values only
-            step_map = step_map_of(given, self.scheme)
+            step_map = step_map_of(hamiltonian, self.scheme)
         h = step_map.hamiltonian
+        # The printed q′ may use p_next, whose formula is put into the requirements.
         first = {symbol("p_next"): formulas["p_next"]} if "p_next" in formulas else {}
-        domain = Domain.of(asked).replaced(first).replaced(h.put)
-        put = {key: h.put_in(expression) for key, expression in formulas.items()}
-        return Printed(step_map, put, step_map.domain & domain)
+        domain = (
+            Domain.from_requirements(requirements)
+            .substitute(first)
+            .substitute(h.value_substitutions)
+        )
+        expressions = {key: h.substitute_values(expression) for key, expression in formulas.items()}
+        return Printed(step_map, expressions, step_map.domain & domain)
 
     def from_gaps(self, gaps: Sequence["Gap"], holds: str, domain: Domain) -> ClaimResult:
-        """PROVED where all differences vanish, else what the first one that does not is."""
+        """Return PROVED if all differences vanish, else a result with the first that does not."""
         wrong = [gap for gap in gaps if gap.decision.zero is not True]
         wrong.sort(key=lambda gap: gap.decision.zero is None)  # a refutation before a doubt
         if not wrong:
             return self.result(Verdict.PROVED, holds, domain=domain)
         what, ring, x, decision = wrong[0]
-        shown = ring.factored(x) if h_inside(ring, x) else grouped(ring, x)
-        return self._refuted_or_not(what, to_text(shown), decision, domain)
+        difference = ring.as_product(x) if h_inside(ring, x) else group_by_powers(ring, x)
+        return self._refuted_or_not(what, to_text(difference), decision, domain)
 
     def differs_below(
         self, what: str, ring: Ring, x: Poly, power: int, domain: Domain = EVERYWHERE
     ) -> ClaimResult | None:
-        """The claim's result where printed − computed = x is not shown to be O(h^power)."""
+        """Return the claim's result if printed − computed = x is not proved to be O(h^power)."""
         expansion = Expansion(ring, x)
         for n in range(power):
-            own, coefficient = expansion.coefficient(n)
-            decision = domain.decide(own, coefficient)
+            coefficient_ring, coefficient = expansion.coefficient(n)
+            # A point with a nonzero difference outside the domain would refute nothing, so that the
+            # decision is made within it.
+            decision = domain.decide(coefficient_ring, coefficient)
             if decision.zero is not True:
-                term = H_STEP**n * own.factored(coefficient)
+                term = H_STEP**n * coefficient_ring.as_product(coefficient)
                 return self._refuted_or_not(what, to_text(term), decision, domain)
         return None
 
     def _refuted_or_not(
         self, what: str, difference: str, decision: Decision, domain: Domain
     ) -> ClaimResult:
-        begun = prose(what, ": printed − computed = ", Formula(difference))
+        start = prose(what, ": printed − computed = ", Formula(difference))
+        # "0" can be undecided if no point of the domain is found: the claim may then be void.
         if decision.zero is None and difference == "0":
-            nowhere = begun + ", but no point is found with " + domain.prose
-            return self.result(Verdict.UNDECIDED, nowhere, domain=domain)
+            no_point = start + ", but no point is found with " + domain.prose
+            return self.result(Verdict.UNDECIDED, no_point, domain=domain)
         if decision.zero is None:
-            doubt = begun + ", neither shown to vanish nor not to" + within(domain)
+            doubt = start + ", neither shown to vanish nor not to" + condition_text(domain)
             return self.result(Verdict.UNDECIDED, doubt, domain=domain)
-        refuted = begun + ", not zero" + witness_of(decision, "it is")
-        return self.result(Verdict.REFUTED, refuted, domain=domain)
+        refutation = start + ", not zero" + witness_of(decision, "it is")
+        return self.result(Verdict.REFUTED, refutation, domain=domain)
 
 
 def _names(hamiltonian: Hamiltonian) -> tuple[str, ...]:
-    """What its formulas may name beside p, q and h."""
+    """Return the names that its formulas may use in addition to p, q and h."""
     return (*hamiltonian.parameters, *(("t",) if hamiltonian.time_dependent else ()))
 
 
@@ -145,7 +155,8 @@ class Gap(NamedTuple):
 def gaps(
     step_map: StepMap, pairs: Sequence[tuple[str, sympy.Expr, sympy.Expr]], domain: Domain
 ) -> list[Gap]:
-    """printed − computed for each (what, printed, computed), decided in one ring, in the domain."""
+    """Return printed − computed for each (what, printed, computed), decided in one ring."""
+    # The formulas and the map must be in one ring: in it equal expressions have equal normal forms.
     differences = [printed - computed for _, printed, computed in pairs]
     field, elements = canonical_field(step_map.hamiltonian, *differences)
     ring = field.ring
@@ -155,26 +166,28 @@ def gaps(
     ]
 
 
-def within(domain: Domain) -> Prose:
-    """`, where q ≥ 0`; nothing where that is everywhere."""
+def condition_text(domain: Domain) -> Prose:
+    """Return the domain as `, where q ≥ 0`; empty if it is the whole plane."""
     return prose(", where ", domain.prose) if domain else prose("")
 
 
 @lru_cache(maxsize=64)
 def proof_of(hamiltonian: Hamiltonian, scheme: str) -> Proof:
-    """The proof for one H; several claims speak of one."""
+    """Return the proof for one H; it is cached because several claims use it."""
     return prove(step_map_of(hamiltonian, scheme), get(scheme))
 
 
 @lru_cache(maxsize=64)
 def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
-    """The scheme's exact map; several claims speak of one."""
+    """Return the scheme's exact map; it is cached because several claims use it."""
     return get(scheme).step_map(hamiltonian)
 
 
 def witness_of(decision: Decision, what: str) -> Prose:
-    """`; at q = 1 it is [2 +/- 1e-9]`, or nothing where the decision names no point."""
+    """Return `; at q = 1 it is [2 +/- 1e-9]`, or nothing if the decision names no point."""
     if not decision.witness:
         return prose("")
-    at = [prose(Formula(name), " = ", Number(str(x))) for name, x in decision.witness.items()]
-    return prose("; at ", joined(", ", at), f" {what} ", Formula(decision.enclosure))
+    coordinates = [
+        prose(Formula(name), " = ", Number(str(x))) for name, x in decision.witness.items()
+    ]
+    return prose("; at ", join_prose(", ", coordinates), f" {what} ", Formula(decision.enclosure))

@@ -1,9 +1,7 @@
-"""Claims and what was found for them → verdicts, asking for more where that may decide one.
+"""The verdicts of claims: planning their tasks, judging, and refining undecided results.
 
-What claims need computed, and nothing else: the tasks of their runs and proofs.
-
-What algebra decides on the spot needs no task. Where a proof gives what a claim asks of a run,
-that run is not made.
+Only the tasks that the claims need are planned. What algebra decides at once needs no task, and a
+run whose values follow from a proof is left out.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +13,7 @@ from operator import not_
 from verify.claims.claim import Claim
 from verify.claims.file import ClaimsFile
 from verify.claims.findings import Findings
-from verify.errors import InputError, LimitError, is_meant, nearest
+from verify.errors import InputError, LimitError, find_nearest, format_suggestion
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -30,66 +28,69 @@ from verify.verdict import Verdict
 def add_claims(
     plan: Plan, claims: Sequence[Claim], scenes: Mapping[str, Scene]
 ) -> dict[str, Frozen]:
-    """Adds to the plan what the claims need; returns what needs no run, by the task's key.
+    """Add the claims' tasks to the plan; return the results that need no run, by task key.
 
-    A claim whose scene is not among them needs what it does without one.
+    A claim whose scene is not among `scenes` adds its tasks that need no scene.
     """
-    known: dict[str, Frozen] = {}
+    results: dict[str, Frozen] = {}
     for claim in claims:
-        own = scenes.get(claim.scene)
-        for task in claim.tasks_without_scene() if own is None else claim.tasks(own):
+        scene = scenes.get(claim.scene)
+        for task in claim.tasks_without_scene() if scene is None else claim.tasks(scene):
             name = task.key
-            found = known.get(name) or task.proved()
-            if found is None:
+            # Several claims share tasks; a proof is asked only once for each.
+            result = results.get(name) or task.result_by_proof()
+            if result is None:
                 plan.need(task, f"claim {claim.id}")
             elif name not in plan.tasks:
-                known[name] = found
+                results[name] = result
                 plan.leave_out(f"the run of claim {claim.id}", "a proof gives what it asks for")
-    return known
+    return results
 
 
-def judged(
+def judge_claim(
     claim: Claim,
     scenes: Mapping[str, Scene],
     results: Mapping[str, Frozen],
     store: Store,
     where: Placement = ANYWHERE,
 ) -> ClaimResult:
-    """The claim's verdict; UNDECIDED where it is beyond what is handled exactly.
+    """Return the claim's verdict; UNDECIDED if it exceeds a limit of exact computation.
 
-    Where what was found leaves it open and the claim has a closer look to take, that is taken.
-    Raises InputError where a scene or a run is missing.
+    An undecided claim is judged again with more accurate runs as long as it proposes some.
+    Raises InputError if a scene or a run is missing.
     """
     try:
-        found = claim.judge(Findings(scenes, results))
-        while found.verdict is Verdict.UNDECIDED:
-            closer = claim.closer(scenes[claim.scene]) if claim.scene in scenes else None
-            if closer is None:
+        result = claim.judge(Findings(scenes, results))
+        # The loop ends, as `refined_scene` returns None beyond the greatest number of digits.
+        while result.verdict is Verdict.UNDECIDED:
+            refined = claim.refined_scene(scenes[claim.scene]) if claim.scene in scenes else None
+            if refined is None:
                 break
-            scenes = {**scenes, claim.scene: closer}
-            found = claim.judge(Findings(scenes, results_for(claim, scenes, store, where)))
+            scenes = {**scenes, claim.scene: refined}
+            result = claim.judge(Findings(scenes, results_for(claim, scenes, store, where)))
     except LimitError as error:
         return claim.result(Verdict.UNDECIDED, prose(str(error)))
-    return _marked(claim, found, Findings(scenes, results))
+    return _add_marks(claim, result, Findings(scenes, results))
 
 
-def _marked(claim: Claim, found: ClaimResult, findings: Findings) -> ClaimResult:
-    """With who checked its proof; without, where nobody did, or it is too large for that."""
-    if found.verdict not in (Verdict.PROVED, Verdict.REFUTED) or found.checked_by:
-        return found
+def _add_marks(claim: Claim, result: ClaimResult, findings: Findings) -> ClaimResult:
+    """Add to the result who checked its proof, unless nobody did or it is too large."""
+    if result.verdict not in (Verdict.PROVED, Verdict.REFUTED) or result.checked_by:
+        return result
     try:
-        return found.model_copy(update={"checked_by": tuple(claim.checked_by(found, findings))})
+        return result.model_copy(update={"checked_by": tuple(claim.checked_by(result, findings))})
+    # A proof too large for marks still stands: the verdict does not depend on who checked it.
     except InputError:
-        return found
+        return result
 
 
 def results_for(
     claim: Claim, scenes: Mapping[str, Scene], store: Store, where: Placement
 ) -> dict[str, Frozen]:
-    """What the claim needs, by the tasks' keys."""
+    """Compute the results that the claim needs, by task key."""
     plan = Plan()
-    known = add_claims(plan, [claim], scenes)
-    return {**known, **execute(plan, store, where=where)}
+    proved_results = add_claims(plan, [claim], scenes)
+    return {**proved_results, **execute(plan, store, where=where)}
 
 
 # -- the claims of a file --------------------------------------------------------------------------
@@ -97,61 +98,67 @@ def results_for(
 
 @dataclass(frozen=True)
 class Check:
-    """The claims of a file that are to be checked, and the plan of what they need."""
+    """The claims of a file that are to be checked, and the plan of their tasks.
+
+    `proved_results`: results that follow from proofs, and need no run, by task key.
+    """
 
     file: ClaimsFile
     claims: tuple[Claim, ...]
     plan: Plan
-    known: dict[str, Frozen]
+    proved_results: dict[str, Frozen]
 
     def run(
         self, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
     ) -> list[ClaimResult]:
-        """Each claim's verdict, in their order. InputError names the claim and its line.
+        """Return each claim's verdict in order. InputError names the claim and its line.
 
-        What algebra decides comes first: a formula that turns out to be none costs no run.
+        Exact claims come first, so that a formula that cannot be parsed costs no run.
         """
-        found: dict[str, ClaimResult] = {}
+        claim_results: dict[str, ClaimResult] = {}
         exact = [claim.exact for claim in self.claims]
         for claim in compress(self.claims, exact):
-            found[claim.id] = self._judge(claim, {}, store, where)
+            claim_results[claim.id] = self._judge(claim, {}, store, where)
         results = execute(self.plan, store, where=where, done=done)
         for claim in compress(self.claims, map(not_, exact)):
-            found[claim.id] = self._judge(claim, {**self.known, **results}, store, where)
-        return [found[claim.id] for claim in self.claims]
+            claim_results[claim.id] = self._judge(
+                claim, {**self.proved_results, **results}, store, where
+            )
+        return [claim_results[claim.id] for claim in self.claims]
 
-    def statements(self, found: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
-        """The statements all of whose readings are among the claims that are checked."""
-        chosen = {claim.id for claim in self.claims}
-        missing = {claim.reading_of for claim in self.file.claims if claim.id not in chosen}
-        return tuple(each for each in statements_of(found) if each.id not in missing)
+    def statements(self, claim_results: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
+        """Return the statements all of whose readings are among the checked claims."""
+        checked_ids = {claim.id for claim in self.claims}
+        # A statement is judged by all of its readings; with one of them left out it has no outcome.
+        missing = {claim.reading_of for claim in self.file.claims if claim.id not in checked_ids}
+        return tuple(each for each in statements_of(claim_results) if each.id not in missing)
 
     def _judge(
         self, claim: Claim, results: Mapping[str, Frozen], store: Store, where: Placement
     ) -> ClaimResult:
         try:
-            return judged(claim, self.file.scenes, results, store, where)
+            return judge_claim(claim, self.file.scenes, results, store, where)
         except InputError as error:
             index = self.file.claims.index(claim)
-            raise self.file.located(index, claim.id, error) from None
+            raise self.file.locate_error(index, claim.id, error) from None
 
 
 def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:
-    """All claims of the file, or those whose ids `only` names; `eq-*` names several.
+    """Select all claims of the file, or those whose ids match `only` (`eq-*`), and plan them.
 
-    Raises InputError for a name that no claim has.
+    Raises InputError for a pattern that no claim matches.
     """
-    for wanted in only:
-        if not any(_named(claim, wanted) for claim in file.claims):
+    for pattern in only:
+        if not any(_matches(claim, pattern) for claim in file.claims):
             names = [claim.id for claim in file.claims]
-            meant = is_meant(nearest(wanted.lower(), names))
-            problem = f"no claim has this id; {meant}there are: {', '.join(names)}"
-            raise InputError("--only", wanted, problem)
-    chosen = [c for c in file.claims if not only or any(_named(c, name) for name in only)]
+            suggestion = format_suggestion(find_nearest(pattern.lower(), names))
+            problem = f"no claim has this id; {suggestion}there are: {', '.join(names)}"
+            raise InputError("--only", pattern, problem)
+    claims = [c for c in file.claims if not only or any(_matches(c, name) for name in only)]
     plan = Plan()
-    known = add_claims(plan, chosen, file.scenes)
-    return Check(file, tuple(chosen), plan, known)
+    proved_results = add_claims(plan, claims, file.scenes)
+    return Check(file, tuple(claims), plan, proved_results)
 
 
-def _named(claim: Claim, wanted: str) -> bool:
-    return claim.id == wanted or fnmatchcase(claim.id, wanted)
+def _matches(claim: Claim, pattern: str) -> bool:
+    return claim.id == pattern or fnmatchcase(claim.id, pattern)

@@ -1,9 +1,9 @@
 """Claims about numbers, decided by runs whose values carry error bounds.
 
-A comparison counts only where the bounds do not touch what it is compared with; else the answer is
-UNDECIDED. Keys that say of which runs: `step_size` or `step_sizes`, `time` or `steps`, `q` and `p`
-or `initial_values`, and `digits`. What a claim on a named scene does not say of its runs is the
-scene's.
+A comparison counts only if the enclosures of both sides are disjoint; else the answer is
+UNDECIDED. These keys select the runs: `step_size` or `step_sizes`, `time` or `steps`, `q` and `p`
+or `initial_values`, and `digits`. A claim on a named scene takes from the scene's grid what it does
+not specify itself.
 """
 
 from abc import abstractmethod
@@ -42,7 +42,7 @@ _MORE_DIGITS = 5  # than are printed
 
 
 class RunKeys(Frozen):
-    """Of which runs; None where the claim does not say."""
+    """The keys that select runs; None where the claim does not specify them."""
 
     step_size: StepSize | None = None
     """The step size h."""
@@ -65,8 +65,8 @@ class RunKeys(Frozen):
 class RunClaim(Claim):
     """The base of the kinds that runs decide.
 
-    `always_own`: it takes certified runs of its own, whatever the scene has. `compares`: what it
-    compares, where that is always the same.
+    `always_own`: it takes certified runs of its own, even if the scene has a grid. `compares`: the
+    quantities that it compares, where they are the same for every claim of the kind.
     """
 
     exact = False
@@ -76,15 +76,15 @@ class RunClaim(Claim):
     compares: ClassVar[tuple[str, ...]] = ()
 
     def quantities(self) -> tuple[str, ...]:
-        """What it compares, of `verify.claims.runs.QUANTITIES`."""
+        """Return the names of its quantities, keys of `verify.claims.runs.QUANTITIES`."""
         return self.compares
 
     def observables(self) -> tuple[str, ...]:
-        """What its runs compute: what it asks for, and nothing else."""
+        """Return the observables that its quantities need, which its own runs compute."""
         return tuple(dict.fromkeys(o for name in self.quantities() for o in QUANTITIES[name].needs))
 
     def printed_texts(self) -> list[str]:
-        """The decimals that it prints, all of whose digits are to be known."""
+        """Return the printed decimals, all of whose digits its runs must certify."""
         return []
 
     # -- of which runs it speaks ------------------------------------------------------------------
@@ -97,7 +97,8 @@ class RunClaim(Claim):
     def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
         if not runs:
             super().scene_on(name, scene, runs)
-        # What names runs of the scene's grid among all of them asks for no others.
+        # A key that is also a field of the claim selects among the runs of the scene's grid; only
+        # the other keys require new runs.
         if self.always_own or set(runs) - set(type(self).model_fields):
             bare = {"schemes": (self.scheme,), "grid": None, "separation": (), "series": ()}
             return self._with_grid(name, scene.model_copy(update=bare), scene.grid, runs)
@@ -105,7 +106,7 @@ class RunClaim(Claim):
         return name, scene
 
     def check_grid(self, name: str, scene: Scene) -> None:
-        """Raises InputError where the scene has no runs that the claim could speak of."""
+        """Raise InputError if the scene has no runs that the claim could be about."""
         if scene.grid is None:
             raise InputError("scene", name, "has no [grid]; say which runs: step_size, steps, q, p")
 
@@ -120,6 +121,8 @@ class RunClaim(Claim):
         self, label: str, scene: Scene, base: Grid | None, runs: Mapping[str, Any]
     ) -> tuple[str, Scene]:
         keys = RunKeys.model_validate(runs)
+        # A decimal with n digits is decided by n + 5 certified ones, unless the value is very close
+        # to a border of rounding; then the claim is undecided, and may ask for more `digits`.
         longest = max((len(t.partition("e")[0]) for t in self.printed_texts()), default=0)
         grid = Grid(
             **_length(keys, base),
@@ -129,8 +132,9 @@ class RunClaim(Claim):
             digits=keys.digits or max(_LEAST_DIGITS, longest + _MORE_DIGITS),
             observables=self.observables(),
         )
-        made = {**scene.model_dump(), "grid": grid}
-        return f"{label}: claim {self.id}", Scene.model_validate(made)
+        # `model_validate` and not `model_copy`, which would not check the grid against the scene.
+        fields = {**scene.model_dump(), "grid": grid}
+        return f"{label}: claim {self.id}", Scene.model_validate(fields)
 
     # -- what it needs, and its verdict -----------------------------------------------------------
 
@@ -138,22 +142,23 @@ class RunClaim(Claim):
         return grid_tasks(scene, self.scheme)
 
     def judge(self, findings: Findings) -> ClaimResult:
-        """ENCLOSED for what was measured where all runs have rigorous bounds."""
-        found = self.compared(findings)
+        """Compare the runs' values; a MEASURED result of rigorous bounds alone is ENCLOSED."""
+        result = self.compare_or_undecided(findings)
         enclosed = all(run.error_kind == "enclosed" for run in self.runs(findings))
-        if found.verdict is Verdict.MEASURED and enclosed:
-            return found.model_copy(update={"verdict": Verdict.ENCLOSED})
-        if found.verdict is Verdict.REFUTED and not enclosed:
-            said = found.evidence + " (by estimated error bounds)"
-            return found.model_copy(update={"evidence": said})
-        return found
+        if result.verdict is Verdict.MEASURED and enclosed:
+            return result.model_copy(update={"verdict": Verdict.ENCLOSED})
+        # A refutation by estimated bounds is no proof, and says so.
+        if result.verdict is Verdict.REFUTED and not enclosed:
+            evidence = result.evidence + " (by estimated error bounds)"
+            return result.model_copy(update={"evidence": evidence})
+        return result
 
     def runs(self, findings: Findings) -> list[RunResult]:
-        """The runs whose bounds decide."""
+        """Return the runs whose bounds decide."""
         return findings.runs(findings.scene(self.scene), self.scheme)
 
-    def compared(self, findings: Findings) -> ClaimResult:
-        """As `compare`, and UNDECIDED where a run that it needs has no values."""
+    def compare_or_undecided(self, findings: Findings) -> ClaimResult:
+        """Return the result of `compare`, or UNDECIDED if a run that it needs has no values."""
         try:
             with precision():
                 return self.compare(findings)
@@ -162,14 +167,13 @@ class RunClaim(Claim):
 
     @abstractmethod
     def compare(self, findings: Findings) -> ClaimResult:
-        """The verdict by the values of its runs: MEASURED where it holds."""
+        """Return the verdict by the values of its runs: MEASURED if the claim holds."""
 
     def run_rows(self, findings: Findings, other: Scene | None = None) -> list[list[RunResult]]:
-        """The grid's runs: one row an initial value, its runs by increasing step size.
+        """Return the grid's runs: a row for each initial value, by increasing step size.
 
-        Of the claim's scene, or of an `other`.
-        Raises InputError where the scene does not run what the claim speaks of, and NoValueError
-        where a run ended without values.
+        They are the runs of the claim's scene, or of the `other` one. Raises InputError if the
+        scene lacks the claim's runs, and NoValueError if a run ended without values.
         """
         scene = other or findings.scene(self.scene)
         runs = findings.runs(scene, self.scheme)
@@ -180,12 +184,13 @@ class RunClaim(Claim):
                 raise NoValueError(run)
             if missing := [name for name in self.observables() if name not in run.values]:
                 raise InputError("claim", self.id, f"its scene does not observe {missing[0]}")
+        # Runs are stored by initial value, then step size, in the order of the grid.
         width = len(scene.grid.step_sizes)
         rows = [runs[i : i + width] for i in range(0, len(runs), width)]
         return [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
 
     def run_at(self, row: Sequence[RunResult], step_size: Fraction) -> RunResult:
-        """The run of a row with that step size; InputError where there is none."""
+        """Return the run of a row with that step size; InputError if there is none."""
         for run in row:
             if Fraction(run.step_size) == step_size:
                 return run
@@ -196,7 +201,7 @@ class QuantityClaim(RunClaim):
     """The base of the kinds that look at one quantity of runs."""
 
     quantity: Quantity
-    """What is looked at."""
+    """The quantity that the claim is about."""
 
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity,)

@@ -1,4 +1,4 @@
-"""Claims that say an order in h, what is proved of it, and what follows for one that is claimed."""
+"""Claims about an order in h, what is proved about it, and the verdict on the claimed order."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
@@ -9,15 +9,15 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.expressions.formula_text import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.formulas import proof_of, step_map_of, within, witness_of
+from verify.claims.formulas import condition_text, proof_of, step_map_of, witness_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import told_nearby
+from verify.proof.by_conditions import describe_nearby
 from verify.proof.claimed import Convergence
 from verify.proof.every_proof import EveryProof
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
-from verify.proof.printed_formulas import told_defect
+from verify.proof.printed_formulas import describe_nearby_defect
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
@@ -31,12 +31,13 @@ _BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
 @dataclass(frozen=True)
 class ProvedOrder:
-    """What is proved of an order: it is at least `least`, and no more than that where `exact`.
+    """A proved order in h: at least `least`, and not higher where `exact`.
 
-    `vanishes`: whether it is that of the zero function, which has every order; None where that is
-    not decided. `evidence` says so in one line. `domain`: where the map is defined; `exact_for`:
-    the parameters for which it is no more than `least`. `held`: what is said of an order that is as
-    claimed; ENCLOSED or MEASURED where it is that of exact coefficients near printed ones.
+    `vanishes`: True for the zero function, which has every order; None where that is undecided.
+    `evidence` states the order in one line. `domain`: where the map is defined; `exact_for`: the
+    parameters for which the order is not higher than `least`. `best_verdict`: the verdict on a
+    claimed order that agrees; ENCLOSED or MEASURED where the order is that of exact coefficients
+    near printed ones.
     """
 
     least: int
@@ -45,50 +46,52 @@ class ProvedOrder:
     evidence: str
     domain: Domain = EVERYWHERE
     exact_for: Domain = EVERYWHERE
-    held: Verdict = Verdict.PROVED
+    best_verdict: Verdict = Verdict.PROVED
 
     def holds_in(self, order: int, *, at_least: bool) -> Domain:
-        """Where the verdict holds: it need not depend on that the order is no higher."""
-        known = self.vanishes or order < self.least or (at_least and order == self.least)
-        return self.domain if known else self.domain & self.exact_for
+        """Return the domain of the verdict, which need not depend on the order being exact."""
+        # The domain of a lower bound is that of the map; only exactness restricts the parameters.
+        is_settled = self.vanishes or order < self.least or (at_least and order == self.least)
+        return self.domain if is_settled else self.domain & self.exact_for
 
     def verdict(self, order: int, *, at_least: bool) -> Verdict:
-        """Whether the order is this one, or with `at_least` no lower one."""
+        """Decide if the order equals the claimed one, or with `at_least` is not lower."""
         if at_least:
             if order <= self.least or self.vanishes:
-                return self.held
+                return self.best_verdict
             return Verdict.REFUTED if self.exact else Verdict.UNDECIDED
+        # The zero function has every order, so that "exactly this order" is refuted for it.
         if self.vanishes or order < self.least or (self.exact and order != self.least):
             return Verdict.REFUTED
-        return self.held if self.exact else Verdict.UNDECIDED
+        return self.best_verdict if self.exact else Verdict.UNDECIDED
 
 
-def as_claimed(vanishes: bool | None, claimed: bool) -> Verdict:
-    """Whether a defect vanishes or not, as it is claimed."""
+def vanishing_verdict(vanishes: bool | None, claimed: bool) -> Verdict:
+    """Return the verdict on the claim that a defect vanishes, or does not."""
     if vanishes is None:
         return Verdict.UNDECIDED
     return Verdict.PROVED if vanishes == claimed else Verdict.REFUTED
 
 
-def judge_vanishing(claim: Claim, known: ProvedOrder, claimed: bool) -> ClaimResult:
-    """Whether what the order is of vanishes, or does not, as it is claimed."""
-    domain = known.domain & known.exact_for
-    verdict = as_claimed(known.vanishes, claimed)
-    return claim.result(verdict, known.evidence + within(domain), domain=domain)
+def judge_vanishing(claim: Claim, order: ProvedOrder, claimed: bool) -> ClaimResult:
+    """Judge the claim that the function with this order vanishes, or does not."""
+    domain = order.domain & order.exact_for
+    verdict = vanishing_verdict(order.vanishes, claimed)
+    return claim.result(verdict, order.evidence + condition_text(domain), domain=domain)
 
 
-def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
-    """What is known of exact coefficients near printed ones, if it is of such."""
+def with_nearby(order: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
+    """Return the order with the evidence for exact coefficients near printed ones, if any."""
     if near is None:
-        return known
-    evidence = prose(known.evidence, "; ", told_nearby(near))
-    return replace(known, evidence=evidence, held=near.verdict)
+        return order
+    evidence = prose(order.evidence, "; ", describe_nearby(near))
+    return replace(order, evidence=evidence, best_verdict=near.verdict)
 
 
 class OrderedClaim(QuantifiedClaim):
-    """The base of the kinds that say an order; with `at_least`, that it is no lower one.
+    """The base of the kinds that claim an order, or with `at_least` a lower bound of one.
 
-    `form`: of which form it is the order, S or, in any number of degrees of freedom, det J − 1.
+    `form`: the form whose order is claimed, S or, in any number of degrees of freedom, det J − 1.
     """
 
     form: ClassVar[Literal["S", "ΔJ"]] = "S"
@@ -97,77 +100,84 @@ class OrderedClaim(QuantifiedClaim):
     """Whether a higher order is as claimed, too."""
 
     @property
-    def claimed(self) -> int:
-        """The order that is claimed, which stands under the name of the kind."""
+    def claimed_order(self) -> int:
+        """The claimed order, which stands under the name of the kind."""
         return int(getattr(self, self.kind))
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        return self.judge_known(order_of(self, findings, self.form))
+        return self.judge_proved(order_of(self, findings, self.form))
 
     def judge_every(self, proof: EveryProof) -> ClaimResult:
         preserves, order = proof.area_preserving, proof.order
-        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
-        return self.judge_known(known)
+        proved_order = ProvedOrder(
+            order or 0, order is not None, preserves, proof.reason, proof.domain
+        )
+        return self.judge_proved(proved_order)
 
-    def judge_known(self, known: ProvedOrder) -> ClaimResult:
-        """Whether what is proved is as claimed."""
-        verdict = known.verdict(self.claimed, at_least=self.at_least)
-        domain = known.holds_in(self.claimed, at_least=self.at_least)
-        return self.result(verdict, known.evidence + within(domain), domain=domain)
+    def judge_proved(self, proved_order: ProvedOrder) -> ClaimResult:
+        """Return the verdict on the claimed order, given the proved one."""
+        verdict = proved_order.verdict(self.claimed_order, at_least=self.at_least)
+        domain = proved_order.holds_in(self.claimed_order, at_least=self.at_least)
+        return self.result(verdict, proved_order.evidence + condition_text(domain), domain=domain)
 
-    def of_one(self, hamiltonian: Hamiltonian) -> Self:
-        """An order that is not passed for all H together may well be passed for one."""
+    def for_hamiltonian(self, hamiltonian: Hamiltonian) -> Self:
+        """Return the claim of at least this order, for a single H may have a higher one."""
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
 
 
 def order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
-    """The order of S = JᵀΩJ − Ω of the claim's scheme for its scene's H, or of ΔJ = det J − 1; in
-    the plane S is ΔJ·Ω."""
+    """Return the order of S = JᵀΩJ − Ω, or of ΔJ = det J − 1, of the claim's scheme and H.
+
+    In the plane S is ΔJ·Ω, so that both have the same order.
+    """
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     order_in = {AREA: _delta_j_order, SYMPLECTIC: _order_in_degrees}[hamiltonian.structure]
-    known = order_in(hamiltonian, claim.scheme, of_s=form == "S")
-    told = hamiltonian.structure.defect if form == "S" else form
-    return _with_printed(known, claim.scheme, hamiltonian, told)
+    order = order_in(hamiltonian, claim.scheme, of_s=form == "S")
+    form_name = hamiltonian.structure.defect if form == "S" else form
+    return _with_printed(order, claim.scheme, hamiltonian, form_name)
 
 
 def _with_printed(
-    known: ProvedOrder, scheme: str, hamiltonian: Hamiltonian, form: str
+    order: ProvedOrder, scheme: str, hamiltonian: Hamiltonian, form: str
 ) -> ProvedOrder:
-    """The same, of exact coefficients where a term is what the digits of printed ones leave."""
-    power = known.least if known.exact else None
+    """Return the order for exact coefficients, if a term only comes from rounded printed ones."""
+    power = order.least if order.exact else None
     near = nearby_defect_of(get(scheme), hamiltonian, power)
     if near is None:
-        return known
+        return order
+    # Rounded printed coefficients leave a tiny term at a low power of h. `near` is the order for
+    # exact coefficients close to them, with their first condition that is wrong, if any.
     exact = near.wrong is not None
     return replace(
-        known,
+        order,
         least=near.order + 1,
         exact=exact,
         vanishes=False if exact else None,
-        evidence=prose(known.evidence, "; ", told_defect(near, form)),
-        held=near.verdict,
+        evidence=prose(order.evidence, "; ", describe_nearby_defect(near, form)),
+        best_verdict=near.verdict,
     )
 
 
 def _order_in_degrees(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> ProvedOrder:
-    """The order of S, or of det J − 1."""
+    """Return the order of S, or of det J − 1, in several degrees of freedom."""
     proof = proof_of(hamiltonian, scheme)
     vanishes, order = proof.area_preserving, proof.volume_order
+    # S of several degrees can vanish only where det J − 1 does; the other way it may not.
     if of_s:
         vanishes, order = proof.symplectic, proof.order
     if order is None:
-        said = prose("det J ≡ 1" if vanishes else "the order of det J − 1 is not decided")
-        evidence = proof.reason if of_s else said
+        sentence = prose("det J ≡ 1" if vanishes else "the order of det J − 1 is not decided")
+        evidence = proof.reason if of_s else sentence
         return ProvedOrder(_BEYOND if vanishes else 0, False, vanishes, evidence, proof.domain)
-    what, shown = ("S", f", by {proof.entry}") if of_s else ("det J − 1", "")
-    evidence = prose(f"{what} has order exactly ", Formula(f"h^{order}"), shown)
+    what, by_entry = ("S", f", by {proof.entry}") if of_s else ("det J − 1", "")
+    evidence = prose(f"{what} has order exactly ", Formula(f"h^{order}"), by_entry)
     return ProvedOrder(order, True, False, evidence, proof.domain)
 
 
 def _delta_j_order(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> ProvedOrder:
-    """The order of ΔJ in h, which S has in the plane."""
+    """Return the order of ΔJ in h, which is also that of S in the plane."""
     step_map = step_map_of(hamiltonian, scheme)
-    leading = leading_of(step_map).within(step_map.domain)
+    leading = leading_of(step_map).restrict_to(step_map.domain)
     decision = leading.decision
     if decision.zero is True:
         evidence = prose("ΔJ is the zero function: det J ≡ 1")
@@ -186,30 +196,36 @@ def _delta_j_order(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> Prov
     return ProvedOrder(power, True, False, evidence, step_map.domain, leading.domain)
 
 
-def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
+def flow_agreement(claim: Claim, findings: Findings) -> ProvedOrder:
+    """Return the power of h up to which the claim's map agrees with the exact flow."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:  # by the map alone: nothing is asked of ΔJ
         step_map = step_map_of(hamiltonian, claim.scheme)
-        found, near = convergence_of_scheme(step_map, get(claim.scheme))
-        return _flow_order(found, near, step_map.domain, MOST_ORDERS)
+        convergence, near = convergence_of_scheme(step_map, get(claim.scheme))
+        return _flow_order(convergence, near, step_map.domain, MOST_ORDERS)
     proof = proof_of(hamiltonian, claim.scheme)
-    found = Convergence(proof.convergence_order, proof.convergence_decided)
-    return _flow_order(found, proof.nearby, proof.domain)
+    convergence = Convergence(proof.convergence_order, proof.convergence_decided)
+    return _flow_order(convergence, proof.nearby, proof.domain)
 
 
 def _flow_order(
-    found: Convergence, near: NearbyOrder | None, domain: Domain, most: int = 0
+    convergence: Convergence, near: NearbyOrder | None, domain: Domain, highest: int = 0
 ) -> ProvedOrder:
-    """`most`: up to which power of h all agree where all do that were looked at; 0: not known."""
-    if found.order is None:
-        orders = f"all orders looked at{f', {most}' if most else ''}"
+    """Return the order of agreement with the exact flow, with its evidence.
+
+    `highest`: the greatest power of h that was examined, or 0 if that is unknown; it is the proved
+    order where all examined powers agree.
+    """
+    if convergence.order is None:
+        orders = f"all orders looked at{f', {highest}' if highest else ''}"
         evidence = prose(f"the map agrees with the exact flow in {orders}")
-        return ProvedOrder(most, False, None, evidence, domain)
-    agrees = prose("the map agrees with the exact flow up to ", Formula(f"h^{found.order}"))
-    if found.order < 0:
+        return ProvedOrder(highest, False, None, evidence, domain)
+    agrees = prose("the map agrees with the exact flow up to ", Formula(f"h^{convergence.order}"))
+    if convergence.order < 0:
         agrees = prose("the map does not agree with the exact flow even at h = 0")
-    more = " and no further" if found.decided else "; whether further is not decided"
-    exact_for = found.exact_for() if found.decided else EVERYWHERE
-    known = ProvedOrder(found.order, found.decided, False, agrees + more, domain, exact_for)
-    return told_of(known, near)
+    suffix = " and no further" if convergence.decided else "; whether further is not decided"
+    exact_for = convergence.exact_for() if convergence.decided else EVERYWHERE
+    order = ProvedOrder(
+        convergence.order, convergence.decided, False, agrees + suffix, domain, exact_for
+    )
+    return with_nearby(order, near)

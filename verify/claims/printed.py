@@ -1,7 +1,7 @@
-"""What papers print: decimals, true where a value's whole ball rounds to what is printed.
+"""Printed decimals, which are right if the value's whole ball rounds to them.
 
-A value on the border of two roundings counts for both. Where only a part of the ball rounds to what
-is printed, the answer is UNDECIDED.
+A value on the border of two roundings counts for both. If only a part of the ball rounds to the
+printed decimal, the answer is UNDECIDED.
 """
 
 import re
@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from verify.arithmetic.arb import Ball, bounds, fixed, in_reach, shown
+from verify.arithmetic.arb import Ball, bounds, format_ball, format_fixed, is_representable
 from verify.claims.runs import QUANTITIES
 from verify.errors import InputError
 from verify.scenes.results.run import RunResult
@@ -18,17 +18,18 @@ from verify.scenes.results.run import RunResult
 _PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)
 
 
-def _as_printed(given: Any) -> str:
-    """The text of a number as a paper prints it; TOML's decimals are texts already."""
-    shown = str(given) if isinstance(given, int) and not isinstance(given, bool) else given
-    if isinstance(shown, str):
-        shown = shown.strip().replace("\N{MINUS SIGN}", "-").replace("E", "e")
-        if _PRINTED.fullmatch(shown):
-            return shown
-    raise InputError("number", given, "is not a printed decimal, such as -7.3010 or 1.53e-17")
+def _normalize(value: Any) -> str:
+    """Normalize a number as a paper prints it; TOML's decimals are texts already."""
+    # TOML has already turned decimals into texts; a bool is an int in Python and no number here.
+    text = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    if isinstance(text, str):
+        text = text.strip().replace("\N{MINUS SIGN}", "-").replace("E", "e")
+        if _PRINTED.fullmatch(text):
+            return text
+    raise InputError("number", value, "is not a printed decimal, such as -7.3010 or 1.53e-17")
 
 
-Printed = Annotated[str, BeforeValidator(_as_printed)]
+Printed = Annotated[str, BeforeValidator(_normalize)]
 Row = Annotated[tuple[Printed, ...], Field(min_length=1, max_length=1000)]
 
 
@@ -36,7 +37,7 @@ Row = Annotated[tuple[Printed, ...], Field(min_length=1, max_length=1000)]
 
 
 def holds(run: RunResult, quantity: str, printed: str) -> bool | None:
-    """Whether the run's value rounds to what is printed; None where its ball does in part."""
+    """Return True if the run's value rounds to the printed one; None if only in part."""
     source = run.values[QUANTITIES[quantity].needs[0]]
     if quantity.startswith("lg") and Fraction(source.value) == Fraction(source.bound) == 0:
         return False  # lg 0 is no number
@@ -44,15 +45,17 @@ def holds(run: RunResult, quantity: str, printed: str) -> bool | None:
 
 
 def places(printed: str) -> int:
-    """How many decimals: the unit of the last digit is 10^−places."""
+    """Return the number of decimals: the unit of the last digit is 10^−places."""
     mantissa, _, exponent = printed.partition("e")
     return len(mantissa.partition(".")[2]) - int(exponent or 0)
 
 
 def rounds_to(value: Ball, printed: str) -> bool | None:
-    """Whether the value's whole ball rounds to the printed decimal; None where only a part does."""
-    if not in_reach(value):
+    """Return True if the whole ball rounds to the printed decimal; None if only a part does."""
+    if not is_representable(value):
         return None
+    # A number rounds to the printed one if it differs by at most half a unit of the last digit;
+    # the border counts, since papers round halves either way.
     half = Fraction(10) ** -places(printed) / 2
     low, high = bounds(value)
     if abs(low - Fraction(printed)) <= half and abs(high - Fraction(printed)) <= half:
@@ -64,19 +67,19 @@ def rounds_to(value: Ball, printed: str) -> bool | None:
 
 
 def shown_to(run: RunResult, quantity: str, digits: int) -> str:
-    """The value to so many digits."""
+    """Format the run's value of a quantity to so many digits."""
     value = QUANTITIES[quantity](run)
     if quantity.startswith("lg"):
-        return fixed(value, max(1, digits - 2)) if in_reach(value) else "unknown"
-    return shown(value, digits)
+        return format_fixed(value, max(1, digits - 2)) if is_representable(value) else "unknown"
+    return format_ball(value, digits)
 
 
 def cell(run: RunResult, quantity: str, places: int) -> str:
-    """The value as a table has it: a logarithm to so many decimals."""
+    """Format the value for a table: a logarithm to so many decimals."""
     value = QUANTITIES[quantity](run)
-    return fixed(value, max(1, places)) if quantity.startswith("lg") else shown(value)
+    return format_fixed(value, max(1, places)) if quantity.startswith("lg") else format_ball(value)
 
 
 def short(value: Ball, quantity: str) -> str:
-    """The value to a few digits."""
-    return fixed(value, 2) if quantity.startswith("lg") else shown(value, 3)
+    """Format the value to a few digits."""
+    return format_fixed(value, 2) if quantity.startswith("lg") else format_ball(value, 3)

@@ -1,9 +1,9 @@
-"""A claim that may be made of every H, or of every H = T(p) + V(q); then it has no scene.
+"""Claims that may be made for every H, or for every H = T(p) + V(q); then they have no scene.
 
-Either may depend on time.
+H may depend on time in either case.
 
-"For every H" means: whatever H is. ΔJ = c h^r + … then has a c made of derivatives of H, and c is
-not zero for some H; det J ≡ 1 is false where some H has another det J.
+A claim for every H with ΔJ = c h^r + … says that c is an expression in the derivatives of H that
+does not vanish for some H; det J ≡ 1 is false if det J differs from 1 for some H.
 """
 
 from abc import abstractmethod
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     AboutAll = frozenset[About]
 
-# What of a proof a claim asks about.
+# The part of a proof on which a claim relies, so that only the marks of that part are shown.
 OF_DELTA_J: "AboutAll" = frozenset({"volume"})
 OF_S: "AboutAll" = frozenset({"defect"})
 OF_MAP: "AboutAll" = frozenset({"map"})
@@ -38,64 +38,66 @@ Every = Literal[
 
 
 class QuantifiedClaim(Claim):
-    """The base of the kinds that have `every`. `about`: what of a proof it asks about; see
-    `verify.proof.checked.proved`."""
+    """The base of the kinds that have `every`.
+
+    `about`: the parts of a proof on which it relies; see `verify.proof.checked.proved`.
+    """
 
     about: ClassVar["AboutAll"] = frozenset()
 
     every: Every | None = None
-    """Of which H, all of them, in place of one; `in time`: of all that depend on t, too."""
+    """The family of H for which it is claimed, in place of one H; `in time`: H may depend on t."""
 
     @property
-    def looked_at(self) -> int:
-        """The order of the map that a proof is to look at, at least."""
+    def least_order(self) -> int:
+        """The least order of the map up to which a proof must examine it."""
         return 0
 
     def judge(self, findings: Findings) -> ClaimResult:
-        """By the proof for every H that it is made of, or for the scene's."""
+        """Judge by the proof for every H of the claim, or for the scene's H."""
         if self.every is None:
             return self.judge_one(findings)
         from verify.proof.every import prove_every
 
-        return self.judge_every(prove_every(self.scheme, **self._of_which))
+        return self.judge_every(prove_every(self.scheme, **self._proof_options))
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        """By the proof for every H that it is made of, or for the scene's."""
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Return the marks of the proof for every H of the claim, or for the scene's H."""
         if self.every is None:
             return marks_for_scene(self, findings, self.about)
-        return marks_for_every(self.scheme, self.about, **self._of_which)
+        return marks_for_every(self.scheme, self.about, **self._proof_options)
 
     @property
-    def _of_which(self) -> dict[str, Any]:
-        """Which proof for every H it asks for."""
-        return {"separable": self.of_separable, "timed": self.in_time, "least": self.looked_at}
+    def _proof_options(self) -> dict[str, Any]:
+        """The arguments of `prove_every` for the proof that it needs."""
+        return {"separable": self.of_separable, "timed": self.in_time, "least": self.least_order}
 
     @property
     def of_separable(self) -> bool:
-        """Whether it is made of every H = T + V."""
+        """True if it is a claim for every H = T + V."""
         return self.every is not None and self.every.startswith(EVERY_SEPARABLE)
 
     @property
     def in_time(self) -> bool:
-        """Whether it is made of every H that depends on time."""
+        """True if it is a claim for every H that depends on time."""
         return self.every is not None and self.every.endswith(_IN_TIME)
 
     @abstractmethod
     def judge_one(self, findings: Findings) -> ClaimResult:
-        """The verdict for the scene's H."""
+        """Return the verdict for the scene's H."""
 
     @abstractmethod
     def judge_every(self, proof: "EveryProof") -> ClaimResult:
-        """The verdict for every H, by what is proved for all of them."""
+        """Return the verdict for every H, by the proof for all of them."""
 
     def check_every(self) -> None:
-        """Raises InputError where the claim cannot be made of every H that it says."""
+        """Raise InputError if the scheme does not admit a claim for every such H."""
         every_h = get(self.scheme).every_h
         if every_h is None:
             raise InputError("scheme", self.scheme, "is given for one H, not for every H")
-        own = EVERY_SEPARABLE + _IN_TIME * self.in_time
+        quantifier = EVERY_SEPARABLE + _IN_TIME * self.in_time
         if every_h.separable and not self.of_separable:
-            problem = f"{self.scheme} takes H = T(p) + V(q) only; say {own!r}"
+            problem = f"{self.scheme} takes H = T(p) + V(q) only; say {quantifier!r}"
             raise InputError("every", self.every, problem)
         if self.in_time and self.of_separable and not every_h.separable:
             problem = f"{self.scheme} takes more than that; say 'hamiltonian in time'"
@@ -104,7 +106,7 @@ class QuantifiedClaim(Claim):
     def why_only_here(self) -> str:
         return "" if self.every else self.only_here
 
-    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+    def for_hamiltonian(self, hamiltonian: Hamiltonian) -> Self:
         return self.model_copy(update={"every": None})
 
 
@@ -112,7 +114,7 @@ class QuantifiedClaim(Claim):
 
 
 def marks_for_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tuple[Prose, ...]:
-    """The marks of the proof for the H of the claim's scene."""
+    """Return the marks of the proof for the H of the claim's scene."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     return marks_for_hamiltonian(hamiltonian, claim.scheme, about)
 
@@ -121,23 +123,23 @@ def marks_for_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tupl
 def marks_for_hamiltonian(
     hamiltonian: Hamiltonian, name: str, about: "AboutAll"
 ) -> tuple[Prose, ...]:
-    """The marks of the proof for this H."""
+    """Return the marks of the proof for this H."""
     from verify.claims.formulas import proof_of
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import of_one_hamiltonian
+    from verify.proof.checked.proved import proved_for_one
 
     proof = proof_of(hamiltonian, name)
-    return marks(of_one_hamiltonian(proof, hamiltonian, get(name), about))
+    return marks(proved_for_one(proof, hamiltonian, get(name), about))
 
 
 @lru_cache(maxsize=64)
 def marks_for_every(
     name: str, about: "AboutAll", *, separable: bool, timed: bool, least: int
 ) -> tuple[Prose, ...]:
-    """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
+    """Return the marks of the proof for every H of this family; `least` as for `prove_every`."""
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import of_every_hamiltonian
+    from verify.proof.checked.proved import proved_for_every
     from verify.proof.every import prove_every
 
     proof = prove_every(name, separable=separable, timed=timed, least=least)
-    return marks(of_every_hamiltonian(proof, get(name), about))
+    return marks(proved_for_every(proof, get(name), about))

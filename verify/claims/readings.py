@@ -1,4 +1,4 @@
-"""Which claims of a file are readings of one statement: checked, and its texts handed on.
+"""Readings of one statement: the claims of a file that share its texts, and their checks.
 
     [[claim]]
     id = "eq-9"
@@ -25,10 +25,10 @@ from verify.errors import NOT_GIVEN, InputError
 _KEYS = {"reading_of", "reading", "standing"}
 
 
-def settled(claims: Sequence[Claim], index: int) -> Claim:
-    """The claim at this place with its statement's id and texts, if statements are counted.
+def settle_reading(claims: Sequence[Claim], index: int) -> Claim:
+    """Return the claim at this place with its statement's id and texts, if these are counted.
 
-    Raises InputError, whose name is the key, where what it says of its statement cannot be.
+    Raises InputError, whose name is the key, if its keys contradict each other or its statement.
     """
     claim = claims[index]
     if not any(_KEYS & each.model_fields_set for each in claims):
@@ -39,7 +39,8 @@ def settled(claims: Sequence[Claim], index: int) -> Claim:
             raise InputError("reading_of", claim.reading_of, problem)
         return claim
     if claim.reading_of:
-        return _of_another(claims, index)
+        return _settle_other_reading(claims, index)
+    # A statement that is only read strictly, or as a misprint, would count as none of the paper's.
     fair = [c for c in claims if claim.id in (c.id, c.reading_of) and c.standing == "fair"]
     if not fair:
         problem = "no reading of this statement is fair, so that it is none of the paper"
@@ -47,7 +48,7 @@ def settled(claims: Sequence[Claim], index: int) -> Claim:
     return claim.model_copy(update={"reading_of": claim.id})
 
 
-def _of_another(claims: Sequence[Claim], index: int) -> Claim:
+def _settle_other_reading(claims: Sequence[Claim], index: int) -> Claim:
     claim = claims[index]
     first = next((c for c in claims[:index] if c.id == claim.reading_of), None)
     if first is None:

@@ -1,4 +1,4 @@
-"""Claims about regions that maps carry."""
+"""Claims about the images of regions under maps."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -10,7 +10,7 @@ from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import NOT_GIVEN, InputError
-from verify.execution.study import known_results
+from verify.execution.study import results_of_tasks
 from verify.execution.task import Task
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.regions import FlowImage
@@ -23,36 +23,36 @@ HEAD = ("h", "N", "t")
 
 
 class Image(NamedTuple):
-    """The image of a region after N steps of size h, with what was found of it."""
+    """The image of a region after N steps of size h, with the result for it."""
 
     h: str
-    found: FlowImage
+    result: FlowImage
 
     @property
     def cells(self) -> tuple[str, str, str]:
         """Its h, N and t."""
-        return self.h, str(self.found.steps), self.found.time
+        return self.h, str(self.result.steps), self.result.time
 
     @property
     def place(self) -> Prose:
-        """Which image it is."""
-        return prose("h = ", Number(self.h), f", N = {self.found.steps}")
+        """The step size and the number of steps that identify the image."""
+        return prose("h = ", Number(self.h), f", N = {self.result.steps}")
 
     @property
     def change(self) -> "Ends":
-        """The change of its area; 0 where its sign is not known."""
-        return around(self.found.area_change, self.found.probe_error)
+        """The bounds of the |change| of its area; the lower one is 0 if its sign is unknown."""
+        return size_bounds(self.result.area_change, self.result.probe_error)
 
 
 class Ends(NamedTuple):
-    """The least and the greatest that a size may be."""
+    """The lower and the upper bound of a size."""
 
     low: Fraction
     high: Fraction
 
 
 class FlowClaim(Claim):
-    """Of images by a scheme, or by the `exact flow`, in the scene's `[[flow]]` of these sources."""
+    """The base of claims about images by a scheme, or by the `exact flow`, in `[[flow]]`s."""
 
     exact = False
     only_here = "a region that is carried is that of its own scene"
@@ -65,14 +65,14 @@ class FlowClaim(Claim):
         raise InputError("scene", NOT_GIVEN, "is missing: a [[flow]] of a scene is spoken of")
 
     def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
-        """Raises InputError where the scene does not carry a region so, or not by that map."""
-        known = {flow.source: flow for flow in scene.flow if flow.source}
+        """Raise InputError if the scene has no `[[flow]]` of these sources with that map."""
+        sections = {flow.source: flow for flow in scene.flow if flow.source}
         for source in self.flows:
-            if source not in known:
-                allowed = ", ".join(known) or "none; give a [[flow]] its source"
-                problem = f"scene {name} has no such [[flow]]; it has {allowed}"
+            if source not in sections:
+                names = ", ".join(sections) or "none; give a [[flow]] its source"
+                problem = f"scene {name} has no such [[flow]]; it has {names}"
                 raise InputError("flows", source, problem)
-            maps = maps_of(scene, known[source])
+            maps = maps_of(scene, sections[source])
             if self.scheme not in maps:
                 raise InputError("scheme", self.scheme, f"is not in {source}: {', '.join(maps)}")
         return name, scene
@@ -86,22 +86,24 @@ class FlowClaim(Claim):
                 yield from (t for t in flow_tasks(scene, section) if t.map == self.scheme)
 
     def images(self, findings: Findings) -> list[Image]:
-        """The images that it speaks of."""
+        """Return the images that the claim is about."""
         return [
             Image(text(task.step_size), image)
             for task in self._flow_tasks(findings.scene(self.scene))
-            for image in known_results(FlowImage, [task], findings.results)
+            for image in results_of_tasks(FlowImage, [task], findings.results)
         ]
 
 
-def around(value: str | None, error: str | None) -> Ends:
-    """What |value| may be, by its error."""
-    size, apart = abs(Fraction(value or 0)), Fraction(error or 0)
-    return Ends(max(size - apart, Fraction(0)), size + apart)
+def size_bounds(value: str | None, error: str | None) -> Ends:
+    """Return bounds of |value| from its error."""
+    # The error is a bound of |value|'s own, so that |value| lies within size ± radius, and above 0.
+    size, radius = abs(Fraction(value or 0)), Fraction(error or 0)
+    return Ends(max(size - radius, Fraction(0)), size + radius)
 
 
-def within(ends: Sequence[Ends], allowed: Fraction) -> Verdict:
-    """Whether every one of the sizes is at most the allowed one."""
-    if any(low > allowed for low, _ in ends):
+def judge_sizes(ends: Sequence[Ends], limit: Fraction) -> Verdict:
+    """Judge the claim that every size is at most the allowed one."""
+    if any(low > limit for low, _ in ends):
         return Verdict.REFUTED
-    return Verdict.MEASURED if all(high <= allowed for _, high in ends) else Verdict.UNDECIDED
+    # An overlap with the allowed size leaves the claim undecided.
+    return Verdict.MEASURED if all(high <= limit for _, high in ends) else Verdict.UNDECIDED

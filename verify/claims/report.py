@@ -1,4 +1,4 @@
-"""Scenes and claims → a Report of results: plans, executes, judges. Makes no page."""
+"""A Report of results for scenes and claims: planned, executed and judged, but not rendered."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judging import add_claims, judged
+from verify.claims.judging import add_claims, judge_claim
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -19,7 +19,7 @@ from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.report import Report, SceneResult
 from verify.scenes.results.statement import Outcome, statements_of
 from verify.scenes.scene import Scene
-from verify.studies.plan import found_of, plan_scenes
+from verify.studies.plan import collect_findings, plan_scenes
 
 
 def make_report(
@@ -40,44 +40,45 @@ def make_report(
 ) -> Report:
     """Compute what the scenes and claims need, and judge.
 
-    A claim speaks of one of the scenes, or of `claim_scenes`, which the report does not show.
-    `figures` and `preface` are passed on to what makes a page, and those of the `causes` whose
-    claims hold; `not_claimed`, what of the paper no
-    claim is of, stands with what was left out.
+    A claim is about one of the scenes, or of `claim_scenes`, which the report does not show.
+    `figures` and `preface` are passed on to the page, and so are those `causes` whose claims hold.
+    `not_claimed`, the parts of the paper without a claim, is listed with what was left out.
     """
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     plan = plan_scenes(list(scenes)) if plan is None else plan
-    own = {scene.name: scene for scene in scenes}
-    spoken_of = {**(claim_scenes or {}), **own}
-    known = add_claims(plan, claims, spoken_of)
+    scenes_by_name = {scene.name: scene for scene in scenes}
+    # The report's own scenes hide those of the claims with the same name.
+    all_scenes = {**(claim_scenes or {}), **scenes_by_name}
+    all_results = add_claims(plan, claims, all_scenes)
+    # Results that were in the store before count as reused, not as computed by this report.
     before = store.taken
     results = execute(plan, store, where=where, done=done)
-    kept = store.taken - before
-    computed = len(plan.tasks) - kept
-    findings = Findings(own, results)
-    known |= results
-    verdicts = tuple(judged(claim, spoken_of, known, store, where) for claim in claims)
+    reused = store.taken - before
+    count = len(plan.tasks) - reused
+    findings = Findings(scenes_by_name, results)
+    all_results |= results
+    verdicts = tuple(judge_claim(claim, all_scenes, all_results, store, where) for claim in claims)
     return Report(
         title=title,
         claims=verdicts,
         statements=statements_of(verdicts),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
-        causes=tuple(each for each in causes if _shown(each, verdicts)),
+        causes=tuple(each for each in causes if _is_shown(each, verdicts)),
         figures=tuple(figures),
         preface=tuple(preface),
         left_out=(*not_claimed, *plan.left_out),
         provenance=provenance(
-            command, begun, kept=kept, computed=computed, where=_where(where, computed)
+            command, start_time, kept=reused, computed=count, where=_where(where, count)
         ),
     )
 
 
 def gallery_report(
-    gallery: Gallery, command: str, begun: float, kept: int, islands: int, where: Placement
+    gallery: Gallery, command: str, start_time: float, reused: int, islands: int, where: Placement
 ) -> Report:
-    """The report of a hunt of so many tasks, which has a gallery and nothing else."""
+    """Build the report of a hunt, which has a gallery and nothing else."""
     longer = sum(1 for each in gallery.scenes if each.longer)
-    computed = islands + len(gallery.scenes) + longer - kept
+    count = islands + len(gallery.scenes) + longer - reused
     return Report(
         title=f"The worst scenes: {gallery.sentence}",
         claims=(),
@@ -85,22 +86,22 @@ def gallery_report(
         gallery=gallery,
         left_out=(),
         provenance=provenance(
-            command, begun, kept=kept, computed=computed, where=_where(where, computed)
+            command, start_time, kept=reused, computed=count, where=_where(where, count)
         ),
     )
 
 
-def _shown(cause: Cause, judged: Sequence[ClaimResult]) -> bool:
-    """Whether the claims that show it hold, and nothing that it explains holds as meant."""
-    holding = {each.id for each in statements_of(judged) if each.outcome is Outcome.HOLDS}
-    verdicts = {claim.id: claim.verdict for claim in judged}
+def _is_shown(cause: Cause, claims: Sequence[ClaimResult]) -> bool:
+    """Return True if the claims that show the cause hold, and no statement it explains does."""
+    holding = {each.id for each in statements_of(claims) if each.outcome is Outcome.HOLDS}
+    verdicts = {claim.id: claim.verdict for claim in claims}
     return not holding & {*cause.explains} and all(
         name in verdicts and verdicts[name].holds for name in cause.shown_by
     )
 
 
-def _where(where: Placement, computed: int) -> str:
-    return ", and a cluster" if where.cluster and computed else ""
+def _where(where: Placement, count: int) -> str:
+    return ", and a cluster" if where.cluster and count else ""
 
 
 def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
@@ -118,5 +119,5 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
             for scheme in scene.schemes
             for number in scene.criteria
         ),
-        **found_of(scene, findings.results),
+        **collect_findings(scene, findings.results),
     )

@@ -1,4 +1,4 @@
-"""The values of runs as balls: what claims about numbers compare, and how it is called."""
+"""The quantities of runs that claims compare, as balls, with their names in words."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -7,15 +7,15 @@ from typing import Annotated, NamedTuple
 from pydantic import AfterValidator
 
 from verify import observables
-from verify.arithmetic.arb import Ball, ball, lg, middle_and_radius, shown
-from verify.errors import unknown
+from verify.arithmetic.arb import Ball, ball, format_ball, lg, midpoint_and_radius
+from verify.errors import unknown_name
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
 
-class Compared(NamedTuple):
-    """A number that claims compare: its name in words, and what of a run it is made of."""
+class ComparedNumber(NamedTuple):
+    """A number that claims compare: its name in words, and how it is computed from a run."""
 
     label: str
     needs: tuple[str, ...]
@@ -30,27 +30,32 @@ def _itself(value: Ball) -> Ball:
 
 
 QUANTITIES = {
-    **{n: Compared(each.label, (n,), _itself) for n, each in observables.by_name().items()},
-    "lg_mse": Compared("lg MSE", ("mse",), lg),
-    "lg_abs_lambda": Compared("lg |Λ|", ("lambda",), lambda end: lg(abs(end))),
-    "abs_lambda": Compared("|Λ|", ("lambda",), abs),
-    "mse_over_lambda": Compared("MSE/|Λ|", ("mse", "lambda"), lambda mse, end: mse / abs(end)),
+    **{n: ComparedNumber(each.label, (n,), _itself) for n, each in observables.by_name().items()},
+    "lg_mse": ComparedNumber("lg MSE", ("mse",), lg),
+    "lg_abs_lambda": ComparedNumber("lg |Λ|", ("lambda",), lambda end: lg(abs(end))),
+    "abs_lambda": ComparedNumber("|Λ|", ("lambda",), abs),
+    "mse_over_lambda": ComparedNumber(
+        "MSE/|Λ|", ("mse", "lambda"), lambda mse, end: mse / abs(end)
+    ),
 }
 
 
+# |Λ| and quotients have no sign, so that "less", "spread" and "depends" make sense for them.
 _COMPARED = (
-    *(name for name, each in observables.by_name().items() if not each.signed),
+    *(name for name, each in observables.by_name().items() if not each.is_signed),
     *("abs_lambda", "mse_over_lambda"),
 )
 
 
-def _compared(name: str) -> str:
+def _check_compared(name: str) -> str:
     if name not in _COMPARED:
-        raise unknown("quantity", name, _COMPARED)
+        raise unknown_name("quantity", name, _COMPARED)
     return name
 
 
-Quantity = Annotated[str, AfterValidator(_compared)]  # that claims compare, none of them negative
+Quantity = Annotated[
+    str, AfterValidator(_check_compared)
+]  # that claims compare, none of them negative
 
 
 class NoValueError(Exception):
@@ -62,49 +67,52 @@ class NoValueError(Exception):
 
 
 def start_of(run: RunResult) -> Prose:
-    """The run's initial value."""
+    """Format the run's initial value."""
     if not isinstance(run.q, str):
         return prose(f"q₀ = {run.start_text('q')}, p₀ = {run.start_text('p')}")
     return prose("q₀ = ", Number(run.q), ", p₀ = ", Number(run.start_text("p")))
 
 
 def end_of(run: RunResult) -> Prose:
-    """How a run ended that has no values."""
+    """Describe how a run without values ended."""
     why = f"left the range at step {run.failed_step}" if run.failed_step else run.status
     return prose("the run from ", start_of(run), " with h = ", Number(run.step_size), f" {why}")
 
 
 def table_of(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]]:
-    """A quantity of each run to five digits: a row an initial value, a column a step size."""
+    """Tabulate a quantity to five digits: a row per initial value, a column per step size."""
     head = ["initial value", *(f"h = {run.step_size}" for run in rows[0])]
     body = [
-        [start_of(row[0]), *(shown(QUANTITIES[quantity](run), 5) for run in row)] for row in rows
+        [start_of(row[0]), *(format_ball(QUANTITIES[quantity](run), 5) for run in row)]
+        for row in rows
     ]
     return [head, *body]
 
 
 def middle(x: Ball) -> Fraction:
-    """The middle of the ball, exactly."""
-    return middle_and_radius(x)[0]
+    """Return the exact midpoint of the ball."""
+    return midpoint_and_radius(x)[0]
 
 
 def sign(x: Ball, *, zero: bool | None = None) -> bool | None:
-    """Whether x is positive (True) or negative (False); `zero` where it is exactly 0, and None
-    where its ball holds 0 with other numbers."""
+    """Return True if x is positive and False if it is negative.
+
+    Returns `zero` if x is exactly 0, and None if its ball contains 0 and other numbers.
+    """
     if x.is_zero():
         return zero
     return True if x > 0 else False if x < 0 else None
 
 
 def all_hold(verdicts: Sequence[bool | None]) -> Verdict:
-    """REFUTED by one False; MEASURED where there is something to measure and all is True."""
+    """Return REFUTED if one is False, and MEASURED if all are True and there are any."""
     if False in verdicts:
         return Verdict.REFUTED
     return Verdict.UNDECIDED if None in verdicts or not verdicts else Verdict.MEASURED
 
 
 def some_hold(verdicts: Sequence[bool | None]) -> Verdict:
-    """MEASURED by one True; REFUTED where all is False."""
+    """Return MEASURED if one is True, and REFUTED if all are False and there are any."""
     if True in verdicts:
         return Verdict.MEASURED
     return Verdict.UNDECIDED if None in verdicts or not verdicts else Verdict.REFUTED

@@ -1,6 +1,6 @@
-"""What a claim speaks of: its own Hamiltonian and runs, made into a scene for it.
+"""The scenes of claims: built from a claim's own Hamiltonian and runs, or looked up by name.
 
-Keys that say of which H: one of `scene`, `system`, `hamiltonian`, `every`, with `parameters`; see
+One of the keys `scene`, `system`, `hamiltonian` and `every`, with `parameters`, selects H; see
 `verify.claims.on_runs` for the keys of runs.
 """
 
@@ -24,7 +24,7 @@ HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters", "t0")
 
 
 class ClaimedHamiltonian(Frozen):
-    """Of which H; `parameters` are of `system` or `hamiltonian`."""
+    """The keys that define H; `parameters` belong to `system` or `hamiltonian`."""
 
     system: SystemName | None = None
     """A named system."""
@@ -40,34 +40,34 @@ def scene_for(
     claim: Claim,
     hamiltonian_keys: Mapping[str, Any],
     runs: Mapping[str, Any],
-    named: Callable[[str], Scene],
+    find_scene: Callable[[str], Scene],
 ) -> tuple[str, Scene]:
-    """The scene that the claim speaks of and a name for it that no other claim's scene has.
+    """Return a unique name, and the scene that the claim is about.
 
-    `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `named` finds a scene by
-    its name. Raises pydantic's ValidationError, and InputError, whose name is the key, also where
-    the claim speaks of no such H.
+    `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `find_scene` returns a
+    scene by its name. Raises pydantic's ValidationError, and InputError, whose name is the key,
+    also if the claim's kind does not admit this H.
     """
-    given = [name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]
-    if len(given) != 1:
+    sources = [name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]
+    if len(sources) != 1:
         problem = f"give one of {', '.join(HAMILTONIAN_SOURCES)}"
-        raise InputError(" and ".join(given) or "scene", NOT_GIVEN, problem)
+        raise InputError(" and ".join(sources) or "scene", NOT_GIVEN, problem)
     if "scene" not in hamiltonian_keys:
-        own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
-        scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
-        found = claim.scene_of_its_own(own.system or "own", scene, runs)
+        hamiltonian = ClaimedHamiltonian.model_validate(hamiltonian_keys)
+        scene = Scene(**hamiltonian.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
+        named_scene = claim.scene_of_its_own(hamiltonian.system or "own", scene, runs)
     else:
         for key in ("parameters", "t0"):
             if key in hamiltonian_keys:
                 raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
         name = hamiltonian_keys["scene"]
-        found = claim.scene_on(name, named(name), runs)
-    _check_hamiltonian(claim, found[1])
-    return found
+        named_scene = claim.scene_on(name, find_scene(name), runs)
+    _check_hamiltonian(claim, named_scene[1])
+    return named_scene
 
 
 def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
-    """InputError where the claim speaks of no such H."""
+    """Raise InputError if the claim's kind does not admit this H."""
     exact = scene.exact_hamiltonian()
     if claim.planar and not exact.planar:
         problem = f"is of one degree of freedom; the H that it speaks of has {exact.degrees}"
@@ -78,7 +78,7 @@ def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
 
 
 def slug(name: str) -> str:
-    """The name with what a scene's name, or a file's, cannot have made a dash.
+    """Replace by a dash each character that is not allowed in names of scenes and files.
 
     >>> slug("Eq. 21 (b)")
     'Eq--21--b-'
@@ -87,23 +87,24 @@ def slug(name: str) -> str:
 
 
 class NamedScenes:
-    """The scenes by name: the file's own `[[scene]]` tables, then the files beside it."""
+    """The scenes by name: the file's own `[[scene]]` tables, then the files in its folder."""
 
     def __init__(self, path: Path, tables: Any, lines: Lines) -> None:
-        self.folder, self.found = path.parent, dict[str, Scene]()
+        self.folder, self.scenes = path.parent, dict[str, Scene]()
         for index, table in enumerate(tables_of(path.name, "scene", tables)):
-            where = f"{path.name}:{lines.of('scene', index)}: scene"
+            where = f"{path.name}:{lines.line_of('scene', index)}: scene"
             name = table.get("name") if isinstance(table, dict) else None
-            if not isinstance(name, str) or not name or name in self.found:
+            if not isinstance(name, str) or not name or name in self.scenes:
                 raise InputError(where, name or NOT_GIVEN, "each [[scene]] has a name of its own")
-            self.found[name] = scene_from(table, where)
+            self.scenes[name] = scene_from(table, where)
 
     def get(self, name: Any) -> Scene:
+        # The names of scenes become parts of paths, so that no other characters are admitted.
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9_-]{1,80}", name):
             raise InputError("scene", name, "is no name of a scene: letters, digits, _ and -")
-        if name not in self.found:
+        if name not in self.scenes:
             path = self.folder / f"{name}.toml"
             if not path.is_file():
                 raise InputError("scene", name, f"there is no {name}.toml beside the claims file")
-            self.found[name] = load_scene(path)
-        return self.found[name]
+            self.scenes[name] = load_scene(path)
+        return self.scenes[name]

@@ -12,24 +12,25 @@ _FILES = Catalogue(__name__, __path__)
 
 
 class Commands(Mapping[str, "click.Command"]):
-    """What is called as its file, by its name; only the file of a command that is asked for is
-    imported, and what heavy libraries do in it, it imports when it is run.
+    """The commands by their names, each called as its file.
+
+    Only the file of a requested command is imported, and it imports heavy libraries when it is run.
     """
 
     def __init__(self) -> None:
-        self._made: dict[str, click.Command] = {}
+        self._loaded: dict[str, click.Command] = {}
 
     def __getitem__(self, name: str) -> "click.Command":
         from click import Command
 
         from verify.commands.shared.as_typed import as_typed
 
-        if name not in self._made:
-            found = getattr(_FILES.module(name), name.replace("-", "_"), None)
-            if not isinstance(found, Command):
+        if name not in self._loaded:
+            command = getattr(_FILES.module(name), name.replace("-", "_"), None)
+            if not isinstance(command, Command):  # a file that commands share
                 raise KeyError(name)
-            self._made[name] = as_typed(found)
-        return self._made[name]
+            self._loaded[name] = as_typed(command)
+        return self._loaded[name]
 
     def __iter__(self) -> Iterator[str]:
         return (name for name in _FILES.names if name in self)

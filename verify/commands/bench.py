@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-# Columns of the table, by what is kept: of a point's fields.
+# Columns of the table, by what a scheme is to keep: head and field of a point.
 _ERRORS = {
     AREA: {"error": "error", "Λ": "lam"},
     SYMPLECTIC: {
@@ -46,7 +46,7 @@ _ERRORS = {
 @cluster_option
 @answering
 @cache_option
-def bench(scene: str | None, output: Path | None, cluster: str | None, **given: Any) -> Answer:
+def bench(scene: str | None, output: Path | None, cluster: str | None, **options: Any) -> Answer:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 
     \b
@@ -56,28 +56,32 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **given: 
     """
     if output is not None and output.suffix != ".svg":
         raise InputError("--output", str(output), "must end in .svg")
-    scenes = scenes_of(scene, given, ("q", "p", "time"), _section)
-    asked = [each for each in scenes if each.work_precision]
-    if not asked:
+    scenes = scenes_of(scene, options, ("q", "p", "time"), _build_section)
+    selected = [each for each in scenes if each.work_precision]
+    if not selected:
         raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]; add one")
-    found = list(_measured(asked) if cluster is None else _measured_on_cluster(asked, cluster))
+    results = list(
+        _measure(selected) if cluster is None else _measure_on_cluster(selected, cluster)
+    )
     if output is not None:
-        for name, result in found:
-            several = len(found) > 1
+        for name, result in results:
+            # A single figure has the typed name; of several each has the name of its scene, too.
+            several = len(results) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
-    return Answer(lambda: _bench_json(found), lambda: _print(found))
+    return Answer(lambda: _bench_json(results), lambda: _print(results))
 
 
-def _section(
+def _build_section(
     *, q: Any, p: Any, step_sizes: Sequence[str], peers: bool = False, **rest: Any
 ) -> dict[str, Any]:
+    # The order is the slope of a line through the points of at least two step sizes.
     if len(step_sizes) < 2:
         raise InputError("step_sizes", step_sizes[0], "is one; an order takes two at least")
-    own = {"initial_value": {"q": q, "p": p}, "peers": peers, "step_sizes": step_sizes}
-    return {"work_precision": {**own, **rest}}
+    keys = {"initial_value": {"q": q, "p": p}, "peers": peers, "step_sizes": step_sizes}
+    return {"work_precision": {**keys, **rest}}
 
 
-def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
+def _measure(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
     from verify.commands.shared.progress import progress_bar
     from verify.studies.kinds.work_precision import work_precision_task
     from verify.studies.work_precision import peers
@@ -90,10 +94,11 @@ def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult
             yield scene.name, task.measure(advance)
 
 
-def _measured_on_cluster(
+def _measure_on_cluster(
     scenes: "list[Scene]", cluster: str
 ) -> "Iterator[tuple[str, WorkPrecisionResult]]":
-    """On the cluster, one after another: the times are of the machine that each result names."""
+    """Measure on the cluster, one scene after another; each result names its machine."""
+    # Two at a time would share processors and caches, and so measure each other.
     from verify.execution.execute import compute_task
     from verify.execution.executors import FunctionCall, Placement, open_place, results_of
     from verify.studies.kinds.work_precision import work_precision_task
@@ -113,23 +118,23 @@ def _draw(result: "WorkPrecisionResult", path: Path) -> None:
     write_atomically(path, standalone(result))
 
 
-# -- how it is shown ------------------------------------------------------------------------------
+# -- output ---------------------------------------------------------------------------------------
 
 
-def _bench_json(found: "Sequence[tuple[str, WorkPrecisionResult]]") -> dict[str, Any]:
-    """`points` of all scenes, each with its scene's name, and of each scene all the rest."""
+def _bench_json(results: "Sequence[tuple[str, WorkPrecisionResult]]") -> dict[str, Any]:
+    """Return the points of all scenes, each with its scene's name, and the rest of each scene."""
     return {
         "points": [
-            {"scene": name, **_point(point)}
-            for name, result in found
+            {"scene": name, **_point_json(point)}
+            for name, result in results
             for line in result.lines
             for point in line.points
         ],
-        "scenes": [{"name": name, **_rest(result)} for name, result in found],
+        "scenes": [{"name": name, **_other_keys(result)} for name, result in results],
     }
 
 
-def _point(point: "WorkPoint") -> dict[str, Any]:
+def _point_json(point: "WorkPoint") -> dict[str, Any]:
     values = {
         "error": point.error,
         "truncation": point.truncation,
@@ -147,14 +152,14 @@ def _point(point: "WorkPoint") -> dict[str, Any]:
     }
 
 
-def _rest(result: "WorkPrecisionResult") -> dict[str, Any]:
+def _other_keys(result: "WorkPrecisionResult") -> dict[str, Any]:
     data = plain_json(result)
     lines = [{k: v for k, v in line.items() if k != "points"} for line in data.pop("lines")]
     return {**data, "lines": lines}
 
 
-def _print(found: "Sequence[tuple[str, WorkPrecisionResult]]") -> None:
-    for name, result in found:
+def _print(results: "Sequence[tuple[str, WorkPrecisionResult]]") -> None:
+    for name, result in results:
         _print_bench(name, result)
 
 
@@ -165,11 +170,11 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
     console.print(_table(name, result))
     *_, area = _ERRORS[result.structure]
     for line in result.lines:
-        console.print(_about(line, area))
+        console.print(_describe_line(line, area))
     for system in result.systems:
-        known = f"{system.certified} certified digits" if system.certified else system.reason
-        asked = f"{system.arithmetic}, {system.digits} digits"
-        console.print(f"{asked}: {known} in {_seconds(system.seconds_median)} s")
+        outcome = f"{system.certified} certified digits" if system.certified else system.reason
+        arithmetic = f"{system.arithmetic}, {system.digits} digits"
+        console.print(f"{arithmetic}: {outcome} in {_format_seconds(system.seconds_median)} s")
     if result.rounded_down:
         console.print(result.rounded_down)
     for each in result.comparisons:
@@ -196,43 +201,43 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
         collapse_padding=True,
     )
     for head in ("scheme", "h or tol.", "N", *errors, "seconds", "limited by"):
-        left = head in ("scheme", "limited by")
-        table.add_column(head, justify="left" if left else "right", no_wrap=not left)
+        is_left = head in ("scheme", "limited by")
+        table.add_column(head, justify="left" if is_left else "right", no_wrap=not is_left)
     for line in result.lines:
         for k, point in enumerate(line.points):
-            table.add_row("" if k else line.name, *_row(point, errors.values()))
+            table.add_row("" if k else line.name, *_build_row(point, errors.values()))
         table.add_section()
     return table
 
 
-def _row(point: "WorkPoint", errors: "Iterable[str]") -> tuple[str, ...]:
-    failed = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
+def _build_row(point: "WorkPoint", errors: "Iterable[str]") -> tuple[str, ...]:
+    limit = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
     return (
         point.step_size or point.tolerance or "",
         "" if point.steps is None else str(point.steps),
-        *(_few(getattr(point, name)) for name in errors),
-        _seconds(point.seconds_median),
-        failed,
+        *(_format_error(getattr(point, name)) for name in errors),
+        _format_seconds(point.seconds_median),
+        limit,
     )
 
 
-def _about(line: "WorkLine", area: str) -> str:
+def _describe_line(line: "WorkLine", area: str) -> str:
     if line.peer:
         return f"{line.name}: made ready in {line.compile_seconds:.2g} s"
     slopes = []
-    for of, slope in (("error", line.error_slope), (area, line.lambda_slope)):
-        known = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
+    for quantity, slope in (("error", line.error_slope), (area, line.lambda_slope)):
+        slope_text = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
         why = f" ({slope.reason})" if slope.reason else ""
-        slopes.append(f"order of {of} {known}{why}")
+        slopes.append(f"order of {quantity} {slope_text}{why}")
     operations = f"; a step is {line.cost.text}" if line.cost else ""
     return f"{line.name}: {'; '.join(slopes)}{operations}; compiled in {line.compile_seconds:.2g} s"
 
 
-def _few(value: "Value | None") -> str:
+def _format_error(value: "Value | None") -> str:
     if value is None:
         return "–"
     return f"{float(value.value):.1e}" if float(value.value) else "0"
 
 
-def _seconds(seconds: float | None) -> str:
+def _format_seconds(seconds: float | None) -> str:
     return "–" if seconds is None else f"{seconds:.2e}"

@@ -1,4 +1,4 @@
-"""The command `verify certificate`: what a certificate establishes, checked by other code."""
+"""The command `verify certificate`: certificates of proofs, checked by other code."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -12,7 +12,7 @@ from verify.commands.shared.group import Group
 from verify.commands.shared.input import PATH
 
 if TYPE_CHECKING:
-    from verify.proof.certificates.established import Established
+    from verify.proof.certificates.established import EstablishedStatement
 
 _LONGEST = 400  # characters of a formula on a terminal
 
@@ -27,25 +27,25 @@ def certificate() -> None:
 @answering
 def check(file: Path) -> Answer:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
-    from verify.proof.certificates.file import checked
+    from verify.proof.certificates.file import check_file
 
-    found = checked(file)
-    if isinstance(found, str):
-        refused = {"accepted": False, "reason": found}
-        return Answer(lambda: refused, lambda: click.echo(f"refused: {found}"), failed=True)
-    return Answer(lambda: {"accepted": True, **asdict(found)}, lambda: _print(found))
+    outcome = check_file(file)
+    if isinstance(outcome, str):
+        refusal = {"accepted": False, "reason": outcome}
+        return Answer(lambda: refusal, lambda: click.echo(f"refused: {outcome}"), failed=True)
+    return Answer(lambda: {"accepted": True, **asdict(outcome)}, lambda: _print(outcome))
 
 
-def _opened(context: click.Context, parameter: click.Parameter, file: Path) -> Path:
-    """The file, where it can be opened: it is looked for before an option is missed."""
-    from verify.files import opened
+def _check_opens(context: click.Context, parameter: click.Parameter, file: Path) -> Path:
+    """Return the file if it can be opened; click reports a missing option only after this."""
+    from verify.files import open_regular_file
 
-    with opened(file):
+    with open_regular_file(file):
         return file
 
 
 @certificate.command()
-@click.argument("file", type=PATH, metavar="FILE", callback=_opened)
+@click.argument("file", type=PATH, metavar="FILE", callback=_check_opens)
 @click.option("--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write it there.")
 @click.option(
     "--beside-theory",
@@ -62,25 +62,25 @@ def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
     verify certificate export lie2.json --coq lie2.v
     """
     from verify.files import write_atomically
-    from verify.proof.assistant.export import check_file_name, exported
+    from verify.proof.assistant.export import check_file_name, export_certificate
 
     check_file_name(coq)
-    found = exported(file, stands_alone=not beside_theory)
-    write_atomically(coq, found.text)
+    proof_file = export_certificate(file, stands_alone=not beside_theory)
+    write_atomically(coq, proof_file.text)
     data = {
         "written": str(coq),
-        "statement": found.of.statement,
-        "theorems": list(found.theorems),
+        "statement": proof_file.facts.statement,
+        "theorems": list(proof_file.theorems),
         "stands_alone": not beside_theory,
     }
 
-    def told() -> None:
-        click.echo(f"{coq}: {found.of.statement}")
-        click.echo(f"  proves {', '.join(found.theorems)}")
+    def show() -> None:
+        click.echo(f"{coq}: {proof_file.facts.statement}")
+        click.echo(f"  proves {', '.join(proof_file.theorems)}")
         how = "coqc -Q THEORY AreaPreservation" if beside_theory else "coqc"
         click.echo(f"  check  {how} {coq}")
 
-    return Answer(lambda: data, told)
+    return Answer(lambda: data, show)
 
 
 @certificate.command()
@@ -90,36 +90,36 @@ def theory(folder: Path) -> Answer:
     """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""
     from verify.proof.assistant.shipped import LOGICAL, install
 
-    written = install(folder)
-    data = {"written": [str(path) for path in written], "logical_name": LOGICAL}
+    files = install(folder)
+    data = {"written": [str(path) for path in files], "logical_name": LOGICAL}
 
-    def told() -> None:
-        click.echo(f"{folder}: {len(written)} files, of the logical name {LOGICAL}")
+    def show() -> None:
+        click.echo(f"{folder}: {len(files)} files, of the logical name {LOGICAL}")
         click.echo(f"  compile  cd {folder} && coq_makefile -f _CoqProject -o Makefile && make")
 
-    return Answer(lambda: data, told)
+    return Answer(lambda: data, show)
 
 
-def _print(found: "Established") -> None:
-    click.echo(f"holds: {found.statement}")
+def _print(facts: "EstablishedStatement") -> None:
+    click.echo(f"holds: {facts.statement}")
     lines = {
-        "H": found.hamiltonian,
-        **_numbered("p", found.p_next),
-        **_numbered("q", found.q_next),
-        "L": found.leading,
-        "G": found.potential,
-        "map": found.scheme,
-        "where": ", ".join(found.domain),
+        "H": facts.hamiltonian,
+        **_number_formulas("p", facts.p_next),
+        **_number_formulas("q", facts.q_next),
+        "L": facts.leading,
+        "G": facts.potential,
+        "map": facts.scheme,
+        "where": ", ".join(facts.domain),
     }
-    shown = [*lines.items(), *(("with", number) for number in found.numbers)]
-    for name, text in shown:
+    rows = [*lines.items(), *(("with", number) for number in facts.numbers)]
+    for name, text in rows:
         if text:
             cut = f"{text[:_LONGEST]} … ({len(text):,} characters; all of it with --json)"
             click.echo(f"  {name:<5}  {text if len(text) <= _LONGEST else cut}")
 
 
-def _numbered(letter: str, formulas: str | tuple[str, ...]) -> dict[str, str]:
-    """The formulas of new values by what they are called: p', or p1', p2', …."""
+def _number_formulas(letter: str, formulas: str | tuple[str, ...]) -> dict[str, str]:
+    """Return the formulas of the new values by their names: p', or p1', p2', …."""
     if isinstance(formulas, str):
         return {f"{letter}'": formulas}
     return {f"{letter}{k}'": text for k, text in enumerate(formulas, start=1)}

@@ -8,7 +8,7 @@ import click
 
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.destinations import OUT_FOLDER, writable_later
+from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable_later
 from verify.commands.shared.input import FILE, SCHEME
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
@@ -109,12 +109,13 @@ def explore(
     from verify.exploration.explore import Exploration
     from verify.exploration.sample_space import SampleSpace
 
+    # The seed is printed, so that a run without --seed can be repeated.
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
-    looks, left_out = _looks(claims, names) if maximise is None else ({}, {})
-    drawn = SampleSpace(
+    looks, left_out = _select_checks(claims, names) if maximise is None else ({}, {})
+    sample_space = SampleSpace(
         kinds=kinds,
         degree=degree,
-        schemes=schemes or _spoken_of(looks),
+        schemes=schemes or _schemes_of_claims(looks),
         time_dependent=time_dependent,
         degrees=degrees_of_freedom,
     )
@@ -124,63 +125,68 @@ def explore(
                 "--maximise", maximise, "takes no CLAIMS and no --property; leave them out"
             )
         steps = STEPS if steps is None else steps
-        return hunt(maximise, seed, examples, steps, drawn, output, keep, where)
+        return hunt(maximise, seed, examples, steps, sample_space, output, keep, where)
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
-    asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
-    return _explored(asked, left_out, output, keep, where)
+    exploration = Exploration(seed=seed, examples=examples, **looks, drawn=sample_space)
+    return _explore(exploration, left_out, output, keep, where)
 
 
-def _explored(
-    asked: "Exploration",
+def _explore(
+    exploration: "Exploration",
     left_out: Mapping[str, Sequence[str]],
     output: Path,
     keep: Path | None,
     where: "Placement",
 ) -> Answer:
-    """Explores, writes the scenes that fail, and answers what was found."""
+    """Explore, write the scenes that fail, and return the answer."""
     from verify.exploration.explore import explore, load_failures, save_failures
 
-    writable_later(output)
+    ensure_writable_later(output)
     earlier = load_failures(output) if output.is_dir() else []
-    with kept_tasks(asked.plan.tasks, keep) as (store, done):
-        report = explore(asked, store, where=where, done=done, earlier=earlier)
-    unwritten, written = None, [""] * len(report.failures)
+    with kept_tasks(exploration.plan.tasks, keep) as (store, on_result):
+        report = explore(exploration, store, where=where, done=on_result, earlier=earlier)
+    problem, paths = None, [""] * len(report.failures)
     try:
-        written = [str(path) for path in save_failures(report, output)]
-    except OSError as error:  # what was found is told all the same
-        unwritten = InputError("--output", str(output), error.strerror or "cannot be written to")
+        paths = [str(path) for path in save_failures(report, output)]
+    except OSError as error:  # the findings are printed all the same, and the exit status says so
+        problem = InputError("--output", str(output), error.strerror or "cannot be written to")
     return Answer(
-        lambda: _as_json(report, written, left_out),
-        lambda: _print(report, written, left_out),
+        lambda: _as_json(report, paths, left_out),
+        lambda: _print(report, paths, left_out),
         failed=bool(report.failures) or any(each.message for each in report.again),
-        problem=unwritten,
+        problem=problem,
     )
 
 
-def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[str]]]:
-    """The properties and claims that are asked for: all properties where nothing is named.
+def _select_checks(
+    claims: str | None, names: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """Return the requested properties and claims: all properties where nothing is named.
 
-    And the claims that can be asked of no other scene, by the reason.
+    Also the claims that hold of one scene only and are left out, by the reason.
     """
     from verify.claims.file import load_claims
     from verify.exploration import properties
     from verify.exploration.claims import claim_texts, claims_left_out
 
     for name in names:
+        # Raises InputError for an unknown name, before anything is drawn.
         properties.get(name)
-    named = tuple(dict.fromkeys(names))
+    property_names = tuple(dict.fromkeys(names))
     if claims is None:
-        return {"properties": named or properties.names()}, {}
+        return {"properties": property_names or properties.names()}, {}
     path = Path(claims)
     if not path.is_file():
         raise InputError("CLAIMS", claims, "is no file; give a TOML file with [[claim]] tables")
-    given = load_claims(path).claims
-    return {"properties": named, "claims": claim_texts(given)}, claims_left_out(given)
+    claim_list = load_claims(path).claims
+    return {"properties": property_names, "claims": claim_texts(claim_list)}, claims_left_out(
+        claim_list
+    )
 
 
-def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
-    """The schemes that the claims speak of, where nothing else is looked at; else any."""
+def _schemes_of_claims(looks: dict[str, Any]) -> tuple[str, ...]:
+    """Return the claims' schemes where no property is requested; else none, which means any."""
     from verify.exploration.claims import scheme_of
 
     if looks.get("properties") or not looks.get("claims"):
@@ -189,32 +195,32 @@ def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _as_json(
-    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+    report: "ExploreReport", paths: Sequence[str], left_out: Mapping[str, Sequence[str]]
 ) -> dict[str, Any]:
-    found = report.model_dump(mode="json")
-    for failure, path in zip(found["failures"], written, strict=True):
+    data = report.model_dump(mode="json")
+    for failure, path in zip(data["failures"], paths, strict=True):
         failure["file"] = path
     without = [{"claim": name, "reason": why} for why, names in left_out.items() for name in names]
-    return found | {"left_out": without}
+    return data | {"left_out": without}
 
 
 def _print(
-    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+    report: "ExploreReport", paths: Sequence[str], left_out: Mapping[str, Sequence[str]]
 ) -> None:
     width = max(len(each.name) for each in report.properties)
     for each in report.properties:
         verdict = f"FAILS for {each.failures:,}" if each.failures else "holds"
-        of = f"{verdict} of {each.looked_at:,}" if each.looked_at else "speaks of none of them"
-        click.echo(f"{each.name:{width}}  {of}")
+        summary = f"{verdict} of {each.looked_at:,}" if each.looked_at else "speaks of none of them"
+        click.echo(f"{each.name:{width}}  {summary}")
     for why, names in left_out.items():
         click.echo(f"left out, as {why}: {', '.join(names)}")
     for again in report.again:
         now = f"still fails: {again.message}" if again.message else "holds now"
         click.echo(f"{again.file}: {again.property} {now}")
-    for failure, path in zip(report.failures, written, strict=True):
+    for failure, path in zip(report.failures, paths, strict=True):
         click.echo(f"\n{failure.property} fails at example {failure.example}, shrunk:")
         click.echo("".join(f"  {line}\n" for line in failure.scene.splitlines()), nl=False)
         click.echo(f"  → {path}, which `verify report` takes" if path else "  → not written")
     failing = sum(1 for each in report.properties if each.failures)
-    of = f"{report.examples:,} scenes of seed {report.seed}"
-    click.echo(f"{of}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")
+    summary = f"{report.examples:,} scenes of seed {report.seed}"
+    click.echo(f"{summary}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")

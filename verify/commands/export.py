@@ -42,25 +42,25 @@ def export(
     verify export --system pendulum --scheme yoshida4 --language latex
     verify export --system driven-pendulum --scheme stormer-verlet --language julia
     """
-    from verify.calls.export import program
+    from verify.calls.export import build_program
     from verify.files import write_atomically
     from verify.schemes.export import get
 
-    made = program(exact, scheme, language, name=name)
-    text = get(language).written(made)
+    step_program = build_program(exact, scheme, language, name=name)
+    text = get(language).render(step_program)
     if output is not None:
         write_atomically(output, text)
 
     def data() -> dict[str, Any]:
         return {
             "language": language.lower(),
-            "scheme": made.scheme,
+            "scheme": step_program.scheme,
             **exact.texts,
-            "arguments": list(made.arguments),
-            "area_preserving": made.area_preserving,
-            "constants": [asdict(c) for c in made.constants],
+            "arguments": list(step_program.arguments),
+            "area_preserving": step_program.area_preserving,
+            "constants": [asdict(c) for c in step_program.constants],
             "code": text,
         }
 
-    shown = str(output) if output is not None else text.removesuffix("\n")
-    return Answer(data, lambda: click.echo(shown))
+    output_text = str(output) if output is not None else text.removesuffix("\n")
+    return Answer(data, lambda: click.echo(output_text))

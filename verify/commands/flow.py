@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     click.option("--scale", metavar="S", help="How many times as large.  [default: 1]"),
 )
 @with_tasks
-def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any) -> Answer:
+def flow(scene: str | None, keep: Path | None, where: "Placement", **options: Any) -> Answer:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
@@ -56,31 +56,33 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     steps = [5000, 20000]             # or times = [1, 2, 3]
     """
     from verify.execution.study import plan_of
-    from verify.scenes.values import rounded_down
+    from verify.scenes.values import describe_rounding
     from verify.studies.kinds.regions import flow_json, flows_of, need_flows
 
-    scenes = scenes_of(scene, given, (), _sections)
+    scenes = scenes_of(scene, options, (), _build_sections)
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
         raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
     results = perform(plan, keep, where)
-    found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
+    flows = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     sections = [section for each in scenes for section in each.flow]
-    notes = [rounded_down(t, [section.step_size]) for section in sections for t in section.times]
+    notes = [
+        describe_rounding(t, [section.step_size]) for section in sections for t in section.times
+    ]
 
-    def shown() -> None:
-        for name, result in found:
+    def show() -> None:
+        for name, result in flows:
             _print_flow(name, result)
         print_once(notes)
 
     return Answer(
-        lambda: flow_json(found),
-        shown,
-        failed=any(image.problem for _, flow in found for image in flow.images),
+        lambda: flow_json(flows),
+        show,
+        failed=any(image.problem for _, flow in flows for image in flow.images),
     )
 
 
-def _sections(
+def _build_sections(
     *,
     step_sizes: Sequence[str],
     q: "str | list[str] | None" = None,
@@ -88,7 +90,7 @@ def _sections(
     shape: str = "circle",
     **rest: Any,
 ) -> dict[str, Any]:
-    """One [[flow]] a step size."""
+    """Return one [[flow]] section for each step size."""
     if q or p:  # of one that is left out there are as many zeros as of the other
         rest["centre"] = {"q": q or _zeros(p), "p": p or _zeros(q)}
     rest["shape"] = shape
@@ -107,7 +109,7 @@ def _print_flow(name: str, result: "FlowResult") -> None:
     where += "".join(f", {n} = {x}" for n, x in result.point.items() if n[1:] != str(i))
     begins = "" if result.t0 is None else f", from t0 = {result.t0}"
     click.echo(f"{title}{where}, h = {result.step_size}{begins}")
-    rows = [_HEAD_IN_DEGREES if i else _HEAD, *map(_row, result.images)]
+    rows = [_HEAD_IN_DEGREES if i else _HEAD, *map(_format_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, image in zip(rows, (None, *result.images), strict=True):
         line = "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
@@ -120,18 +122,19 @@ _HEAD = ("map", "N", "t", "area changes by", "mean of Λ", "from the exact flow"
 _HEAD_IN_DEGREES = ("map", "N", "t", "∮ p·dq changes by", "mean of W", "of it in each plane")
 
 
-def _row(image: "FlowImage") -> tuple[str, ...]:
-    change = _with_error(image.area_change, image.probe_error)
+def _format_row(image: "FlowImage") -> tuple[str, ...]:
+    change = _format_with_error(image.area_change, image.probe_error)
     if image.area_preserving and change:
         change = f"0, proved ({change})"
-    mean = _with_error(image.mean_lambda, image.mean_lambda_error)
-    mean = mean or _with_error(image.mean_defect, image.mean_defect_error)
+    mean = _format_with_error(image.mean_lambda, image.mean_lambda_error)
+    mean = mean or _format_with_error(image.mean_defect, image.mean_defect_error)
+    # The change of ∮ p·dq and the mean of W over the region are one number, computed in two ways.
     mean += "" if image.agree is not False else "  NOT THE SAME"
-    distance = _with_error(image.distance, image.distance_error)
+    distance = _format_with_error(image.distance, image.distance_error)
     planes = image.outlines[0].projections if image.outlines else ()
     shares = " ".join(f"{float(x.area):.5g}" for x in planes)
     return image.map, str(image.steps), image.time, change, mean, shares or distance
 
 
-def _with_error(value: str | None, error: str | None) -> str:
+def _format_with_error(value: str | None, error: str | None) -> str:
     return "" if value is None else f"{value} ± {error}"

@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.destinations import check_ours, writable
+from verify.commands.shared.destinations import check_ours, ensure_writable
 from verify.commands.shared.tasks import kept_tasks
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from verify.exploration.sample_space import SampleSpace
     from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult
 
-STEPS = 100  # of each scene, where nothing else is asked for
-_OWN = re.compile(r"worst-([0-9]+)\.toml|[A-Za-z0-9_-]+\.[0-9a-f]{8}\.toml")
+STEPS = 100  # of each scene, by default
+_OUR_FILES = re.compile(r"worst-([0-9]+)\.toml|[A-Za-z0-9_-]+\.[0-9a-f]{8}\.toml")
 
 
 def hunt(
@@ -31,39 +31,43 @@ def hunt(
     seed: int,
     examples: int,
     steps: int,
-    drawn: "SampleSpace",
+    sample_space: "SampleSpace",
     output: Path,
     keep: Path | None,
     where: "Placement",
 ) -> Answer:
-    """Hunts, writes the worst scenes and the page that shows them, and answers what was found."""
+    """Hunt, write the worst scenes and the page that shows them, and return the answer."""
     from verify.claims.report import gallery_report
     from verify.exploration.gallery import gallery
     from verify.exploration.hunting import Hunt, hunt
     from verify.pages.page import write
 
-    asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
-    check_ours(output, _OWN)
-    writable(output)
-    begun, tasks = time.perf_counter(), asked.plan.tasks
-    with kept_tasks(tasks, keep) as (store, done):
-        found = hunt(asked, store, where=where, done=done)
-    if drawn.degrees > 1:
-        return _in_degrees(asked, found, store, output, where)
-    shown = gallery(asked, found, store, where=where)
-    _write_scenes([each.scene for each in shown.scenes], output)
-    report = gallery_report(shown, _command(asked), begun, store.taken, len(tasks), where)
+    request = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=sample_space)
+    # The folder is checked before hours of work, and must not hold somebody's files.
+    check_ours(output, _OUR_FILES)
+    ensure_writable(output)
+    begun, tasks = time.perf_counter(), request.plan.tasks
+    with kept_tasks(tasks, keep) as (store, on_result):
+        result = hunt(request, store, where=where, done=on_result)
+    if sample_space.degrees > 1:
+        return _answer_in_degrees(request, result, store, output, where)
+    worst_gallery = gallery(request, result, store, where=where)
+    _write_scenes([each.scene for each in worst_gallery.scenes], output)
+    report = gallery_report(
+        worst_gallery, _format_command(request), begun, store.taken, len(tasks), where
+    )
     page = write(report, output)
-    told = {"examples": shown.examples, "failures": [], "seed": seed}
+    summary = {"examples": worst_gallery.examples, "failures": [], "seed": seed}
     return Answer(
-        lambda: told | {"gallery": show.plain_json(shown)}, lambda: _print(shown, output, page)
+        lambda: summary | {"gallery": show.plain_json(worst_gallery)},
+        lambda: _print(worst_gallery, output, page),
     )
 
 
-def _in_degrees(
-    asked: "Hunt", found: "HuntResult", store: "Store", output: Path, where: "Placement"
+def _answer_in_degrees(
+    request: "Hunt", result: "HuntResult", store: "Store", output: Path, where: "Placement"
 ) -> Answer:
-    """The worst scenes in n degrees of freedom: the page is their report."""
+    """Return the answer in n degrees of freedom, where the page is a report of the scenes."""
     from verify.arithmetic.exact import text
     from verify.claims.report import make_report
     from verify.exploration.different_scenes import scene_of
@@ -71,26 +75,32 @@ def _in_degrees(
     from verify.pages.page import write
     from verify.scenes.toml_text import scene_text
 
-    said = MEASURES[asked.measure].said(asked.drawn.degrees)
+    sentence = MEASURES[request.measure].describe(request.drawn.degrees)
     scenes = [
         scene_of(each).model_copy(
-            update={"name": f"worst-{place}", "title": f"10^{each.value:.2f}, {said}"}
+            # Measures are decimal logarithms, so that factors are compared.
+            update={"name": f"worst-{place}", "title": f"10^{each.value:.2f}, {sentence}"}
         )
-        for place, each in enumerate(found.worst, start=1)
+        for place, each in enumerate(result.worst, start=1)
     ]
     texts = list(map(scene_text, scenes))
     _write_scenes(texts, output)
     report = make_report(
-        f"The worst scenes: {said}", scenes, [], store, command=_command(asked), where=where
+        f"The worst scenes: {sentence}",
+        scenes,
+        [],
+        store,
+        command=_format_command(request),
+        where=where,
     )
     page = write(report, output)
-    told = {"examples": found.examples, "failures": [], "seed": asked.seed}
-    pairs = zip(found.worst, texts, strict=True)
+    summary = {"examples": result.examples, "failures": [], "seed": request.seed}
+    pairs = zip(result.worst, texts, strict=True)
     worst = [{"value": f"{each.value}", "scene": toml} for each, toml in pairs]
-    shown = {"measure": asked.measure, "sentence": said, "worst": worst}
+    details = {"measure": request.measure, "sentence": sentence, "worst": worst}
 
-    def tell() -> None:
-        for place, (each, scene) in enumerate(zip(found.worst, scenes, strict=True), start=1):
+    def print_scenes() -> None:
+        for place, (each, scene) in enumerate(zip(result.worst, scenes, strict=True), start=1):
             click.echo(f"{place}. 10^{each.value:.2f}  H = {scene.hamiltonian}")
             assert scene.grid is not None  # noqa: S101 - as drawn
             start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
@@ -101,59 +111,65 @@ def _in_degrees(
             )
         if not scenes:
             click.echo("no scene that was drawn can be measured so")
-        click.echo(f"{found.examples:,} scenes of seed {asked.seed}, by {said} → {page}")
+        click.echo(f"{result.examples:,} scenes of seed {request.seed}, by {sentence} → {page}")
 
-    return Answer(lambda: told | shown, tell)
+    return Answer(lambda: summary | details, print_scenes)
 
 
-def _command(asked: "Hunt") -> str:
-    """What makes the same hunt again."""
-    own = [f"--maximise {asked.measure} --examples {asked.examples} --seed {asked.seed}"]
-    own += [f"--steps {asked.steps}"] if asked.steps != STEPS else []
-    own += [f"--scheme {shlex.quote(name)}" for name in asked.drawn.schemes]
-    own += [f"--kind {name}" for name in asked.drawn.kinds]
-    if asked.drawn.degree != type(asked.drawn)().degree:
-        own.append(f"--degree {asked.drawn.degree}")
-    if asked.drawn.degrees > 1:
-        own.append(f"--degrees {asked.drawn.degrees}")
-    if asked.drawn.time_dependent:
-        own.append("--time-dependent")
-    return f"verify explore {' '.join(own)}"
+def _format_command(request: "Hunt") -> str:
+    """Return the command that makes the same hunt again."""
+    options = [f"--maximise {request.measure} --examples {request.examples} --seed {request.seed}"]
+    options += [f"--steps {request.steps}"] if request.steps != STEPS else []
+    options += [f"--scheme {shlex.quote(name)}" for name in request.drawn.schemes]
+    options += [f"--kind {name}" for name in request.drawn.kinds]
+    # The default of the field, wherever it is set: an option with the default is left out.
+    if request.drawn.degree != type(request.drawn)().degree:
+        options.append(f"--degree {request.drawn.degree}")
+    if request.drawn.degrees > 1:
+        options.append(f"--degrees {request.drawn.degrees}")
+    if request.drawn.time_dependent:
+        options.append("--time-dependent")
+    return f"verify explore {' '.join(options)}"
 
 
 def _write_scenes(texts: "Sequence[str]", output: Path) -> None:
-    """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
+    """Write worst-1.toml and so on, and delete those of an earlier hunt that had more."""
     from verify.files import write_atomically
 
     for place, text in enumerate(texts, start=1):
         write_atomically(output / f"worst-{place}.toml", text)
     for file in output.glob("worst-*.toml"):
-        own = _OWN.fullmatch(file.name)
-        if own and own[1] and int(own[1]) > len(texts):
+        match = _OUR_FILES.fullmatch(file.name)
+        if match and match[1] and int(match[1]) > len(texts):
             file.unlink()
 
 
-def _print(shown: "Gallery", output: Path, page: Path) -> None:
-    for place, each in enumerate(shown.scenes, start=1):
-        of = each.separation
-        click.echo(f"{place}. 10^{each.value:.2f}  H = {of.hamiltonian}")
-        start = f"h = {of.step_size}, q = {of.q}, p = {of.p}"
-        start += f", t0 = {of.t0}" if of.t0 != "0" else ""
-        click.echo(f"   {of.scheme}, {start}: {_when(each)}; {output / f'worst-{place}.toml'}")
-    if not shown.scenes:
+def _print(gallery: "Gallery", output: Path, page: Path) -> None:
+    for place, each in enumerate(gallery.scenes, start=1):
+        separation = each.separation
+        click.echo(f"{place}. 10^{each.value:.2f}  H = {separation.hamiltonian}")
+        start = f"h = {separation.step_size}, q = {separation.q}, p = {separation.p}"
+        start += f", t0 = {separation.t0}" if separation.t0 != "0" else ""
+        file = output / f"worst-{place}.toml"
+        click.echo(f"   {separation.scheme}, {start}: {_describe_loss(each)}; {file}")
+    if not gallery.scenes:
         click.echo("no scene that was drawn can be measured so")
-    click.echo(f"{shown.examples:,} scenes of seed {shown.seed}, by {shown.sentence} → {page}")
+    click.echo(
+        f"{gallery.examples:,} scenes of seed {gallery.seed}, by {gallery.sentence} → {page}"
+    )
 
 
-def _when(each: "GalleryScene") -> str:
-    of, after = each.separation, each.meaningless_after
+def _describe_loss(each: "GalleryScene") -> str:
+    separation, after = each.separation, each.meaningless_after
     longer = each.longer
-    beyond = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
-    if of.plain is None:
-        return f"over {of.steps:,} steps it is {of.status}"
-    if all(at.total == at.truncation == "0" for at in of.plain.series):
-        return f"over {of.steps:,} steps no digit of a part of Λ is known but 0{beyond}"
+    longer_text = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
+    if separation.plain is None:
+        return f"over {separation.steps:,} steps it is {separation.status}"
+    if all(point.total == point.truncation == "0" for point in separation.plain.series):
+        return (
+            f"over {separation.steps:,} steps no digit of a part of Λ is known but 0{longer_text}"
+        )
     if after is None:
-        return f"over {of.steps:,} steps truncation is the larger part of Λ{beyond}"
+        return f"over {separation.steps:,} steps truncation is the larger part of Λ{longer_text}"
     until = f" until {each.meaningful_from:,}" if each.meaningful_from else ""
-    return f"Λ of float64 is meaningless after {after:,} steps{until}{beyond}"
+    return f"Λ of float64 is meaningless after {after:,} steps{until}{longer_text}"

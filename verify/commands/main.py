@@ -1,8 +1,8 @@
-"""The command `verify`. Heavy libraries are imported inside the command that needs them.
+"""The command `verify`: its streams, its signals, its exit statuses.
 
-Standard output and error as the command uses them: text that any terminal may be given.
-
-Interruption and termination as the command hears them: always, and as exceptions.
+Heavy libraries are imported inside the command that needs them. Standard output and error carry
+only text that any terminal may get. Interruption and termination are never lost, and are raised as
+exceptions.
 
 Python raises what a signal's handler raises wherever the program happens to be. Where that is a
 callback of the garbage collector (hypothesis has one), a finaliser or a callback from C, Python
@@ -38,36 +38,41 @@ _IMPORTING = "<frozen importlib._bootstrap>"  # the file of frames under which a
 
 
 @contextlib.contextmanager
-def heard_signals() -> Iterator[None]:
-    """SIGINT is KeyboardInterrupt and SIGTERM SystemExit with status 143, and neither is lost."""
+def hear_signals() -> Iterator[None]:
+    """Raise SIGINT as KeyboardInterrupt and SIGTERM as SystemExit(143); neither is lost."""
     heard: list[int] = []
 
     def hear(number: int, frame: FrameType | None) -> None:
         heard.append(number)
-        if len(heard) <= _MOST_WAITS and _imports(frame):
+        # Raised within an import the exception might be lost, as described above: the signal is
+        # sent again a little later. After some seconds it is raised all the same.
+        if len(heard) <= _MOST_WAITS and _is_importing(frame):
             _send_again(number)
         elif number == signal.SIGINT:
             signal.default_int_handler(number, frame)
         else:
             sys.exit(TERMINATED)
 
-    with _handlers(dict.fromkeys((signal.SIGINT, signal.SIGTERM), hear)), _sent_again():
+    with (
+        _install_handlers(dict.fromkeys((signal.SIGINT, signal.SIGTERM), hear)),
+        _resend_lost_signals(),
+    ):
         try:
             yield
         except Exception as error:
             if not heard:
                 raise
-            ended = KeyboardInterrupt() if heard[-1] == signal.SIGINT else SystemExit(TERMINATED)
-            raise ended from error
+            ending = KeyboardInterrupt() if heard[-1] == signal.SIGINT else SystemExit(TERMINATED)
+            raise ending from error
 
 
 @contextlib.contextmanager
-def _handlers(chosen: Mapping[signal.Signals, Callable[..., None]]) -> Iterator[None]:
-    """Those handlers, for a while; no others where this is not the thread that is signalled."""
+def _install_handlers(handlers: Mapping[signal.Signals, Callable[..., None]]) -> Iterator[None]:
+    """Install the handlers for a while; none outside the main thread, where Python refuses it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, handler) for number, handler in chosen.items()}
+    before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
     try:
         yield
     finally:
@@ -76,12 +81,12 @@ def _handlers(chosen: Mapping[signal.Signals, Callable[..., None]]) -> Iterator[
 
 
 @contextlib.contextmanager
-def _sent_again() -> Iterator[None]:
-    """A signal whose exception Python prints and forgets comes a second time."""
+def _resend_lost_signals() -> Iterator[None]:
+    """Send a signal again whose exception Python prints and forgets."""
     before = sys.unraisablehook
 
     def hear(ignored: "sys.UnraisableHookArgs") -> None:
-        number = _signal(ignored.exc_value)
+        number = _signal_of(ignored.exc_value)
         if number is None:
             before(ignored)
         else:
@@ -96,19 +101,20 @@ def _sent_again() -> Iterator[None]:
 
 def _send_again(number: int) -> None:
     main = threading.main_thread().ident
+    # Python runs signal handlers in the main thread only, so the signal goes there.
     again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (main, number))
     again.daemon = True
     again.start()
 
 
-def _imports(frame: FrameType | None) -> bool:
-    """Whether this is done while something is imported."""
+def _is_importing(frame: FrameType | None) -> bool:
+    """Return True if the frame runs within an import."""
     while frame is not None and frame.f_code.co_filename != _IMPORTING:
         frame = frame.f_back
     return frame is not None
 
 
-def _signal(error: BaseException | None) -> signal.Signals | None:
+def _signal_of(error: BaseException | None) -> signal.Signals | None:
     if isinstance(error, KeyboardInterrupt):
         return signal.SIGINT
     if isinstance(error, SystemExit) and error.code == TERMINATED:
@@ -126,15 +132,16 @@ class Printable(io.TextIOBase):
         self.stream = stream
         self._encoding = getattr(stream, "encoding", None) or "utf-8"
 
-    def write(self, given: str | bytes) -> int:
-        if isinstance(given, bytes) and not given:  # how click asks whether this takes bytes
+    def write(self, content: str | bytes) -> int:
+        # click writes b"" to find out whether this is a stream of bytes, and takes a TypeError for
+        # no. Yet it writes the completions of a shell as bytes.
+        if isinstance(content, bytes) and not content:
             raise TypeError("a stream of texts")
-        # Yet what it tells a shell, to complete a line, are bytes.
-        text = given if isinstance(given, str) else bytes(given).decode()
-        shown = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
-        raw = shown.encode(self._encoding, "backslashreplace")
+        text = content if isinstance(content, str) else bytes(content).decode()
+        escaped = CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+        raw = escaped.encode(self._encoding, "backslashreplace")
         self.stream.write(raw.decode(self._encoding))
-        return len(given)
+        return len(content)
 
     def flush(self) -> None:
         self.stream.flush()
@@ -152,10 +159,11 @@ class Printable(io.TextIOBase):
 
 @contextmanager
 def printable_streams() -> Iterator[None]:
-    """Makes both streams printable while the command runs; a closed output stays None.
+    """Make both streams printable while the command runs; a closed output stays None.
 
     Where standard input or error is closed, nothing is read, and what is written is dropped.
     """
+    # Descriptors first, then the objects: either may be closed without the other.
     before = sys.stdin, sys.stdout, sys.stderr
     _take_closed_numbers()
     with open(os.devnull, "r+") as nowhere:  # noqa: PTH123
@@ -168,9 +176,10 @@ def printable_streams() -> Iterator[None]:
 
 
 def _take_closed_numbers() -> None:
-    """Opens the null device at those of the numbers 0, 1 and 2 that are closed, for good.
+    """Open the null device at those of the descriptors 0, 1 and 2 that are closed, for good.
 
-    A file opened later would get that number, and what libraries in C and started processes write.
+    Else a file opened later would get that number, and with it the output of libraries in C and of
+    started processes.
     """
     while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(handle, True)
@@ -207,10 +216,10 @@ def cli(context: click.Context) -> None:
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
     else:
-        paths.forced()  # a way that is none is refused by every command
+        paths.forced_path()  # a way that is none is refused by every command
 
 
-cli.commands = Commands()  # type: ignore[assignment]  # none is ever added
+cli.commands = Commands()  # type: ignore[assignment]  # a Mapping: no command is ever added
 
 
 # -- entry ----------------------------------------------------------------------------------------
@@ -226,43 +235,48 @@ def main(arguments: list[str] | None = None) -> None:
         try:
             if sys.stdout is None:
                 raise OSError(errno.EBADF, "is closed")
-            with heard_signals():
+            with hear_signals():
+                # click's standalone mode would print its errors in several lines and exit by
+                # itself.
                 cli.main(args=arguments, prog_name="verify", standalone_mode=False)
             sys.stdout.flush()
         except (InputError, PlaceError) as error:
             _fail(str(error))
         except click.ClickException as error:
-            from verify.commands.shared.usage import usage_mistake
+            from verify.commands.shared.usage import explain_usage_mistake
 
-            _fail(usage_mistake(error, sys.argv[1:] if arguments is None else arguments))
+            _fail(explain_usage_mistake(error, sys.argv[1:] if arguments is None else arguments))
         except (KeyboardInterrupt, click.Abort):
             sys.exit(INTERRUPTED)
         except BrokenPipeError:
-            _unread()
+            _exit_unread()
         except SystemExit:
             if not isinstance(sys.stdout, Printable):  # click has seen it, and put its own there
-                _unread()
+                _exit_unread()
             raise
         except MemoryError:
             _fail("there is not enough memory for this")
         except OSError as error:
+            # An error without the name of a file is one of standard output, and flushing it at the
+            # end of the process would print a second one.
             if error.filename is None:
                 _write_nowhere()
             _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
 
 
-def _unread() -> None:
-    """The reader, such as head, has seen enough."""
+def _exit_unread() -> None:
+    """Exit where the reader of the output, such as head, has closed it."""
     _write_nowhere()
     sys.exit(UNREAD)
 
 
 def _write_nowhere() -> None:
-    """What is still to be written would fail again as the process ends."""
+    """Drop all further output: flushing it at the end of the process would fail again."""
     with contextlib.suppress(OSError, AttributeError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _fail(message: str) -> None:
+    # One line, whatever line feeds the message quotes.
     click.echo(f"verify: {' '.join(message.split())}", err=True)
     sys.exit(BAD_INPUT)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.input import (
     every_options,
     hamiltonian_options,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 )
 @every_options
 def modified(
-    scheme: str, order: int, every_hamiltonian: bool, separable: bool, **named: Any
+    scheme: str, order: int, every_hamiltonian: bool, separable: bool, **options: Any
 ) -> Answer:
     """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
 
@@ -47,24 +47,26 @@ def modified(
     from verify.calls.modified import modified_hamiltonian
 
     begun = time.perf_counter()
-    exact = one_or_every(every_hamiltonian, named, separable=separable)
-    found = modified_hamiltonian(scheme, exact, order, separable=separable)
+    exact = one_or_every(every_hamiltonian, options, separable=separable)
+    equation = modified_hamiltonian(scheme, exact, order, separable=separable)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: _json(found, seconds), lambda: _print(found), failed=found.verdict == "REFUTED"
+        lambda: _json(equation, seconds),
+        lambda: _print(equation),
+        failed=equation.verdict == "REFUTED",
     )
 
 
-def _json(found: "ModifiedEquation", seconds: str) -> dict[str, Any]:
-    first = found.first_not_hamiltonian
+def _json(equation: "ModifiedEquation", seconds: str) -> dict[str, Any]:
+    first = equation.first_not_hamiltonian
     return {
-        **picked(found, "verdict", "reason", "hamiltonian", "scheme", "order"),
-        "terms": [_term_json(term) for term in found.terms],
-        "modified_hamiltonian": found.text,
-        "known_to": found.reach,
+        **pick(equation, "verdict", "reason", "hamiltonian", "scheme", "order"),
+        "terms": [_term_json(term) for term in equation.terms],
+        "modified_hamiltonian": equation.text,
+        "known_to": equation.reach,
         "first_not_hamiltonian": first.power if first else None,
-        "divergence_is_leading_delta_j": found.area,
-        "domain": found.domain.texts,
+        "divergence_is_leading_delta_j": equation.area,
+        "domain": equation.domain.texts,
         "seconds": seconds,
     }
 
@@ -73,28 +75,30 @@ def _term_json(term: "Term") -> dict[str, Any]:
     return {
         "power": term.power,
         "field": {"p": term.p, "q": term.q},
-        **picked(term, "hamiltonian", "is_hamiltonian", "divergence"),
+        **pick(term, "hamiltonian", "is_hamiltonian", "divergence"),
         "witness": show.point_json(term.witness),
     }
 
 
-def _print(found: "ModifiedEquation") -> None:
-    click.echo(f"{found.verdict}: {found.reason}")
-    click.echo(f"  H        {found.hamiltonian}")
-    click.echo(f"  scheme   {found.scheme}")
-    for term in found.terms:
+def _print(equation: "ModifiedEquation") -> None:
+    click.echo(f"{equation.verdict}: {equation.reason}")
+    click.echo(f"  H        {equation.hamiltonian}")
+    click.echo(f"  scheme   {equation.scheme}")
+    for term in equation.terms:
         _print_term(term, f"h^{term.power}")
         if term.is_hamiltonian is False:
             break
-    first = found.first_not_hamiltonian
-    if first is not None and found.area:
+    first = equation.first_not_hamiltonian
+    if first is not None and equation.area:
         power = first.power + 1
         click.echo(f"  checked  the leading term of ΔJ is h^{power} times that divergence")
-    if found.reach >= 0:
-        further = f" + O(h^{found.reach + 1})" if first is None else f", to h^{found.reach} only"
-        click.echo(f"  H̃        {cut(found.text)}{further}")
-    if found.domain:
-        click.echo(f"  where    {found.domain.prose}")
+    if equation.reach >= 0:
+        further = (
+            f" + O(h^{equation.reach + 1})" if first is None else f", to h^{equation.reach} only"
+        )
+        click.echo(f"  H̃        {cut(equation.text)}{further}")
+    if equation.domain:
+        click.echo(f"  where    {equation.domain.prose}")
 
 
 def _print_term(term: "Term", name: str) -> None:
@@ -103,5 +107,5 @@ def _print_term(term: "Term", name: str) -> None:
         return
     click.echo(f"  {name:8} p' = {cut(term.p)}, q' = {cut(term.q)}")
     click.echo(f"  {'':8} divergence {cut(term.divergence)}")
-    if term.is_hamiltonian is False and (at := show.point_text(term.witness)):
-        click.echo(f"  witness  {at}: the divergence is {term.enclosure}")
+    if term.is_hamiltonian is False and (point := show.point_text(term.witness)):
+        click.echo(f"  witness  {point}: the divergence is {term.enclosure}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import (
     every_options,
@@ -16,7 +16,7 @@ from verify.commands.shared.input import (
     one_or_every,
     scheme_option,
 )
-from verify.commands.shared.output import cut, line
+from verify.commands.shared.output import cut, print_line
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def prove(
     time_dependent: bool,
     degrees: int | None,
     certificate: Path | None,
-    **named: Any,
+    **options: Any,
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
@@ -76,7 +76,7 @@ def prove(
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
     only = {"separable": separable, "time_dependent": time_dependent, "degrees": degrees}
-    exact = one_or_every(every_hamiltonian, named, **only)
+    exact = one_or_every(every_hamiltonian, options, **only)
     if exact is not None:
         return _prove_one(exact, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
@@ -91,50 +91,53 @@ def _prove_every(
     proof = prove_every(scheme, separable, timed=timed, degrees=1 if degrees is None else degrees)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        from verify.proof.certificates.every import of_every
+        from verify.proof.certificates.every import certify_every
 
-        _write(of_every(proof), certificate)
+        _write(certify_every(proof), certificate)
     texts = {"hamiltonian": proof.quantifier}
-    shown = partial(show.print_symplectic, texts, proof.scheme)
+    print_in_degrees = partial(show.print_symplectic, texts, proof.scheme)
     return Answer(
         lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
-        lambda: (_print_every if proof.planar else shown)(proof),
+        lambda: (_print_every if proof.planar else print_in_degrees)(proof),
         failed=proof.verdict == "REFUTED",
     )
 
 
 def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
-    from verify.proof.certificates.one import of_one
+    from verify.proof.certificates.one import certify_one
     from verify.proof.order import prove as prove_order
     from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
     from verify.schemes import get
 
     begun = time.perf_counter()
-    chosen = get(scheme)
-    proof = prove_order(chosen.step_map(exact), chosen)
-    potential = potential_of(proof, chosen) if proof.planar else None
-    special = () if potential is None else special_values(proof, chosen)
+    integrator = get(scheme)
+    proof = prove_order(integrator.step_map(exact), integrator)
+    potential = potential_of(proof, integrator) if proof.planar else None
+    special = () if potential is None else special_values(proof, integrator)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        _write(_certificate(partial(of_one, proof, potential), proof, exact, chosen), certificate)
+        _write(
+            _build_certificate(partial(certify_one, proof, potential), proof, exact, integrator),
+            certificate,
+        )
 
-    def more() -> dict[str, Any]:
+    def extra_json() -> dict[str, Any]:
         if potential is None:
             return show.checks_json(proof)
         return {"delta_j": proof.step_map.delta_j_text, "telescopes": potential.holds,
                 "potential": potential.text, "special_values": list(map(_special_json, special)),
                 "witness": show.point_json(proof.witness)}  # fmt: skip
 
-    def told() -> None:
+    def show_proof() -> None:
         if potential is None:  # of p1 … pn and q1 … qn: S in place of ΔJ
-            show.print_symplectic(exact.texts, chosen.name, proof)
+            show.print_symplectic(exact.texts, integrator.name, proof)
         else:
-            show.print_proof(exact, chosen.name, proof, potential, special)
+            show.print_proof(exact, integrator.name, proof, potential, special)
 
     return Answer(
-        lambda: show.proof_json(exact.texts, chosen.name, proof, seconds, **more()),
-        told,
+        lambda: show.proof_json(exact.texts, integrator.name, proof, seconds, **extra_json()),
+        show_proof,
         failed=proof.verdict == "REFUTED",
     )
 
@@ -144,28 +147,32 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
 
     proof, keys = special.proof, ("verdict", "reason", "area_preserving")
     order, value = show.order_json(proof.order), text(special.value)
-    return {"parameter": special.parameter, "value": value, **order, **picked(proof, *keys),
+    return {"parameter": special.parameter, "value": value, **order, **pick(proof, *keys),
             "domain": proof.domain.texts}  # fmt: skip
 
 
-def _certificate(
-    made: "Callable[[], dict[str, Any]]",
+def _build_certificate(
+    make: "Callable[[], dict[str, Any]]",
     proof: "Proof",
     exact: "Hamiltonian",
     scheme: "Scheme",
 ) -> dict[str, Any]:
-    """Of this proof; or, where the checker does not know H's functions, of that for every H."""
-    from verify.proof.certificates.every import of_every
+    """Return the certificate of this proof; or of that for every H.
+
+    The latter where the checker does not know H's functions.
+    """
+    from verify.proof.certificates.every import certify_every
     from verify.proof.every import prove_every
 
     try:
-        return made()
+        return make()
     except InputError as error:
         if scheme.every_h is None or proof.verdict != "PROVED":
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
+        # The proof for every H must be of the same class as this H, or it would not speak of it.
         timed, degrees = exact.time_dependent, exact.degrees
-        return of_every(prove_every(scheme.name, timed=timed, degrees=degrees))
+        return certify_every(prove_every(scheme.name, timed=timed, degrees=degrees))
 
 
 def _write(data: dict[str, Any], path: Path) -> None:
@@ -175,6 +182,8 @@ def _write(data: dict[str, Any], path: Path) -> None:
     from verify.proof.certificates.checker import check
 
     try:
+        # The checker of users, which shares no code with the prover: a certificate that it would
+        # refuse is never written.
         check(data)
     except ValueError as reason:
         raise InputError("certificate", str(path), f"would be refused: {reason}") from None
@@ -183,19 +192,19 @@ def _write(data: dict[str, Any], path: Path) -> None:
 
 def _print_every(proof: "EveryProof") -> None:
     click.echo(f"{proof.verdict}: {proof.reason}")
-    line("H", proof.quantifier)
-    line("scheme", proof.scheme)
+    print_line("H", proof.quantifier)
+    print_line("scheme", proof.scheme)
     if proof.order is not None:
         leading = cut(proof.formula or proof.leading) or "which is not written out"
-        line("leading", f"h^{proof.order} · ({leading})")
+        print_line("leading", f"h^{proof.order} · ({leading})")
         if proof.formula:
-            line("", f"= h^{proof.order} · ({cut(proof.leading)})")
+            print_line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:
         by = "D" if proof.timed else "X"
-        line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
+        print_line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
     if proof.telescopes is not None:
-        line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
+        print_line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:
-        line("where", proof.domain.prose)
-    line("the map", f"agrees with the exact flow {show.agreement(proof)}")
+        print_line("where", proof.domain.prose)
+    print_line("the map", f"agrees with the exact flow {show.describe_agreement(proof)}")
     show.print_checks(proof)

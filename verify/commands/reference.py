@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.reference_compare import compare
-from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.destinations import OUT_FOLDER, writable
+from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable
 from verify.commands.shared.group import Group
 from verify.commands.shared.input import FILE, PATH
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
@@ -16,7 +16,7 @@ from verify.errors import NOT_GIVEN, InputError, without_controls
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.reference.check.check import Checked
+    from verify.reference.check.check import CheckResult
 
 _SHARE = 0.05
 _MOST_STEPS = 10**6  # a minute or two
@@ -67,20 +67,20 @@ def make(
         from verify.reference.make.parquet import require
 
         require()
-    asked = making.load([Path(x) for x in scenes] or making.committed_scenes())
-    folder = output or Path(f"{asked[0].scene.name}-reference" if scenes else "reference-data")
-    writable(folder)
-    making.alone(folder, asked, parquet=parquet)
-    results = perform(plan_references([x.scene for x in asked]), keep, where)
-    data = [making.data_of(x.scene, results) for x in asked]
+    sources = making.load([Path(x) for x in scenes] or making.committed_scenes())
+    folder = output or Path(f"{sources[0].scene.name}-reference" if scenes else "reference-data")
+    ensure_writable(folder)
+    making.check_is_alone(folder, sources, parquet=parquet)
+    results = perform(plan_references([x.scene for x in sources]), keep, where)
+    data = [making.data_of(x.scene, results) for x in sources]
     files = making.files_of(data, parquet=parquet)
-    manifest = making.manifest_of(asked, files, making.command_of(scenes, parquet))
+    manifest = making.manifest_of(sources, files, making.command_of(scenes, parquet))
     making.write(folder, files, manifest)
     rows = sum(each.count for each in data)
     size = sum(map(len, files.values()))
-    told: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
+    summary: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
     return Answer(
-        lambda: told | {"files": [x.model_dump(mode="json") for x in manifest.files]},
+        lambda: summary | {"files": [x.model_dump(mode="json") for x in manifest.files]},
         lambda: click.echo(f"{rows:,} rows in {len(files)} files, {size:,} bytes → {folder}"),
     )
 
@@ -128,34 +128,35 @@ def check(
     if most_steps is None and not everything:
         most_steps = _MOST_STEPS
     seed = SystemRandom().randrange(10**6) if seed is None else seed
-    with counting_bar("recomputed", 1000, unit="") as tell:
-        found = checking.check(
+    # In thousandths: the check reports a count and its total, which it finds out itself.
+    with counting_bar("recomputed", 1000, unit="") as advance:
+        report = checking.check(
             folder or PUBLISHED,
             share=1.0 if everything else share,
             seed=seed,
-            own=SCENES if folder is None else None,
+            scenes_folder=SCENES if folder is None else None,
             most_steps=most_steps,
             where=where,
-            done=lambda count, of: tell(1000 * count // of),
+            done=lambda count, total: advance(1000 * count // total),
         )
-    return Answer(lambda: _as_json(found), lambda: _print(found), failed=bool(found.differences))
+    return Answer(lambda: _as_json(report), lambda: _print(report), failed=bool(report.differences))
 
 
-def _as_json(found: "Checked") -> dict[str, Any]:
+def _as_json(report: "CheckResult") -> dict[str, Any]:
     return {
-        "agrees": not found.differences,
-        **picked(found, "files", "rows", "recomputed", "seed"),
-        "differences": [x.as_json() for x in found.differences],
-        **picked(found, "not_recomputed", "not_compared"),
+        "agrees": not report.differences,
+        **pick(report, "files", "rows", "recomputed", "seed"),
+        "differences": [x.as_json() for x in report.differences],
+        **pick(report, "not_recomputed", "not_compared"),
     }
 
 
-def _print(found: "Checked") -> None:
-    for line in (*found.not_recomputed, *found.not_compared):
+def _print(report: "CheckResult") -> None:
+    for line in (*report.not_recomputed, *report.not_compared):
         click.echo(f"not looked at: {without_controls(line)}")
-    again = f"{found.recomputed:,} computed again (--seed {found.seed})"
-    if found.differences:
-        more = len(found.differences) - 1
-        click.echo(f"DIFFERS: {found.differences[0]}" + (f"; and {more:,} more" if more else ""))
+    again = f"{report.recomputed:,} computed again (--seed {report.seed})"
+    if report.differences:
+        more = len(report.differences) - 1
+        click.echo(f"DIFFERS: {report.differences[0]}" + (f"; and {more:,} more" if more else ""))
     else:
-        click.echo(f"agrees: {found.files} files, {found.rows:,} rows, of which {again}")
+        click.echo(f"agrees: {report.files} files, {report.rows:,} rows, of which {again}")

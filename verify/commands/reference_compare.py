@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.input import PATH, SCHEME
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from verify.reference.compare.compare import Column, Compared, Explained, Separated
-    from verify.reference.compare.rows import Theirs
+    from verify.reference.compare.compare import Column, Comparison, Explanation, WorstSeparation
+    from verify.reference.compare.rows import SubmittedTable
 
 _MOST_SHOWN = 5
 _MOST_NAMED = 4  # mistakes of which one fits
@@ -55,7 +55,7 @@ def compare(
     data: Path | None,
     scene: str | None,
     columns: tuple[str, ...],
-    **given: str | None,
+    **options: str | None,
 ) -> Answer:
     """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
 
@@ -72,42 +72,45 @@ def compare(
     against data in n degrees of freedom, with q0_1 … q0_n, p0_1 … p0_n, or --q 0.3,0.1 --p 0,0.2.
     """
     from verify.commands.shared.progress import progress_bar
-    from verify.reference.compare.compare import compare as compared
+    from verify.reference.compare.compare import compare as compare_tables
     from verify.reference.compare.published import load
     from verify.reference.compare.submitted import has_degrees, read
     from verify.reference.make.make import PUBLISHED
 
-    said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
-    names, folder = _names(columns), data or PUBLISHED
+    labels = {name: x for name, x in {"scene": scene, **options}.items() if x is not None}
+    names, folder = _parse_names(columns), data or PUBLISHED
+    # The header of their table tells which of the reference data to read.
     ours = load(folder, scene, planar=not has_degrees(theirs, names))
-    table = read(theirs, ours, said, names)
+    table = read(theirs, ours, labels, names)
     with progress_bar("compared", len(table.runs), unit="run") as advance:
-        found = compared(ours, table, lambda *_: advance(1))
+        comparison = compare_tables(ours, table, lambda *_: advance(1))
     return Answer(
-        lambda: _as_json(table, found), lambda: _print(table, found), failed=not found.agrees
+        lambda: _as_json(table, comparison),
+        lambda: _print(table, comparison),
+        failed=not comparison.agrees,
     )
 
 
-def _names(columns: tuple[str, ...]) -> dict[str, str]:
-    found: dict[str, str] = {}
+def _parse_names(columns: tuple[str, ...]) -> dict[str, str]:
+    names: dict[str, str] = {}
     for text in columns:
         ours, equals, theirs = text.partition("=")
         if not (ours and equals and theirs):
             raise InputError("--column", text, "write it as OURS=THEIRS, such as q=position")
-        if ours in found:
+        if ours in names:
             raise InputError("--column", text, f"{ours} is given twice")
-        found[ours] = theirs
-    return found
+        names[ours] = theirs
+    return names
 
 
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
+def _as_json(table: "SubmittedTable", comparison: "Comparison") -> dict[str, Any]:
     return {
-        **picked(found, "agrees", "rows", "runs"),
+        **pick(comparison, "agrees", "rows", "runs"),
         "rows_read": table.rows,
-        **picked(table, "other_steps", "outside"),
+        **pick(table, "other_steps", "outside"),
         "first_outside": table.first_outside or None,
         "ignored_columns": list(table.ignored),
         "columns": [
@@ -115,12 +118,13 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
                 "column": x.name,
                 "verdict": _KEYS[x.verdict],
                 "rows": x.rows,
+                # Infinite where every printed digit agrees; JSON has no infinity.
                 "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
-                **picked(x, "run", "step"),
+                **pick(x, "run", "step"),
                 "parts_in": x.parts_run,
                 "parts_at": x.parts_at,
             }
-            for x in found.columns
+            for x in comparison.columns
         ],
         "diagnoses": [
             {
@@ -128,14 +132,14 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
                 "mistakes": [{"id": name, "says": says} for name, says in x.mistakes],
                 "certain": len(x.mistakes) == 1,
             }
-            for x in found.diagnoses
+            for x in comparison.diagnoses
         ],
-        **picked(found, "unexplained", "lost", "overflows"),
-        "separation": found.separated and _separation_json(found.separated),
+        **pick(comparison, "unexplained", "lost", "overflows"),
+        "separation": comparison.separated and _separation_json(comparison.separated),
     }
 
 
-def _separation_json(x: "Separated") -> dict[str, Any]:
+def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
     from verify.arithmetic.exact import decimal
 
     ways = {"plain": x.result.plain, "closed_form": x.result.closed_form}
@@ -146,49 +150,53 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 # -- for people -----------------------------------------------------------------------------------
 
 
-def _print(table: "Theirs", found: "Compared") -> None:
+def _print(table: "SubmittedTable", comparison: "Comparison") -> None:
     from verify.arithmetic.exact import short
 
-    of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"
-    click.echo(f"{of}; {_count(table.rows, 'row')} read")
+    rows, runs = _format_count(comparison.rows, "row"), _format_count(comparison.runs, "run")
+    click.echo(f"{rows} of {runs} compared; {_format_count(table.rows, 'row')} read")
     if table.other_steps:
-        click.echo(
-            f"of steps that the reference data do not have: {_count(table.other_steps, 'row')}"
-        )
+        count = _format_count(table.other_steps, "row")
+        click.echo(f"of steps that the reference data do not have: {count}")
     if table.outside:
         first = table.first_outside
-        count = _count(table.outside, "row")
+        count = _format_count(table.outside, "row")
         click.echo(f"of runs that they do not have: {count}, the first {first}")
     if table.ignored:
         click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
     for name, (theirs, ours) in table.read_as.items():
         click.echo(f"your {name} {short(theirs)} is taken for {short(ours)}")
-    for column in found.columns:
-        click.echo(_column(column))
-    if found.separated is not None:
-        click.echo(_separated(found.separated))
-    _listed(found.lost, "from step {step} on rounding may have taken every digit; not judged")
-    _listed(found.overflows, "not finite at step {step}, where doubles may overflow")
-    for diagnosis in found.diagnoses:
-        click.echo(_diagnosis(diagnosis))
-    unknown = [f"{_run(label)}: no known mistake fits" for label in found.unexplained]
-    _few(unknown, " that none fits")
+    for column in comparison.columns:
+        click.echo(_describe_column(column))
+    if comparison.separated is not None:
+        click.echo(_describe_separation(comparison.separated))
+    _print_steps(
+        comparison.lost, "from step {step} on rounding may have taken every digit; not judged"
+    )
+    _print_steps(comparison.overflows, "not finite at step {step}, where doubles may overflow")
+    for diagnosis in comparison.diagnoses:
+        click.echo(_describe_diagnosis(diagnosis))
+    unknown = [
+        f"{_shorten_label(label)}: no known mistake fits" for label in comparison.unexplained
+    ]
+    _print_few(unknown, " that none fits")
 
 
-def _count(number: int, what: str) -> str:
+def _format_count(number: int, what: str) -> str:
     return f"{number:,} {what}" + ("" if number == 1 else "s")
 
 
-def _run(label: str) -> str:
-    """A run's label, in which no number is very long."""
-    return _LONG.sub(lambda found: _compact(found[0]), label)
+def _shorten_label(label: str) -> str:
+    """Return a run's label, with its long numbers shortened."""
+    return _LONG.sub(lambda match: _shorten_number(match[0]), label)
 
 
-def _compact(text: str) -> str:
-    """A long decimal or quotient as a decimal with an exponent, its middle left out."""
+def _shorten_number(text: str) -> str:
+    """Return a long decimal or quotient as a decimal with an exponent, its middle left out."""
     from verify.arithmetic.exact import decimal, rational
 
     exact = decimal(rational(text), _MOST_DIGITS)
+    # `decimal` writes all digits, then e and a signed exponent.
     digits, _, exponent = exact.partition("e")
     short = digits.rstrip("0").rstrip(".") if "." in digits else digits
     if len(short) > _DIGITS_SHOWN:
@@ -196,46 +204,51 @@ def _compact(text: str) -> str:
     return f"{short}e{exponent}" if exponent.strip("+0") else short
 
 
-def _column(x: "Column") -> str:
+def _describe_column(x: "Column") -> str:
     name, verdict = _SHOWN.get(x.name, x.name), _KEYS[x.verdict]
     if verdict == "lost":
         return f"{name:>3}  {_SAYS[x.verdict]}"
-    shown = "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _ANY else "no"
-    line = f"{name:>3}  {shown:>5} digits  {_SAYS[x.verdict]}"
+    digits_text = "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _ANY else "no"
+    line = f"{name:>3}  {digits_text:>5} digits  {_SAYS[x.verdict]}"
     if x.parts_run is not None:
-        return f"{line}, first at step {x.parts_at} ({_run(x.parts_run)})"
-    if shown == "no":
-        return f"{name:>3}  {_NONE_LEFT[verdict]} at step {x.step} ({_run(x.run)})"
-    return line if verdict == "agrees" else f"{line}; the fewest at step {x.step} ({_run(x.run)})"
+        return f"{line}, first at step {x.parts_at} ({_shorten_label(x.parts_run)})"
+    if digits_text == "no":
+        return f"{name:>3}  {_NONE_LEFT[verdict]} at step {x.step} ({_shorten_label(x.run)})"
+    return (
+        line
+        if verdict == "agrees"
+        else f"{line}; the fewest at step {x.step} ({_shorten_label(x.run)})"
+    )
 
 
-def _listed(steps: "Mapping[str, int]", says: str) -> None:
-    lines = [f"{_run(label)}: {says.format(step=step)}" for label, step in steps.items()]
-    _few(lines, ", likewise")
+def _print_steps(steps: "Mapping[str, int]", says: str) -> None:
+    lines = [f"{_shorten_label(label)}: {says.format(step=step)}" for label, step in steps.items()]
+    _print_few(lines, ", likewise")
 
 
-def _few(lines: "Sequence[str]", rest: str) -> None:
-    """The first of the runs' lines, and how many more there are."""
+def _print_few(lines: "Sequence[str]", rest: str) -> None:
+    """Print the first of the runs' lines, and the number of the others."""
     for line in lines[:_MOST_SHOWN]:
         click.echo(line)
     if len(lines) > _MOST_SHOWN:
-        click.echo(f"… and {_count(len(lines) - _MOST_SHOWN, 'more run')}{rest}")
+        click.echo(f"… and {_format_count(len(lines) - _MOST_SHOWN, 'more run')}{rest}")
 
 
-def _separated(x: "Separated") -> str:
+def _describe_separation(x: "WorstSeparation") -> str:
     from verify.arithmetic.exact import decimal
 
     plain = x.result.plain
     assert plain is not None  # noqa: S101 - it is not shown without
     parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in plain.parts.rounding)
     return (
-        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_run(x.run)}); rounding "
-        f"makes {plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"
+        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_shorten_label(x.run)}); "
+        f"rounding makes {plain.parts.total.value} of the Λ of a plain float64 program there "
+        f"({parts})"
     )
 
 
-def _diagnosis(x: "Explained") -> str:
-    many = _count(x.runs, "run")
+def _describe_diagnosis(x: "Explanation") -> str:
+    many = _format_count(x.runs, "run")
     says = [says for _, says in x.mistakes]
     if len(says) == 1:
         return f"in {many}: {says[0]}"

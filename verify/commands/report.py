@@ -12,10 +12,15 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.destinations import OUT_FOLDER, check_ours, keepable, writable
-from verify.commands.shared.input import hamiltonian_of, target
+from verify.commands.shared.destinations import (
+    OUT_FOLDER,
+    check_ours,
+    ensure_keepable,
+    ensure_writable,
+)
+from verify.commands.shared.input import hamiltonian_of, load_target
 from verify.commands.shared.one_line import (
-    goes_alone,
+    check_scene_alone,
     line_of,
     scenes_of,
     start_options,
@@ -73,7 +78,7 @@ def report(
     findings: Path | None,
     force: bool,
     where: "Placement",
-    **given: Any,
+    **options: Any,
 ) -> Answer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
@@ -98,44 +103,47 @@ def report(
     if findings is not None and scene != _INTEGRATORS:
         raise InputError("--findings", str(findings), "is of `verify report integrators`")
     if scene == _INTEGRATORS:
-        folder, made = _integrators(scene, output, more, where, force)
+        folder, result = _verify_integrators(scene, output, more, where, force)
     else:
-        folder, made = _scene(_asked(scene, given), output, more, where, force)
-    written = [_writer(name, full)(made, folder) for name in dict.fromkeys(formats)]
+        folder, result = _verify_scene(_read_request(scene, options), output, more, where, force)
+    # Each format once, in the order in which they were typed.
+    paths = [_select_writer(name, full)(result, folder) for name in dict.fromkeys(formats)]
     if findings is not None:
-        written += _findings(made, findings)
-    return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
+        paths += _write_notes(result, findings)
+    return Answer(lambda: result.model_dump(mode="json"), lambda: show.print_report(result, *paths))
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """What is to be verified, `typed` as the command line has it; `name`: of the folder."""
+class _Request:
+    """The scenes and claims to verify; `arguments`: as typed; `name`: that of the folder."""
 
-    typed: str
+    arguments: str
     name: str
     title: str
     scenes: "list[Scene]"
     claims: "ClaimsFile | None" = None
 
 
-def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
+def _read_request(scene: str | None, options: Mapping[str, Any]) -> _Request:
     if scene is None:
-        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given))
-        name = given["system"] or "hamiltonian"
-        return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
-    goes_alone(given)
-    title, scenes, file = target(scene, _INTEGRATORS)
-    return _Asked(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
+        scenes = scenes_of(None, options, ("q", "p"), partial(_build_sections, options))
+        name = options["system"] or "hamiltonian"
+        return _Request(
+            line_of(options), name, f"{', '.join(options['schemes'])} on {name}", scenes
+        )
+    check_scene_alone(options)
+    title, scenes, file = load_target(scene, _INTEGRATORS)
+    return _Request(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
 
 
-def _sections(
-    given: Mapping[str, Any], *, q: Any, p: Any, step_sizes: Sequence[str], **length: Any
+def _build_sections(
+    options: Mapping[str, Any], *, q: Any, p: Any, step_sizes: Sequence[str], **length: Any
 ) -> dict[str, Any]:
-    """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
+    """Return the sections of a report on one orbit: proofs, runs at each step, series over time."""
     from verify.arithmetic.exact import positive
     from verify.scenes.observables import carries_defect
 
-    exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
+    exact = hamiltonian_of(options["system"], options["hamiltonian"], options["params"])
     start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
     grid |= {"separate": True} if carries_defect(exact) else {}
@@ -149,27 +157,27 @@ def _sections(
     }
 
 
-def _scene(
-    asked: _Asked, output: Path | None, more: str, where: "Placement", force: bool
+def _verify_scene(
+    request: _Request, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     from verify.claims.judging import add_claims
     from verify.claims.report import make_report
     from verify.studies.plan import plan_scenes
 
-    file, scenes = asked.claims, asked.scenes
+    file, scenes = request.claims, request.scenes
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
-    folder = output or Path(f"{asked.name}-report")
-    _check(folder, force)
-    keepable(folder, "--output")
+    folder = output or Path(f"{request.name}-report")
+    _check_folder(folder, force)
+    ensure_keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, done):
-        made = make_report(
-            asked.title,
+    with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, on_result):
+        result = make_report(
+            request.title,
             scenes,
             claims,
             store,
-            command=f"verify report {asked.typed} -o {folder.name}{more}",
+            command=f"verify report {request.arguments} -o {folder.name}{more}",
             claim_scenes=claim_scenes,
             causes=file.causes if file else (),
             figures=file.figures if file else (),
@@ -177,55 +185,55 @@ def _scene(
             not_claimed=file.left_out if file else (),
             plan=planned,
             where=where,
-            done=done,
+            done=on_result,
         )
-    return folder, made
+    return folder, result
 
 
-def _integrators(
+def _verify_integrators(
     scene: str, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
-    """Other libraries run on this machine, one a process."""
+    """Audit other libraries on this machine, one a process."""
     from verify.audits.report import make_integrators_report
 
     if where.cluster is not None:
         raise InputError("--cluster", where.cluster, "the integrators of others are run here")
     folder = output or Path(f"{scene}-report")
-    _check(folder, force)
-    writable(folder)
+    _check_folder(folder, force)
+    ensure_writable(folder)
     command = f"verify report {scene} -o {folder.name}{more}"
     workers = where.workers or min(_MOST, os.cpu_count() or 1)
-    return folder, make_integrators_report(command, _tell, workers)
+    return folder, make_integrators_report(command, _show_progress, workers)
 
 
-def _findings(made: "Report", folder: Path) -> list[Path]:
-    """The notes that were written; why any was not goes to standard error."""
+def _write_notes(result: "Report", folder: Path) -> list[Path]:
+    """Write the notes, and return their paths; standard error says why one was not written."""
     from verify.audits.findings.markdown import write_findings
 
-    writable(folder)
-    written, left = write_findings(made, folder, _tell)
-    for name, why in left.items():
+    ensure_writable(folder)
+    paths, unwritten = write_findings(result, folder, _show_progress)
+    for name, why in unwritten.items():
         click.echo(f"{name}.md is not written: {why}", err=True)
-    return written
+    return paths
 
 
-def _check(folder: Path, force: bool) -> None:
+def _check_folder(folder: Path, force: bool) -> None:
     if not force:
         check_ours(folder, advice=", or --force")
 
 
-def _tell(name: str) -> None:
-    """Progress, on a terminal only."""
+def _show_progress(name: str) -> None:
+    """Print the progress, on a terminal only."""
     if sys.stderr.isatty():
         click.echo(f"{name} …", err=True)
 
 
-def _writer(name: str, full: bool) -> "Callable[[Report, Path], Path]":
-    """What writes a report in that format; only what is asked for is imported."""
+def _select_writer(name: str, full: bool) -> "Callable[[Report, Path], Path]":
+    """Return the writer of a report in that format, importing no other."""
     if name == _PAGE:
         from verify.pages.page import write as write_page
 
-        return lambda made, folder: write_page(made, folder, full=full)
+        return lambda result, folder: write_page(result, folder, full=full)
     from verify.pages.markdown.page import write
 
     return write

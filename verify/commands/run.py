@@ -11,8 +11,18 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER, STANDARD_OUTPUT, keepable
-from verify.commands.shared.input import listed, scheme_option, start_options, with_kept_hamiltonian
+from verify.commands.shared.destinations import (
+    OUT_FILE,
+    OUT_FOLDER,
+    STANDARD_OUTPUT,
+    ensure_keepable,
+)
+from verify.commands.shared.input import (
+    parse_coordinates,
+    scheme_option,
+    start_options,
+    with_kept_hamiltonian,
+)
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -77,27 +87,28 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
         raise InputError("--points", points, "goes with --csv")
     if points is not None:
         whole("points", points, 1, MOST_POINTS)
-    result, note = _result(exact, scheme, **options)
+    result, note = _run_scheme(exact, scheme, **options)
     if table is not None:
         _write_orbit(result, table, MOST_POINTS if points is None else points)
 
-    def shown() -> None:
+    def show_run() -> None:
         show.print_run(result)
         if note:
             click.echo(note)
 
-    def beside() -> None:
-        for line in filter(None, (show.unfinished(result), note)):
+    # With `--csv -` the table alone is on standard output; remarks go to standard error.
+    def show_status() -> None:
+        for line in filter(None, (show.explain_unfinished(result), note)):
             click.echo(line, err=True)
 
     return Answer(
         lambda: show.run_json(result),
-        beside if table == STANDARD_OUTPUT else shown,
+        show_status if table == STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
     )
 
 
-def _result(
+def _run_scheme(
     exact: "Hamiltonian",
     scheme: str,
     *,
@@ -111,24 +122,29 @@ def _result(
     p: str,
     t0: str,
 ) -> "tuple[RunResult, str]":
-    """The run, and what is to be said of its time."""
+    """Return the run, and a note on a time that is no multiple of the step size."""
     from verify.arithmetic.exact import positive
     from verify.commands.shared.progress import counting_bar
     from verify.execution.keeping import Keeper, name_of
     from verify.hamiltonians.start import check_start
     from verify.runs.run import run as run_scheme
     from verify.scenes.observables import REPORTED, carries
-    from verify.scenes.values import AUTO, rounded_down, steps_from
+    from verify.scenes.values import AUTO, describe_rounding, steps_from
 
-    start: dict[str, Any] = {"q": listed(q, exact), "p": listed(p, exact), "t0": t0}
+    start: dict[str, Any] = {
+        "q": parse_coordinates(q, exact),
+        "p": parse_coordinates(p, exact),
+        "t0": t0,
+    }
     check_start(exact, **start)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:
-        keepable(keep)
-    asked = (exact.formula, exact.values, scheme, step_size, count, start, digits, arithmetic)
-    keeper, reported = Keeper(keep, name_of(asked)), all(carries(exact, n) for n in REPORTED)
-    with counting_bar("stepping", count) as tell:
+        ensure_keepable(keep)
+    # The name of the checkpoints: a command with any other argument must not go on from them.
+    identity = (exact.formula, exact.values, scheme, step_size, count, start, digits, arithmetic)
+    keeper, reported = Keeper(keep, name_of(identity)), all(carries(exact, n) for n in REPORTED)
+    with counting_bar("stepping", count) as advance:
         result = run_scheme(
             exact,
             scheme,
@@ -136,19 +152,20 @@ def _result(
             steps=count,
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
-            # The plain way shows what rounding does to it; at many digits that is nothing.
+            # Λ of the plain evaluation shows the effect of rounding in float64; at many digits
+            # there is none to be seen.
             observables=REPORTED if arithmetic == "float64" and reported else None,
-            progress=tell,
+            progress=advance,
             keeper=keeper,
             **start,
         )
     keeper.clear()
     until = None if time is None else positive(time, "time")
-    return result, rounded_down(until, [positive(step_size, "step_size")])
+    return result, describe_rounding(until, [positive(step_size, "step_size")])
 
 
 def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
-    """Writes so many states after the initial one at most; `path`: see `OUT_FILE`.
+    """Write so many states after the initial one at most; `path`: see `OUT_FILE`.
 
     InputError where the file cannot be written, and where no digits of the states are known.
     """
@@ -156,16 +173,16 @@ def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
     from verify.files import write_atomically
     from verify.runs.orbit import orbit_of
 
-    with counting_bar("stepping again, for the states", result.steps) as tell:
-        table = orbit_of(result, points, tell)
+    with counting_bar("stepping again, for the states", result.steps) as advance:
+        table = orbit_of(result, points, advance)
     if path == STANDARD_OUTPUT:
-        click.echo(_as_csv(table), nl=False)
+        click.echo(_format_csv(table), nl=False)
     else:
-        write_atomically(path, _as_csv(table))
+        write_atomically(path, _format_csv(table))
 
 
-def _as_csv(table: "OrbitTable") -> str:
-    """The rows under a header, ended by line feeds; what is not defined at a state is empty."""
+def _format_csv(table: "OrbitTable") -> str:
+    """Return the rows under a header, with line feeds; a value undefined at a state is empty."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(table.columns)

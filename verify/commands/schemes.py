@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 
 if TYPE_CHECKING:
     from verify.schemes.scheme import Scheme
@@ -23,19 +23,19 @@ def schemes() -> Answer:
     """
     from verify.schemes import aliases, get, names
 
-    found = [get(name) for name in names()]
+    entries = [get(name) for name in names()]
     others: dict[str, list[str]] = {}
     for alias, name in aliases().items():
         others.setdefault(name, []).append(alias)
-    rows = [_row(scheme, others.get(scheme.name, [])) for scheme in found]
+    rows = [_row_json(scheme, others.get(scheme.name, [])) for scheme in entries]
     return Answer(lambda: {"schemes": rows}, lambda: _print(rows))
 
 
-def _row(scheme: "Scheme", others: list[str]) -> dict[str, Any]:
+def _row_json(scheme: "Scheme", others: list[str]) -> dict[str, Any]:
     return {
-        **picked(scheme, "name", "order"),
+        **pick(scheme, "name", "order"),
         "symplectic": scheme.area_preserving,
-        **picked(scheme, "symmetric", "explicit"),
+        **pick(scheme, "symmetric", "explicit"),
         "hamiltonian": "H = T(p) + V(q)" if scheme.needs_separable else "every smooth H",
         "cost": getattr(scheme.every_h, "a_step", ""),
         "evaluations": scheme.evaluations,

@@ -1,6 +1,6 @@
-"""The command `verify separate`: truncation and four kinds of rounding in Λ, or in W.
+"""The command `verify separate`: truncation and four kinds of rounding in Λ.
 
-Truncation and rounding in Λ, or in n degrees of freedom in W, as `verify separate` tells it.
+In n degrees of freedom they are parts of W.
 """
 
 import textwrap
@@ -8,9 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.input import listed, scheme_option, start_options, with_kept_hamiltonian
+from verify.commands.shared.input import (
+    parse_coordinates,
+    scheme_option,
+    start_options,
+    with_kept_hamiltonian,
+)
 from verify.commands.shared.output import plain_json, print_once
 
 if TYPE_CHECKING:
@@ -23,36 +28,36 @@ _LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
 def separation_json(grid: "AnyGrid") -> dict[str, Any]:
-    """The first step size's parts, and those of all of them as `grid`; of W each is a matrix."""
-    points = [_separated(point) for point in grid.points]
+    """Return the first step size's parts, and those of all as `grid`; of W each is a matrix."""
+    points = [_point_json(point) for point in grid.points]
     crossover = {way: getattr(grid, way).model_dump(mode="json") for way in _LABELS}
     seconds = f"{sum(point.seconds for point in grid.points):.6f}"
     return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
 
 
-def _separated(point: "Separation") -> dict[str, Any]:
-    of_form = {n: x for n, x in plain_json(point).items() if n in ("coordinates", "tangent")}
+def _point_json(point: "Separation") -> dict[str, Any]:
+    form = {n: x for n, x in plain_json(point).items() if n in ("coordinates", "tangent")}
     return {
-        **of_form,
-        **_evaluated(point.plain, point.split_into),
-        "closed_form": _evaluated(point.closed_form, point.split_into),
-        **picked(point, "step_size", "steps", "digits"),
+        **form,
+        **_way_json(point.plain, point.split_into),
+        "closed_form": _way_json(point.closed_form, point.split_into),
+        **pick(point, "step_size", "steps", "digits"),
         "working_arithmetic": "float64",
-        **picked(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
+        **pick(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
         "seconds": f"{point.seconds:.6f}",
     }
 
 
-def _evaluated(way: "AnyEvaluation | None", without: "type[PartsOfRun]") -> dict[str, Any]:
-    """`without`: the model whose names the parts have where there are none."""
+def _way_json(way: "AnyEvaluation | None", without: "type[PartsOfRun]") -> dict[str, Any]:
+    """Return the parts of one evaluation; without one, those of the model `without`, all null."""
     working, *names = (type(way.parts) if way else without).model_fields
     values = {n: getattr(way.parts, n) for n in (working, *names)} if way else {}
-    shown = {n: values[n].value if way else None for n in (working, *names)}
+    texts = {n: values[n].value if way else None for n in (working, *names)}
     law = getattr(way, "law", None)  # of W alone
     return {
-        working: shown.pop(working),
-        "truncation": shown.pop("truncation"),
-        "rounding": shown,
+        working: texts.pop(working),
+        "truncation": texts.pop("truncation"),
+        "rounding": texts,
         "error_bound": {n: value.bound for n, value in values.items()},
         "error_kind": way.error_kind if way else None,
         "largest": way.largest if way else None,
@@ -63,29 +68,33 @@ def _evaluated(way: "AnyEvaluation | None", without: "type[PartsOfRun]") -> dict
 
 
 def print_separation(grid: "AnyGrid") -> None:
-    """Each step size, and where rounding overtakes truncation."""
+    """Print the parts at each step size, and where rounding overtakes truncation."""
     for point in grid.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
         if point.status != "finished":
-            at = f" at step {point.failed_step}" if point.failed_step else ""
-            click.echo(f"  {point.status}{at}: {point.reason}")
+            place = f" at step {point.failed_step}" if point.failed_step else ""
+            click.echo(f"  {point.status}{place}: {point.reason}")
         else:
             _print_parts(point)
     if len(grid.points) > 1:
         for way, label in _LABELS.items():
-            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(grid, way))}")
+            click.echo(
+                f"rounding overtakes truncation, {label}: {_describe_crossover(getattr(grid, way))}"
+            )
 
 
 def _print_parts(point: "Separation") -> None:
     ways = {_LABELS[key]: way for key, way in point.ways.items()}
     parts, kinds = ways["plain"].parts, [way.error_kind for way in ways.values()]
-    head, width, told = ("greatest entry", 38, kinds) if point.greatest else ("", 26, kinds[:1])
+    head, width, reported_kinds = (
+        ("greatest entry", 38, kinds) if point.greatest else ("", 26, kinds[:1])
+    )
     click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(ways) > 1 else ''}")
     for name, label in parts.labels("  ").items():
-        cells = (_cell(point, getattr(way.parts, name)) for way in ways.values())
+        cells = (_format_cell(point, getattr(way.parts, name)) for way in ways.values())
         click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
     for label, way in ways.items():
-        click.echo(f"  {_grows(way, label)}")
+        click.echo(f"  {_describe_growth(way, label)}")
     if len(ways) < 2:
         click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
     if tangent := getattr(point, "tangent", None):
@@ -98,27 +107,27 @@ def _print_parts(point: "Separation") -> None:
         click.echo(f"  {meaning}")
     click.echo(
         f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
-        f"bounds {', '.join(dict.fromkeys(told))} ({point.error_method})"
+        f"bounds {', '.join(dict.fromkeys(reported_kinds))} ({point.error_method})"
     )
 
 
-def _cell(point: Any, value: Any) -> str:
-    """A number; of a matrix the greatest entry, and which that is."""
+def _format_cell(point: Any, value: Any) -> str:
+    """Return a number as text; of a matrix the greatest entry and its name."""
     if not hasattr(value, "largest"):
         return str(value.value)
-    at = point.name_of(value.place) if value.largest.exact else ""
-    return f"{value.largest.value:24} {at}"
+    place = point.name_of(value.place) if value.largest.exact else ""
+    return f"{value.largest.value:24} {place}"
 
 
-def _grows(way: "AnyEvaluation", label: str) -> str:
-    """How rounding grows with N; in n degrees of freedom how W does."""
+def _describe_growth(way: "AnyEvaluation", label: str) -> str:
+    """Return a line on the growth of rounding with N; in n degrees of freedom, on that of W."""
     law, growth = getattr(way, "law", None), way.growth["total"]
     if law is None:
         return f"rounding with N, {label}: {growth.name} ({growth.reason})"
     return f"max |W| with N, {label}: {law.name} ({law.reason}; measured, not proved)"
 
 
-def _crossed(way: "CrossoverResult") -> str:
+def _describe_crossover(way: "CrossoverResult") -> str:
     if way.bracket is None:
         return way.reason
     return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
@@ -159,20 +168,21 @@ def separate(
     from verify.arithmetic.exact import positive
     from verify.commands.shared.progress import progress_bar
     from verify.hamiltonians.start import check_start
-    from verify.scenes.values import rounded_down
-    from verify.studies.separation.separate import RUNS, grid, separate_grid
+    from verify.scenes.values import describe_rounding
+    from verify.studies.separation.separate import RUNS, count_steps, separate_grid
 
-    options |= {name: listed(options[name], exact) for name in ("q", "p")}
+    # q and p are checked before the runs, so that a missing number is refused at once.
+    options |= {name: parse_coordinates(options[name], exact) for name in ("q", "p")}
     check_start(exact, options["q"], options["p"], options["t0"])
-    counts = grid(step_sizes, options["steps"], options["time"])
+    counts = count_steps(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
         result = separate_grid(exact, scheme, **options)
     time = options["time"]
-    note = rounded_down(time and positive(time, "time"), [h for h, _ in counts])
+    note = describe_rounding(time and positive(time, "time"), [h for h, _ in counts])
 
-    def shown() -> None:
+    def show() -> None:
         print_separation(result)
         print_once([note])
 
-    return Answer(lambda: separation_json(result), shown)
+    return Answer(lambda: separation_json(result), show)

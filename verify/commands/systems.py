@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 
 if TYPE_CHECKING:
     from verify.hamiltonians.named_system import System
@@ -21,13 +21,13 @@ def systems() -> Answer:
     """
     from verify.hamiltonians.systems import all_systems
 
-    rows = [_row(system) for system in all_systems(None).values()]
+    rows = [_row_json(system) for system in all_systems(None).values()]
     return Answer(lambda: {"systems": rows}, lambda: _print(rows))
 
 
-def _row(system: "System") -> dict[str, Any]:
+def _row_json(system: "System") -> dict[str, Any]:
     return {
-        **picked(system, "name", "title"),
+        **pick(system, "name", "title"),
         "hamiltonian": system.formula,
         "degrees": system.degrees,
         "parameters": dict(system.parameters),

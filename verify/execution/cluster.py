@@ -20,8 +20,12 @@ _AHEAD = 2  # calls for each worker, so that it has the next while a result is o
 
 
 @contextlib.contextmanager
-def connected(address: str) -> Iterator["Cluster"]:
-    """The cluster whose scheduler is there; when that is left, what is under way is cancelled.
+def connect(address: str) -> Iterator["Cluster"]:
+    """Connect to the cluster whose scheduler has the address; on leaving, all calls under way are
+    cancelled.
+
+    Raises InputError where `distributed` is missing, where nothing or something else answers, where
+    there is no worker, and where one of them or the scheduler lacks this code or these libraries.
 
     InputError where `distributed` is missing, where nothing or something else answers, where there
     is no worker, and where one of them or the scheduler has not this code and these libraries.
@@ -48,7 +52,8 @@ def connected(address: str) -> Iterator["Cluster"]:
 
 
 def _meet(address: str, rpc: Callable[..., Any]) -> None:
-    """InputError unless a scheduler answers in time: for a mute one a Client waits for ever."""
+    """Raise InputError unless a scheduler answers in time: for a mute one a Client waits for
+    ever."""
 
     async def ask() -> Any:
         async with asyncio.timeout(_PATIENCE), rpc(address, timeout=_PATIENCE) as scheduler:
@@ -70,18 +75,18 @@ def _no_answer(error: Exception) -> str:
 
 
 def _check(address: str, client: Any) -> None:
-    """InputError where there is no worker, or one that has other code."""
+    """Raise InputError where there is no worker, or one that has other code."""
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
     except TimeoutError:
         problem = f"has no workers; start one: dask worker {address} --nthreads 1"
         raise InputError("cluster", address, problem) from None
-    found = client.run(fingerprint, on_error="return")
+    fingerprints = client.run(fingerprint, on_error="return")
     try:  # it reads the tasks that it hands on
-        found["the scheduler"] = client.run_on_scheduler(fingerprint)
+        fingerprints["the scheduler"] = client.run_on_scheduler(fingerprint)
     except Exception as error:
-        found["the scheduler"] = error
-    for place, source in sorted(found.items()):
+        fingerprints["the scheduler"] = error
+    for place, source in sorted(fingerprints.items()):
         if isinstance(source, BaseException):
             problem = f"areaproof cannot be used at {place}: {source}"
         elif source != fingerprint():
@@ -103,7 +108,7 @@ class Cluster:
     def __init__(self, address: str, client: Any, executor: Any) -> None:
         self._address, self._client, self._executor = address, client, executor
         self._workers = len(client.nthreads())
-        self._looked = self._seen = time.monotonic()
+        self._last_look = self._last_worker = time.monotonic()
 
     @property
     def room(self) -> int:
@@ -117,6 +122,8 @@ class Cluster:
         if future.cancelled():  # we cancel none that we wait for
             raise PlaceError(f"the scheduler at {self._address} is gone, or has been restarted")
         error = future.exception()
+        # A worker that joined after the check may have other code, in which a name or a module is
+        # missing.
         if isinstance(error, AttributeError | ImportError):  # of one that joined later, perhaps
             _check(self._address, self._client)
             if isinstance(error, ImportError):
@@ -129,23 +136,24 @@ class Cluster:
 
     def check(self) -> None:
         now = time.monotonic()
-        if now - self._looked < _LOOK:
+        if now - self._last_look < _LOOK:
             return
         try:
             self._workers = len(self._client.nthreads())
         except Exception:  # of a client that has lost its scheduler: no one kind
             raise PlaceError(f"the scheduler at {self._address} does not answer") from None
-        self._looked = time.monotonic()
+        self._last_look = time.monotonic()
         if self._workers:
-            self._seen = self._looked
-        elif self._looked - self._seen > _FORSAKEN:
+            self._last_worker = self._last_look
+        # Workers may restart; only after a minute without any is the cluster given up.
+        elif self._last_look - self._last_worker > _FORSAKEN:
             raise PlaceError(f"the cluster at {self._address} has had no worker for a minute")
 
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Without distributed's log, and that of tornado below it: what goes wrong is said in one line,
-    where it goes wrong."""
+    """Silence distributed's log, and that of tornado below it: errors are reported in one line,
+    where they occur."""
     loggers = [
         logging.getLogger(name)
         for name in (*_LOGGERS, *logging.root.manager.loggerDict)

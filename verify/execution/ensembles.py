@@ -1,4 +1,4 @@
-"""Tasks whose runs are stepped together: which they are.
+"""Groups of tasks whose runs are stepped together.
 
 Tasks that name the same `ensemble` take the same steps from other initial values, or with other
 step sizes and parameters. They go to a worker in groups, longest first, and in a group each has its
@@ -19,15 +19,17 @@ Group = dict[str, Task]
 
 
 def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
-    """The tasks by what is computed together, what costs most first."""
+    """Return the groups of tasks that are computed together, the costliest first."""
     by_ensemble: dict[str, Group] = {}
     for name in sorted(tasks, key=lambda name: -tasks[name].cost):
         by_ensemble.setdefault(tasks[name].ensemble or name, {})[name] = tasks[name]
-    found: list[Group] = []
+    parts: list[Group] = []
     for group in by_ensemble.values():
+        # Every worker gets a part, but no part is so small that lanes stay empty, and none so large
+        # that results come in late.
         share = -(-len(group) // max(workers, 1))
         size = min(max(share, _LEAST_IN_GROUP), _MOST_IN_GROUP)
         names = iter(group)
         while part := sorted(islice(names, size), key=lambda name: tasks[name].turn):
-            found.append({name: tasks[name] for name in part})
-    return sorted(found, key=lambda part: -sum(task.cost for task in part.values()))
+            parts.append({name: tasks[name] for name in part})
+    return sorted(parts, key=lambda part: -sum(task.cost for task in part.values()))

@@ -1,4 +1,8 @@
-"""Tasks → results, wherever they are computed; what is finished is kept.
+"""Tasks → results, wherever they are computed; finished results are kept.
+
+Each result is written by itself, atomically, as soon as it exists, under a name made of the task
+and of this package's own source: an interrupted run goes on from there, and no result of other code
+is mistaken for one of this.
 
 Each result is written by itself, atomically, as soon as it is there, under a name made of the task
 and of this package's own source: an interrupted run goes on from there, and no result of other
@@ -29,14 +33,14 @@ from verify.execution.keeping import (
     NOTHING,
     Keeper,
     fingerprint,
-    kept_text,
-    sealed,
+    read_kept_text,
+    seal,
     tasks_with_checkpoints,
 )
-from verify.execution.plan import Plan, given_by
+from verify.execution.plan import Plan, keys_supplied_by
 from verify.execution.task import Task
 from verify.files import check_replaceable, clear_unfinished, write_atomically
-from verify.lockstep import Course, together
+from verify.lockstep import Course, run_together
 from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
@@ -47,6 +51,8 @@ _WORTH_A_POOL = 250_000_000  # float64 steps below which starting workers costs 
 class Store:
     """Finished results in a folder, one JSON file each; None keeps them in memory only.
 
+    A file that is damaged, or of another version of the format, is ignored: its task is done again.
+
     A file that is damaged, or of another version of the format, is none: its task is done again.
     """
 
@@ -56,54 +62,63 @@ class Store:
         self._keepers: dict[str, Keeper] = {}
 
     @cached_property
-    def _interrupted(self) -> frozenset[str]:
-        """The tasks that another process has left checkpoints of; looked for once, not for each."""
+    def _tasks_with_checkpoints(self) -> frozenset[str]:
+        """The tasks that another process has left checkpoints of; searched once, not for each."""
         return tasks_with_checkpoints(self.folder) if self.folder else frozenset()
 
     def path(self, name: str) -> Path | None:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
 
     def get(self, name: str, task: Task) -> Frozen | None:
-        """The kept result of the task; None where there is none, or a damaged one.
+        """Return the kept result of the task; None where there is none, or a damaged one.
+
+        Raises InputError where the path is occupied by something that could not be replaced once
+        the task is done.
 
         Raises InputError where what is there instead could not be replaced once the task is done.
         """
         path = self.path(name)
         if path is None:
             return None
-        content = kept_text(KEPT, path)
-        found = None
+        content = read_kept_text(KEPT, path)
+        result = None
         with suppress(ValidationError):  # sealed, and yet none: do it again
-            found = task.result.model_validate_json(content) if content else None
-        if found is None:
+            result = task.result.model_validate_json(content) if content else None
+        if result is None:
             check_replaceable(path)
-        self.taken += found is not None
-        return found
+        self.taken += result is not None
+        return result
 
     def put(self, name: str, result: Frozen) -> None:
-        """Keeps the result; the checkpoints of its runs are done with."""
+        """Keep the result; the checkpoints of its runs are removed."""
         path = self.path(name)
         if path is not None:
-            write_atomically(path, sealed(KEPT, path.stem, result.model_dump_json(indent=1)))
+            write_atomically(path, seal(KEPT, path.stem, result.model_dump_json(indent=1)))
             keeper = self.keeper(name)
-            if keeper.saved or name in self._interrupted:
+            if keeper.saved or name in self._tasks_with_checkpoints:
                 keeper.clear()
         self._keepers.pop(name, None)
 
     def tidy(self, ended: Sequence[int]) -> None:
-        """Removes what processes that were ended had begun to write here."""
+        """Remove unfinished files of processes that were ended."""
         if self.folder is not None:
             clear_unfinished(self.folder, ended)
 
     def keeper(self, name: str) -> Keeper:
-        """What keeps the checkpoints of that task's runs."""
+        """Return the keeper of the checkpoints of that task's runs."""
         return self._keepers.setdefault(name, Keeper(self.folder, name))
 
 
 def execute(
     plan: Plan, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
 ) -> dict[str, Frozen]:
-    """All results of the plan by task key; those in the store are taken from there.
+    """Return all results of the plan by task key; those in the store are read from there.
+
+    On an interruption every finished result is in the store already. A task on a cluster keeps no
+    checkpoints, since its machine need not have the store's folder. Times are measured when no
+    other task is under way: in this process, or on a cluster by the worker that has the task. What
+    such a task prepares is computed before, beside the others, where there are workers here. Raises
+    PlaceError where the workers fail a task again and again.
 
     On an interruption what is finished is in the store already. A task on a cluster keeps no
     checkpoints, since its machine need not have the store's folder. Times are measured when no
@@ -114,19 +129,21 @@ def execute(
     results: dict[str, Frozen] = {}
 
     def finish(name: str, result: Frozen) -> None:
-        known = name in results or name not in plan.tasks  # what is given may be kept already
+        is_reported = name in results or name not in plan.tasks  # what is given may be kept already
         results.setdefault(name, result)
-        if done and not known:
+        if done and not is_reported:
             done(name, result)
 
     waiting: dict[str, Task] = {}
     for name, task in plan.tasks.items():
-        kept = store.get(name, task)
-        if kept is None:
+        stored = store.get(name, task)
+        if stored is None:
             waiting[name] = task
         else:
-            finish(name, kept)
-    given = {name: waiting.pop(name) for name in given_by(waiting.values()) if name in waiting}
+            finish(name, stored)
+    supplied = {
+        name: waiting.pop(name) for name in keys_supplied_by(waiting.values()) if name in waiting
+    }
     together = {name: task for name, task in waiting.items() if not task.alone}
     alone = {name: task for name, task in waiting.items() if task.alone}
 
@@ -134,15 +151,21 @@ def execute(
         parts = groups(tasks, place.room)
         if place.room == 0:
             for part in parts:
-                for name, result in _computed(part, store):
+                # Each result is stored at once: a group may be interrupted, or lose its worker,
+                # after some of its tasks.
+                for name, result in _compute_together(part, store):
                     store.put(name, result)
                     finish(name, result)
             return
-        for called, found in results_of(place, _calls(parts, store, place), one_by_one=one_by_one):
-            if place.local and called in alone:
-                store.keeper(called).prepared = found
+        for name_of_call, results_of_call in results_of(
+            place, _calls(parts, store, place), one_by_one=one_by_one
+        ):
+            if place.local and name_of_call in alone:
+                store.keeper(name_of_call).prepared = results_of_call
                 continue
-            for name, result in found.items():
+            # A local worker has put the result into the store already; one of a cluster cannot
+            # reach the folder.
+            for name, result in results_of_call.items():
                 if not place.local:
                     store.put(name, result)
                 finish(name, result)
@@ -150,10 +173,12 @@ def execute(
     if not waiting:
         return results
     count = len(waiting)
-    with open_place(_enough(together, count, where), _modules(waiting), store.tidy) as place:
-        beside = alone if place.local and place.room and count > 1 else {}
-        take(place, {**together, **beside})
-        take(place, {name: task for name, task in given.items() if name not in results})
+    with open_place(
+        _choose_placement(together, count, where), _modules(waiting), store.tidy
+    ) as place:
+        prepared_beside = alone if place.local and place.room and count > 1 else {}
+        take(place, {**together, **prepared_beside})
+        take(place, {name: task for name, task in supplied.items() if name not in results})
         if not place.local:
             take(place, alone, one_by_one=True)
     if place.local:
@@ -168,7 +193,7 @@ def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
 
 
 def prepare_task(task: Task) -> object:
-    """What it prepares; None where its input is bad, so that `compute` says so in its turn."""
+    """Prepare a task; None where its input is bad, so that `compute` reports it in its turn."""
     try:
         return task.prepare()
     except InputError:
@@ -176,20 +201,25 @@ def prepare_task(task: Task) -> object:
 
 
 def compute_all(task: Task, keeper: Keeper) -> Course[dict[str, Frozen]]:
-    """What comes of one task: its result and those that it gives, by the keys of their tasks."""
+    """Compute one task: its result and those that it gives, by the keys of their tasks."""
     return task.compute_in_turn(keeper)
 
 
 def _modules(tasks: Mapping[str, Task]) -> list[str]:
-    """What workers import before their first call, so that it is done once for all of them."""
+    """Return the modules that workers import before their first call, so that it is done once
+    for all."""
     kinds = {type(task) for task in tasks.values()}
-    own = {name for kind in kinds for name in (kind.__module__, *kind.imports)}
-    return sorted({*own, "sympy"})  # which each reads its H with, and which comes late by itself
+    modules = {name for kind in kinds for name in (kind.__module__, *kind.imports)}
+    return sorted(
+        {*modules, "sympy"}
+    )  # which each reads its H with, and which comes late by itself
 
 
-def _enough(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placement:
-    """Where nothing is said of where: so many processes as are worth their start, for so many
-    calls; what is prepared beside the tasks is not worth one by itself."""
+def _choose_placement(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placement:
+    """Choose as many processes as are worth their start, where the caller leaves it open.
+
+    What is prepared beside the tasks is not worth a process by itself.
+    """
     if where != ANYWHERE:
         return where
     if sum(task.cost for task in tasks.values()) < _WORTH_A_POOL:
@@ -197,21 +227,21 @@ def _enough(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placemen
     return Placement(workers=max(1, min(os.cpu_count() or 1, calls)))
 
 
-def _computed(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
-    """The results of tasks that are computed together, and those that they give, in this
-    process. What a task raises is raised."""
+def _compute_together(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
+    """Yield the results of tasks that are computed together, and those that they give, in this
+    process. Exceptions of a task are raised."""
     courses = (compute_all(task, store.keeper(name)) for name, task in part.items())
-    for _, ended in together(courses, MOST_AT_ONCE):
-        yield from ended.result().items()
+    for _, course in run_together(courses, MOST_AT_ONCE):
+        yield from course.result().items()
 
 
-def compute_group(part: Group, store: Store) -> dict[str, Frozen]:
-    """The same in a worker, which keeps each result in the store as soon as it is there."""
-    found = {}
-    for name, result in _computed(part, store):
+def compute_group(group: Group, store: Store) -> dict[str, Frozen]:
+    """Compute a group in a worker, which keeps each result in the store as soon as it exists."""
+    results = {}
+    for name, result in _compute_together(group, store):
         store.put(name, result)
-        found[name] = result
-    return found
+        results[name] = result
+    return results
 
 
 def _calls(parts: Sequence[Group], store: Store, place: Place) -> Iterator[FunctionCall]:
@@ -221,6 +251,6 @@ def _calls(parts: Sequence[Group], store: Store, place: Place) -> Iterator[Funct
         if place.local and task.alone:  # it is computed in this process
             yield FunctionCall(name, prepare_task, (task,), task.description)
             continue
-        own = store if place.local else Store(None)
+        worker_store = store if place.local else Store(None)
         more = f" and {len(part) - 1} more" if len(part) > 1 else ""
-        yield FunctionCall(name, compute_group, (part, own), task.description + more)
+        yield FunctionCall(name, compute_group, (part, worker_store), task.description + more)

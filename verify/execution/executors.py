@@ -1,4 +1,4 @@
-"""Where functions are called: in this process, in processes beside it, or on a Dask cluster.
+"""Places where functions are called: this process, processes beside it, or a Dask cluster.
 
 Wherever that is, each result is yielded once and as it comes, and no more calls are under way than
 the place has room for: memory does not grow with their number. A call whose worker is lost is sent
@@ -26,7 +26,7 @@ _LOOK = 5.0  # seconds after which the place is looked at, though nothing is fin
 
 @dataclass(frozen=True)
 class Placement:
-    """Where tasks run: in so many processes here, or on the Dask cluster at that address.
+    """The place where tasks run: so many processes here, or the Dask cluster at that address.
 
     `workers`: 1 stays in this process, None goes by the work there is. InputError where both are
     given, where `workers` < 1, and where `cluster` is not tcp://HOST:PORT or tls://HOST:PORT.
@@ -52,9 +52,8 @@ THIS_PROCESS = Placement(workers=1)
 
 
 class FunctionCall(NamedTuple):
-    """`function(*arguments)`, to be found again by its name; `description` is what an error calls
-    it.
-    """
+    """A call `function(*arguments)`, identified by its name; `description` is its name in an
+    error."""
 
     name: str
     function: Callable[..., Any]
@@ -63,7 +62,7 @@ class FunctionCall(NamedTuple):
 
 
 class Place(Protocol):
-    """Where calls go. `local`: this machine's files and clock are theirs.
+    """A place for calls. `local`: they have this machine's files and clock.
 
     `attempts`: so often may a call lose its worker. `names_lost_call`: a lost worker tells which
     call lost it; where it does not, that call and others are tried again one at a time.
@@ -75,19 +74,21 @@ class Place(Protocol):
 
     @property
     def room(self) -> int:
-        """So many calls may be under way; 0: a function is called where its result is asked for."""
+        """The number of calls that may be under way; 0: a function is called where its result is
+        requested."""
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        """As an executor's."""
+        """Submit a call, as an executor does."""
 
     def release(self, future: "Future[Any]") -> None:
-        """Called with each future that is finished, before the next call is submitted."""
+        """Release a future that is finished; called for each before the next call is submitted."""
 
     def lost(self, error: BaseException) -> bool:
-        """Whether that error of a call says that its worker was lost."""
+        """Return True if that error of a call says that its worker was lost."""
 
     def check(self) -> None:
-        """Called every few seconds. PlaceError where nothing can be finished any more."""
+        """Check the place every few seconds. Raises PlaceError where nothing can be finished any
+        more."""
 
 
 @contextlib.contextmanager
@@ -96,8 +97,13 @@ def open_place(
     modules: Sequence[str] = (),
     after_end: Callable[[Sequence[int]], None] = lambda _: None,
 ) -> Iterator[Place]:
-    """Opens the place where functions are called; left by an exception, it ends what is under way
-    at once.
+    """Open the place where functions are called; on an exception, end all calls under way at once.
+
+    `modules`: what processes have imported before their first call; of several places, the first
+    decides for all. `after_end` is called with the numbers of processes here that were ended.
+
+    Processes are started as they are needed. Raises InputError where the cluster does not answer,
+    has no workers, or has other code than this.
 
     `modules`: what processes have imported before their first call; of several places, the first
     says it for all. `after_end` hears the numbers of processes here that were ended.
@@ -106,9 +112,9 @@ def open_place(
     workers, or has other code than this.
     """
     if where.cluster is not None:
-        from verify.execution.cluster import connected
+        from verify.execution.cluster import connect
 
-        with connected(where.cluster) as place:
+        with connect(where.cluster) as place:
             yield place
     elif where.workers == 1:
         yield _ThisProcess()
@@ -125,7 +131,7 @@ def open_place(
 def results_of(
     place: Place, calls: Iterable[FunctionCall], *, one_by_one: bool = False
 ) -> Iterator[tuple[str, Any]]:
-    """(name, result) of each call as it is finished; `one_by_one`: with no other under way.
+    """Yield (name, result) of each call as it is finished; `one_by_one`: with no other under way.
 
     The calls are taken from their iterator as there is room. What a call raises is raised here,
     and so is PlaceError where a call loses its worker again and again; but first, as after an
@@ -142,6 +148,7 @@ def results_of(
             while course.ready:
                 name, future = course.ready.popleft()
                 yield name, future.result()
+    # The consumer has stopped: yielding the rest would be an error.
     except GeneratorExit:
         raise
     except BaseException:
@@ -160,7 +167,7 @@ class _Course:
         self.losses: Counter[str] = Counter()
 
     def send(self) -> bool:
-        """Sends as many as there is room for; whether any is under way."""
+        """Send as many as there is room for; return True if any is under way."""
         while len(self.under_way) < self._room():
             call = self.again.popleft() if self.again else next(self.calls, None)
             if call is None:
@@ -170,17 +177,21 @@ class _Course:
         return bool(self.under_way)
 
     def _room(self) -> int:
+        # Where a place does not tell which call killed its worker, the suspects go one at a time:
+        # so the guilty one is found, and no innocent one reaches the limit of attempts.
         suspects = bool(self.again) or any(c.name in self.losses for c in self.under_way.values())
         alone = self.one_by_one or (suspects and not self.place.names_lost_call)
         return 1 if alone else self.place.room
 
     def take(self) -> None:
-        """Waits until some are finished, and puts those that lost their worker among the others."""
+        """Wait until some are finished, and requeue those that lost their worker."""
         done, _ = wait(self.under_way, timeout=_LOOK, return_when=FIRST_COMPLETED)
         for future in done:
             call = self.under_way.pop(future)
             self.place.release(future)
             error = None if future.cancelled() else future.exception()
+            # An ordinary exception of the call is a result like others: it is raised where the
+            # caller reads it.
             if error is None or not self.place.lost(error):
                 self.ready.append((call.name, future))
                 continue
@@ -192,7 +203,8 @@ class _Course:
         self.place.check()
 
     def rest(self) -> Iterator[tuple[str, Any]]:
-        """What is finished and was not yet yielded; errors among it are left out."""
+        """Yield the results that are finished and were not yet yielded; errors among them are
+        left out."""
         finished = [(call.name, future) for future, call in self.under_way.items() if future.done()]
         for name, future in (*self.ready, *finished):
             if not future.cancelled() and future.exception() is None:
@@ -205,7 +217,8 @@ _ONE = threading.Lock()  # libraries below have settings that all threads of a p
 
 
 def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """The call in the worker, one at a time, and only where its code is that of the caller."""
+    """Call the function in the worker, one at a time, and only where its code is that of the
+    caller."""
     if fingerprint() != source:  # it may have joined the others, or been started again, since
         worker = f"{socket.gethostname()}, process {os.getpid()}"
         raise PlaceError(f"worker {worker}: its areaproof or a library is not the one used here")

@@ -1,4 +1,4 @@
-"""What something is computed by: versions, machine, commit."""
+"""The versions, machine and commit by which a result is computed."""
 
 import os
 import platform
@@ -16,29 +16,30 @@ _LETTERS = 12  # of a commit
 
 
 def versions() -> dict[str, str]:
-    """The versions that a result depends on."""
+    """Return the versions that a result depends on."""
     python = ".".join(map(str, sys.version_info[:3]))
     return {"Python": python} | {name: version(name) for name in _VERSIONED}
 
 
 def machine() -> str:
-    """What this process runs on, as a report tells it."""
-    own = f"{platform.system()} {platform.machine()}"
-    return ", ".join(filter(None, (own, _processor(), f"{os.cpu_count()} cores")))
+    """Describe the machine of this process, as a report prints it."""
+    system = f"{platform.system()} {platform.machine()}"
+    return ", ".join(filter(None, (system, _processor(), f"{os.cpu_count()} cores")))
 
 
 def commit() -> str:
-    """That of the checkout this code lies in, "and changes" where files differ; "" without one."""
+    """Return the commit of the checkout this code lies in, "and changes" where files differ; ""
+    without one."""
     root = checkout()
     if root is None or not (root / ".git").exists():
         return ""
     head = _git(root, "rev-parse", f"--short={_LETTERS}", "HEAD")
-    changed = head and _git(root, "status", "--porcelain", "--untracked-files=no")
-    return f"{head} and changes" if changed else head
+    status = head and _git(root, "status", "--porcelain", "--untracked-files=no")
+    return f"{head} and changes" if status else head
 
 
 def _git(root: Path, *command: str) -> str:
-    """What git says, or "" where there is none, or it has nothing to say of this folder."""
+    """Return git's output, or "" where there is no git, or it has nothing to say of this folder."""
     try:
         ran = subprocess.run(  # noqa: S603 - words of our own
             ("git", "-C", str(root), *command),  # noqa: S607 - whichever git the user has
@@ -50,10 +51,12 @@ def _git(root: Path, *command: str) -> str:
 
 
 def _processor() -> str:
-    """Its name, where the system tells it."""
+    """Return the processor's name, where the system tells it."""
     try:
-        told = _PROCESSOR.read_text(encoding="utf-8", errors="replace")
+        description = _PROCESSOR.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return platform.processor()
-    names = (line.partition(":")[2].strip() for line in told.splitlines() if "model name" in line)
+    names = (
+        line.partition(":")[2].strip() for line in description.splitlines() if "model name" in line
+    )
     return next(names, "")

@@ -9,21 +9,21 @@ from verify.execution.task import Task
 _STEP_SECONDS = 4e-9
 
 
-def given_by(tasks: Iterable[Task]) -> set[str]:
-    """The keys of those whose results come with these."""
+def keys_supplied_by(tasks: Iterable[Task]) -> set[str]:
+    """Return the keys of the tasks whose results come with these."""
     return {each.key for task in tasks for each in task.gives}
 
 
 @dataclass
 class Plan:
-    """Tasks in the order they are asked for, each with every reason for it."""
+    """Tasks in the order of their requests, each with every reason for it."""
 
     tasks: dict[str, Task] = field(default_factory=dict)
     reasons: dict[str, list[str]] = field(default_factory=dict)
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
     def need(self, task: Task, reason: str) -> None:
-        """Adds the task, once, and the reason for it."""
+        """Add the task, once, and the reason for it."""
         name = task.key
         self.tasks.setdefault(name, task)
         reasons = self.reasons.setdefault(name, [])
@@ -31,18 +31,19 @@ class Plan:
             reasons.append(reason)
 
     def leave_out(self, what: str, why: str) -> None:
-        """Says what is not computed, and why."""
+        """Note what is not computed, and why."""
         if (what, why) not in self.left_out:
             self.left_out.append((what, why))
 
     @property
     def seconds(self) -> float:
-        """About how much processor time the tasks take: by their costs, within a factor of four
-        or so, on a machine on which a float64 step takes 4 ns.
-        """
-        given = given_by(self.tasks.values())
-        own = (task for name, task in self.tasks.items() if name not in given)
-        return _STEP_SECONDS * sum(task.cost for task in own if task.proved() is None)
+        """The approximate processor time of the tasks: by their costs, within a factor of four
+        or so, on a machine on which a float64 step takes 4 ns."""
+        supplied = keys_supplied_by(self.tasks.values())
+        # Tasks whose results come with others' are not counted twice.
+        remaining = (task for name, task in self.tasks.items() if name not in supplied)
+        costs = (task.cost for task in remaining if task.result_by_proof() is None)
+        return _STEP_SECONDS * sum(costs)
 
     def as_json(self) -> dict[str, Any]:
         return {

@@ -40,10 +40,10 @@ class Processes:
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        """Begins the call in an idle process, or in a new one."""
+        """Begin the call in an idle process, or in a new one."""
         context = self._context  # made before both are held, which workers would inherit
         # What is half begun could not be ended.
-        with safe_path(), _held(signal.SIGINT, signal.SIGTERM):
+        with safe_path(), _hold_signals(signal.SIGINT, signal.SIGTERM):
             pool = self._idle.pop() if self._idle else _process(context)
             try:
                 future = pool.submit(function, *arguments)
@@ -58,7 +58,7 @@ class Processes:
         return _fork_server(self._modules)
 
     def release(self, future: "Future[Any]") -> None:
-        """Once for each call that has ended: its process is idle, or lost."""
+        """Release the process of a call that has ended: it is idle, or lost."""
         pool = self._busy.pop(future)
         if isinstance(future.exception(), BrokenExecutor):
             pool.shutdown(wait=False)
@@ -71,27 +71,29 @@ class Processes:
     def check(self) -> None: ...
 
     def end(self) -> list[int]:
-        """Ends the processes at once, whatever they are at; returns their numbers.
+        """End the processes at once, whatever they are doing; return their numbers.
 
         When it returns they write nothing any more.
         """
-        ended, pools = {}, [*self._idle, *self._busy.values()]
+        sentinels, pools = {}, [*self._idle, *self._busy.values()]
         for pool in pools:
             # The executor has no public way to end a task that is running.
             for process in (pool._processes or {}).values():
                 process.terminate()
-                ended[process.pid] = process.sentinel
-        alive = list(ended.values())
+                sentinels[process.pid] = process.sentinel
+        # A terminated process may still be writing; the store's unfinished files can be removed
+        # only once it is gone.
+        alive = list(sentinels.values())
         until = time.monotonic() + _TO_END
         while alive and time.monotonic() < until:
             done = connection.wait(alive, until - time.monotonic())
             alive = [each for each in alive if each not in done]
         for pool in pools:  # whose thread, not waited for, may close what Python's exit writes to
             pool.shutdown(wait=not alive, cancel_futures=True)
-        return [pid for pid in ended if pid is not None]
+        return [pid for pid in sentinels if pid is not None]
 
     def close(self) -> None:
-        """Ends the processes, which are idle, together."""
+        """End the processes, which are idle, together."""
         if self._idle:
             with ThreadPoolExecutor(len(self._idle)) as threads:
                 list(threads.map(ProcessPoolExecutor.shutdown, self._idle))
@@ -104,7 +106,7 @@ def _process(context: Any) -> ProcessPoolExecutor:
 
 
 def _fork_server(modules: Sequence[str]) -> Any:
-    """How a process comes to be: forked, but not from this one.
+    """Return the way in which processes start: forked, but not from this one.
 
     This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
     once what every worker needs, and ends with this one. Where there is none, each is spawned.
@@ -113,14 +115,16 @@ def _fork_server(modules: Sequence[str]) -> Any:
     if sys.platform == "darwin" or "forkserver" not in methods:  # macOS's libraries start threads
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
+    # A forked worker shares the imported modules' memory with the server, and starts in
+    # milliseconds.
     context.set_forkserver_preload(list(modules))
-    with safe_path(), _held(signal.SIGINT):  # which it and the workers then never get
+    with safe_path(), _hold_signals(signal.SIGINT):  # which it and the workers then never get
         forkserver.ensure_running()
     return context
 
 
 class _Safe:
-    """What the environment said before, while anyone needs a safe path."""
+    """The value of the variable before it was set, and the number of users of the safe path."""
 
     def __init__(self) -> None:
         self.lock, self.users = threading.Lock(), 0
@@ -132,7 +136,7 @@ _SAFE = _Safe()
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Processes that are started meanwhile import nothing from the current folder.
+    """Make processes that are started meanwhile import nothing from the current folder.
 
     Python puts it first on the path of `python -c`, which is how `multiprocessing` starts the fork
     server, the resource tracker and spawned workers: a `random.py` that lies there would be run.
@@ -157,8 +161,9 @@ def safe_path() -> Iterator[None]:
 
 
 @contextmanager
-def _held(*signals: signal.Signals) -> Iterator[None]:
-    """Those signals come afterwards; a process that is begun meanwhile does not get them."""
+def _hold_signals(*signals: signal.Signals) -> Iterator[None]:
+    """Hold these signals until the block ends; a process that is started meanwhile does not get
+    them."""
     resource_tracker.ensure_running()  # begun later, it would let them through
     before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     try:
@@ -168,7 +173,7 @@ def _held(*signals: signal.Signals) -> Iterator[None]:
 
 
 def _begin(*between_collections: int) -> None:
-    """In a new process, where cycles are looked for as seldom as in this one."""
+    """Begin a new process, in which cycles are collected as seldom as in this one."""
     gc.set_threshold(*between_collections)
     gc.freeze()  # what was imported stays
     # Ctrl-C reaches the whole process group; the parent alone answers it.
@@ -178,7 +183,8 @@ def _begin(*between_collections: int) -> None:
 
 
 def _end_with_parent() -> None:
-    """A parent that is killed can end no worker, and none would see that no more calls come."""
+    """End this worker with its parent: one that is killed can end no worker, and none would
+    notice."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -1,4 +1,4 @@
-"""By what and when a report was made."""
+"""The provenance of a report: the command, versions and machine that made it, and when."""
 
 import time
 from datetime import UTC, datetime
@@ -8,9 +8,10 @@ from verify.scenes.results.report import Provenance
 
 
 def provenance(
-    command: str, begun: float, *, kept: int, computed: int, where: str = ""
+    command: str, start_time: float, *, kept: int, computed: int, where: str = ""
 ) -> Provenance:
-    """That of what this call made, which began at `begun` by `time.perf_counter`.
+    """Return the provenance of the results of this call, which began at `start_time` by
+    `time.perf_counter`.
 
     `where`: what else computed, beside this machine.
     """
@@ -18,9 +19,10 @@ def provenance(
         command=command,
         versions=versions(),
         machine=f"{machine()}{where}",
-        seconds=time.perf_counter() - begun,
+        seconds=time.perf_counter() - start_time,
         kept=kept,
         computed=computed,
+        # In UTC, so that reports made in different places can be ordered.
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         commit=commit(),
     )

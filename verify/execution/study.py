@@ -1,4 +1,4 @@
-"""A study: one question that a scene may ask, what it needs, and what is made of what was found."""
+"""A study: one question that a scene may ask, what it needs, and what becomes of the results."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ Result = TypeVar("Result", bound=Frozen)
 
 @dataclass(frozen=True)
 class Section:
-    """What a scene may ask of a study; where it does not, a plan says so.
+    """A question that a scene may ask of a study; where it does not, a plan says so.
 
     `place`: of that line among those of all studies.
     """
@@ -25,46 +25,46 @@ class Section:
     place: int
     what: str
     why_not: str
-    asked: Callable[[Scene], object]
+    is_requested: Callable[[Scene], object]
 
 
 def toml_section(place: int, what: str, header: str) -> Section:
-    """That of a section of the scene's file, with a header such as `[[flow]]`."""
-    asked = attrgetter(header.strip("[]"))
-    return Section(place, what, f"the scene has no {header}", asked)
+    """Return the section for a table of the scene's file, with a header such as `[[flow]]`."""
+    is_requested = attrgetter(header.strip("[]"))
+    return Section(place, what, f"the scene has no {header}", is_requested)
 
 
 @dataclass(frozen=True)
 class Study:
-    """All that is asked of a study, a part of it at a time.
+    """The description of a study, a part of it at a time.
 
     `order`: among the studies, for their tasks. `need_of_scheme(plan, scene, scheme, preserves)`
     adds to the plan what one of the scene's schemes needs, where `preserves` says whether ΔJ ≡ 0 is
-    proved; `need(plan, scene)` what the whole scene does. `found(scene, results)` is the study's
-    part of a `SceneResult`, by its keys.
+    proved; `need(plan, scene)` what the whole scene does. `results_for_scene(scene, results)` is
+    the study's part of a `SceneResult`, by its keys.
     """
 
     order: int
     sections: tuple[Section, ...] = ()
     need_of_scheme: Callable[[Plan, Scene, str, bool], None] | None = None
     need: Need | None = None
-    found: Callable[[Scene, Results], dict[str, Any]] | None = None
+    results_for_scene: Callable[[Scene, Results], dict[str, Any]] | None = None
 
 
-def called(scene: Scene) -> str:
-    """The scene's name in the reasons of a plan."""
+def scene_name(scene: Scene) -> str:
+    """Return the scene's name in the reasons of a plan."""
     return scene.name or scene.title or "scene"
 
 
 def plan_of(scenes: Iterable[Scene], need: Need) -> Plan:
-    """What the scenes ask for, as far as `need` looks at them; a task of several is done once."""
+    """Plan the requests of the scenes that `need` covers; a task of several is done once."""
     plan = Plan()
     for scene in scenes:
         need(plan, scene)
     return plan
 
 
-def known_results(model: type[Result], tasks: Iterable[Task], results: Results) -> list[Result]:
-    """The results of these tasks, in their order; a task that was not done is left out."""
-    found = (results.get(task.key) for task in tasks)
-    return [result for result in found if isinstance(result, model)]
+def results_of_tasks(model: type[Result], tasks: Iterable[Task], results: Results) -> list[Result]:
+    """Return the results of these tasks, in their order; a task that was not done is left out."""
+    matches = (results.get(task.key) for task in tasks)
+    return [result for result in matches if isinstance(result, model)]

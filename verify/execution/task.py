@@ -1,4 +1,6 @@
-"""A task: all that a result depends on, what it is worth, and how it is computed.
+"""A task: all that a result depends on, its cost, and how it is computed.
+
+A kind of task is one class, in a file of the study it belongs to.
 
 A kind of task is one class, in a file of the study whose it is.
 """
@@ -16,7 +18,7 @@ from verify.scenes.values import Coordinates, Number
 
 
 class Task(Frozen):
-    """What is to be computed; two tasks of equal content are one.
+    """A computation to be done; two tasks of equal content are one.
 
     `alone`: it measures run times, so that nothing else may run beside it; `prepare` has what may.
     `result`: the model of what `compute` returns. `imports`: the modules that `compute` imports, or
@@ -30,49 +32,54 @@ class Task(Frozen):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps the task is worth."""
+        """The approximate cost of the task in float64 steps."""
         return 1
 
     @property
     def ensemble(self) -> str | None:
-        """A name that it has in common with those whose runs its own are stepped together with."""
+        """A name shared by the tasks whose runs are stepped together with its own."""
         return None
 
     @property
     def turn(self) -> float:
-        """When it has its turn among those of its ensemble: what costs most is first."""
+        """The place among those of its ensemble: what costs most is first."""
         return -self.cost
 
     def prepare(self) -> object:
-        """What of a task that is `alone` may be found beside others, by a worker: `compute` takes
-        it from the keeper, and finds it itself where that has None."""
+        """Compute the part of a task that is `alone` which may be done beside others, by a worker.
+
+        `compute` reads it from the keeper, and computes it itself where that has None.
+        """
         return None
 
     @abstractmethod
     def compute(self, keeper: Keeper) -> Frozen:
-        """Do it; a run goes on from the checkpoint that the keeper may have."""
+        """Do the task; a run goes on from the checkpoint that the keeper may have."""
 
     @property
     def gives(self) -> "tuple[Task, ...]":
-        """Tasks whose results come with its own, if what it computes has got so far: they need not
-        be computed beside it."""
+        """The tasks whose results come with its own, if its computation has got so far: they
+        need not be computed beside it."""
         return ()
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
-        """What `compute` makes of it, and of those of `gives` that have come with it, by keys.
+        """Return the result of `compute`, and those of `gives` that have come with it, by keys.
 
         One of an ensemble waits here for what its runs ask for (`verify.lockstep`).
         """
+        # A generator without a pause: `compute_in_turn` of tasks that never wait for others.
         yield from ()
         return {self.key: self.compute(keeper)}
 
-    def proved(self) -> Frozen | None:
-        """Its result where a proof gives it at once, and nothing is to be computed."""
+    def result_by_proof(self) -> Frozen | None:
+        """Return its result where a proof gives it at once, and nothing is to be computed."""
         return None
 
     @property
     def key(self) -> str:
         """A name for the task by its content."""
+        # The key must not depend on the process: sorted JSON does not, and Python's hash of a text
+        # does.
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:24]
 
@@ -93,10 +100,10 @@ class HamiltonianTask(Task):
     def exact_hamiltonian(self) -> Hamiltonian:
         return Hamiltonian.parse(self.hamiltonian, self.parameters)
 
-    def asked(self, *without: str) -> dict[str, Any]:
-        """What it asks for beside H, by the names of its fields."""
-        beside = {*HamiltonianTask.model_fields, *without}
-        return {name: value for name, value in self if name not in beside}
+    def other_fields(self, *without: str) -> dict[str, Any]:
+        """Return its fields other than those of H, by their names."""
+        excluded = {*HamiltonianTask.model_fields, *without}
+        return {name: value for name, value in self if name not in excluded}
 
 
 class SchemeTask(HamiltonianTask):

@@ -1,7 +1,7 @@
-"""A claim as a property: what it says of its own scene, asked of drawn ones.
+"""Claims as properties: what a claim states about its own scene is tested on drawn scenes.
 
-That makes sense of what may be said of many H, such as an order, or that |Λ| stays below a bound.
-A formula in p and q, printed numbers, a region that is carried are those of one scene: such claims
+That makes sense for statements that may hold for many H, such as an order, or a bound of |Λ|.
+A formula in p and q, printed numbers, and the image of a region belong to one scene: such claims
 are left out, each with the reason.
 """
 
@@ -29,30 +29,33 @@ from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.verdict import Verdict
 
+# The name of the scene in the findings: a drawn scene has none.
 _NAME = "drawn"
 
 
 def claims_left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
-    """The claims that cannot be asked of other scenes, by the reason."""
-    found: dict[str, list[str]] = {}
+    """Return the ids of the claims that cannot be tested on other scenes, by the reason."""
+    reasons: dict[str, list[str]] = {}
     for claim in claims:
         if why := claim.why_only_here():
-            found.setdefault(why, []).append(claim.id)
-    return found
+            reasons.setdefault(why, []).append(claim.id)
+    return reasons
 
 
 def claim_texts(claims: Sequence[Claim]) -> tuple[str, ...]:
-    """Those that other scenes can be asked of, as tasks hold them. InputError where none can."""
-    asked = [claim for claim in claims if not claim.why_only_here()]
-    if not asked:
+    """Return the claims that can be tested on other scenes, as JSON. InputError if none can."""
+    transferable = [claim for claim in claims if not claim.why_only_here()]
+    if not transferable:
         raise InputError(
             "claim", claims[0].id, f"{claims[0].why_only_here()}, and no other claim is left"
         )
-    return tuple(json.dumps(claim.model_dump(mode="json"), sort_keys=True) for claim in asked)
+    return tuple(
+        json.dumps(claim.model_dump(mode="json"), sort_keys=True) for claim in transferable
+    )
 
 
 def scheme_of(text: str) -> str:
-    """The scheme that the claim speaks of.
+    """Return the name of the claim's scheme.
 
     >>> scheme_of('{"kind": "order", "scheme": "lie2"}')
     'lie2'
@@ -63,7 +66,7 @@ def scheme_of(text: str) -> str:
 
 @lru_cache(maxsize=256)
 def claim_property(text: str) -> Property:
-    """The property that the claim makes; it is asked of its own scheme, whatever was drawn."""
+    """Build the property of the claim, which tests the claim's own scheme, whatever was drawn."""
     data: dict[str, Any] = json.loads(text)
     claim = models()[data["kind"]].model_validate(data)
     sentence = (
@@ -73,39 +76,44 @@ def claim_property(text: str) -> Property:
 
 
 def _check(claim: Claim, sample: Sample) -> None:
-    """Raises Violation where the claim is refuted for the sample's H and run; in n degrees of
-    freedom of claims that algebra decides, as a run's are of the plane."""
-    only_if(sample.light and (sample.most.runs or not claim.run_keys))
+    """Raise Violation if the claim is refuted for the sample's H and run.
+
+    In n degrees of freedom only claims that algebra decides are tested: those on runs belong to the
+    plane.
+    """
+    only_if(sample.light and (sample.limits.runs or not claim.run_keys))
+    # Claims on runs are tested where kernels are cheap, and one on a separable H only on such an H.
     separable = isinstance(claim, QuantifiedClaim) and claim.of_separable
     only_if(not separable or canonical_field(sample.hamiltonian)[0].separable)
-    asked = _of_scheme(sample, claim.scheme)
-    only_if(asked.ordinary)
+    claim_sample = _with_scheme(sample, claim.scheme)
+    only_if(claim_sample.ordinary)
     with silent_at(InputError):  # too long a formula, or an end of the run that cannot be had
-        found = _verdict_on(claim, asked)
-    if found.verdict is Verdict.REFUTED:
-        raise Violation(found.evidence)
-    only_if(found.verdict is not Verdict.UNDECIDED)
+        result = _verdict_on(claim, claim_sample)
+    if result.verdict is Verdict.REFUTED:
+        raise Violation(result.evidence)
+    only_if(result.verdict is not Verdict.UNDECIDED)
 
 
-def _of_scheme(sample: Sample, name: str) -> Sample:
-    """The sample with that scheme; Silent where the scheme does not take its H."""
+def _with_scheme(sample: Sample, name: str) -> Sample:
+    """Return the sample with that scheme; Silent if the scheme does not admit its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
-    asked = replace(sample, scheme=get(name), scene=scene)
+    claim_sample = replace(sample, scheme=get(name), scene=scene)
     with silent_at(InputError):
-        _ = asked.step_map
-    return asked
+        _ = claim_sample.step_map
+    return claim_sample
 
 
 def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
-    """The claim's result for the sample."""
-    claim = claim.of_one(sample.hamiltonian).model_copy(update={"scene": _NAME})
+    """Judge the claim on the sample."""
+    # A claim for every H becomes one for this H, which a drawn scene can refute.
+    claim = claim.for_hamiltonian(sample.hamiltonian).model_copy(update={"scene": _NAME})
     scenes = {_NAME: _scene(claim, sample)}
     results = results_for(claim, scenes, Store(None), THIS_PROCESS)
     return claim.judge(Findings(scenes, results))
 
 
 def _scene(claim: Claim, sample: Sample) -> Scene:
-    """The sample's scene, with the runs that the claim speaks of."""
+    """Return the sample's scene, with the runs that the claim needs."""
     scene = sample.scene
     if not claim.run_keys:
         return scene

@@ -1,4 +1,4 @@
-"""Which of the worst scenes are different from each other, and which are one scene again."""
+"""The comparison of the worst scenes, which tells different ones from near repetitions."""
 
 import re
 from collections.abc import Iterable
@@ -15,37 +15,41 @@ _NEAR = 0.1  # of lg of a measure: a quarter more, or less
 
 
 def scene_of(worst: Worst) -> Scene:
-    """The scene that its text is of."""
+    """Parse the scene from its text."""
     return scene_from(toml_data(worst.scene, "scene"), "scene")
 
 
-def by_shape(found: Iterable[Worst]) -> list[Worst]:
-    """The first of each shape of H, in the order given."""
-    kept: dict[str, Worst] = {}
-    for each in found:
-        kept.setdefault(shape_of(each), each)
-    return list(kept.values())
+def select_by_shape(scenes: Iterable[Worst]) -> list[Worst]:
+    """Return the first scene of each shape of H, in the given order."""
+    first_of_shape: dict[str, Worst] = {}
+    for each in scenes:
+        first_of_shape.setdefault(shape_of(each), each)
+    return list(first_of_shape.values())
 
 
 def shape_of(each: Worst) -> str:
-    """H's terms without their coefficients, and without the other numbers but exponents."""
+    """Return H's terms without coefficients, and with all numbers but exponents replaced by n."""
     return " + ".join(sorted(_terms(each)))
 
 
-def different(found: Iterable[Worst]) -> list[Worst]:
-    """In the order given, without those that are an earlier one again: about as bad, by the same
-    scheme, and from the same start or by an H that has the same terms and more, or fewer."""
-    kept: list[Worst] = []
-    for each in found:
-        if not any(_are_alike(each, other) for other in kept):
-            kept.append(each)
-    return kept
+def select_different(scenes: Iterable[Worst]) -> list[Worst]:
+    """Return the scenes in the given order, without near repetitions of an earlier one.
+
+    Two scenes are alike if they are about as bad, have the same scheme, and have the same start or
+    an H whose terms include those of the other.
+    """
+    selected: list[Worst] = []
+    for each in scenes:
+        if not any(_are_alike(each, other) for other in selected):
+            selected.append(each)
+    return selected
 
 
 def _are_alike(a: Worst, b: Worst) -> bool:
+    # By logarithms, as values are: equal badness is a matter of a factor.
     if abs(a.value - b.value) > _NEAR:
         return False
-    one, other = (Sample.of(scene_of(each)) for each in (a, b))
+    one, other = (Sample.from_scene(scene_of(each)) for each in (a, b))
     if one.scheme.name != other.scheme.name:
         return False
     of_one, of_other = _terms(a), _terms(b)
@@ -55,5 +59,6 @@ def _are_alike(a: Worst, b: Worst) -> bool:
 
 def _terms(each: Worst) -> set[str]:
     terms = sympy.Add.make_args(scene_of(each).exact_hamiltonian().exact)
+    # The content of a term is its rational factor; what remains is the term's shape.
     primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
     return {_NUMBERS.sub("n", str(term)) for term in primitive}

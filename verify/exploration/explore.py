@@ -1,8 +1,8 @@
-"""Properties, or a user's claims, held against many drawn scenes.
+"""Properties, or a user's claims, tested on many drawn scenes.
 
-The work is cut into tasks of a stretch of scenes each. What is found does not depend on how it is
-cut, as scene k is made of the seed and k alone (see `verify.exploration.scenes`). Of every property
-that fails the first scene by number is shrunk.
+The work is divided into tasks of consecutive scenes. The result does not depend on the division, as
+scene k depends on the seed and k alone (see `verify.exploration.scenes`). For every property that
+fails, the failing scene with the least number is shrunk.
 """
 
 import re
@@ -20,7 +20,7 @@ from verify.execution.keeping import name_of
 from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
-from verify.exploration.property_checks import outcome, properties_of
+from verify.exploration.property_checks import check_sample, properties_of
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.scenes import scenes_of
@@ -43,11 +43,11 @@ _MOST_TASKS = 1000  # so that a plan stays small however many scenes are drawn
 
 @dataclass(frozen=True)
 class Exploration:
-    """What is asked for: so many scenes of a seed, held against properties and claims.
+    """A request to test properties and claims on `examples` scenes of a seed.
 
     `claims`: each as JSON, by `verify.exploration.claims`. Raises InputError for an unknown
-    property, none at all, two of one name, fewer than one example, and what scenes cannot be drawn
-    of.
+    property, no property at all, two with one name, fewer than one example, and a space from which
+    no scenes can be drawn.
     """
 
     seed: int
@@ -73,8 +73,9 @@ class Exploration:
 
     @cached_property
     def plan(self) -> Plan:
-        """The tasks, each of a stretch of scenes."""
+        """The tasks, each for a range of consecutive scenes."""
         plan = Plan()
+        # A plan has at most 1000 tasks, whatever the number of examples is.
         size = max(_STRETCH, -(-self.examples // _MOST_TASKS))
         for first in range(0, self.examples, size):
             count = min(size, self.examples - first)
@@ -90,9 +91,10 @@ class Exploration:
         return plan
 
     def shrinking(self, failures: Sequence[Failure]) -> Plan:
-        """The tasks that shrink these failures."""
+        """Return the plan of the tasks that shrink these failures."""
         plan = Plan()
         for failure in failures:
+            # A claim's property is found by its name, as failures carry names alone.
             claims = tuple(c for c in self.claims if claim_property(c).name == failure.property)
             task = ShrinkTask(
                 drawn=self.drawn,
@@ -109,51 +111,54 @@ class Exploration:
 
 
 def explore(
-    asked: Exploration,
+    exploration: Exploration,
     store: Store,
     *,
     where: Placement = ANYWHERE,
     done: OnResult | None = None,
     earlier: Sequence[tuple[str, Scene]] = (),
 ) -> ExploreReport:
-    """Looks at all examples, and shrinks the first failure of each property.
+    """Test all examples, and shrink the first failure of each property.
 
-    `earlier`: scenes found before, each with the name of the property that failed; they are looked
-    at first. `done` hears of each result. What the store has of the tasks is not computed again.
-    The report depends on what is asked alone, and not on where it is computed.
+    `earlier`: scenes of earlier failures, each with the name of the property that failed; they are
+    tested first. `done` is called with each result. Results in the store are not computed again.
+    The report depends on the request alone, and not on where it is computed.
     """
-    again = tuple(_again(asked, earlier))
-    plan = asked.plan
+    again = tuple(_again(exploration, earlier))
+    plan = exploration.plan
     results = execute(plan, store, where=where, done=done)
-    found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
+    # Results come in any order; the plan's order makes the first failure the one with least number.
+    results_found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
     first: dict[str, Failure] = {}
-    for result in found:
+    for result in results_found:
         for failure in result.first:
             first.setdefault(failure.property, failure)
-    shrinking = asked.shrinking(list(first.values()))
+    shrinking = exploration.shrinking(list(first.values()))
     shrunk = execute(shrinking, store, where=where)
     return ExploreReport(
-        seed=asked.seed,
-        examples=asked.examples,
+        seed=exploration.seed,
+        examples=exploration.examples,
         properties=tuple(
             PropertySummary(
                 name=each.name,
                 sentence=each.sentence,
-                looked_at=sum(r.looked_at[each.name] for r in found),
-                failures=sum(r.failed[each.name] for r in found),
+                looked_at=sum(r.looked_at[each.name] for r in results_found),
+                failures=sum(r.failed[each.name] for r in results_found),
             )
-            for each in asked.looks
+            for each in exploration.looks
         ),
         failures=tuple(r for r in map(shrunk.get, shrinking.tasks) if isinstance(r, ShrunkResult)),
         again=again,
     )
 
 
-def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[EarlierFailure]:
+def _again(
+    exploration: Exploration, earlier: Sequence[tuple[str, Scene]]
+) -> Iterator[EarlierFailure]:
     for name, scene in earlier:
-        for each in asked.looks:
+        for each in exploration.looks:
             if slug(each.name) == name:
-                wrong = outcome(each, Sample.of(scene))[1]
+                wrong = check_sample(each, Sample.from_scene(scene))[1]
                 yield EarlierFailure(file=f"{scene.name}.toml", property=each.name, message=wrong)
 
 
@@ -164,26 +169,28 @@ _FOUND = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # what is written, 
 
 
 def save_failures(report: ExploreReport, folder: Path) -> list[Path]:
-    """Writes each shrunk scene into the folder, as PROPERTY.XXXXXXXX.toml; returns the paths.
+    """Write each shrunk scene into the folder, as PROPERTY.XXXXXXXX.toml; return the paths.
 
-    X are digits of a hash of the scene's text: what is found twice is one file.
+    The X are digits of a hash of the scene's text, so that equal scenes share one file.
     """
-    written = []
+    paths = []
     for failure in report.failures:
         path = folder / f"{slug(failure.property)}.{name_of(failure.scene)[:8]}.toml"
         write_atomically(path, failure.scene)
-        written.append(path)
-    return written
+        paths.append(path)
+    return paths
 
 
 def load_failures(folder: Path) -> list[tuple[str, Scene]]:
-    """The scenes that earlier explorations wrote there, each with its property's name as the file
-    has it. InputError for one that was changed into what is no scene, or has no [grid]."""
-    found = []
+    """Read the scenes of earlier explorations, each with its property's name in the file's name.
+
+    Raises InputError for a file that is no longer a scene, or has no [grid].
+    """
+    failures = []
     for path in sorted(folder.glob("*.toml")):
-        if own := _FOUND.fullmatch(path.name):
+        if match := _FOUND.fullmatch(path.name):
             scene = load_scene(path)
             if scene.grid is None:
                 raise InputError("scene", str(path), "has no [grid], which gives step and start")
-            found.append((own[1], scene.model_copy(update={"name": path.stem})))
-    return found
+            failures.append((match[1], scene.model_copy(update={"name": path.stem})))
+    return failures

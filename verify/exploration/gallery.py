@@ -1,4 +1,4 @@
-"""The worst scenes of a hunt as a report shows them: each with its orbit and its Λ, split."""
+"""The worst scenes of a hunt for a report: each with its orbit, and Λ split into its parts."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,20 +25,20 @@ _DIGITS = 8
 
 
 def gallery(
-    asked: Hunt,
-    found: HuntResult,
+    request: Hunt,
+    hunted: HuntResult,
     store: Store,
     *,
     where: Placement = ANYWHERE,
     done: OnResult | None = None,
 ) -> Gallery:
-    """The scenes with what is shown of them, over runs longer than those of the hunt.
+    """Build the gallery of the worst scenes, with runs longer than those of the hunt.
 
-    Where such a run does not end, the hunt's own is shown.
+    If such a run does not finish, the run of the hunt is shown instead.
     """
-    longer = min(asked.steps * _LONGER, max(asked.steps, _MOST_STEPS))
+    longer = min(request.steps * _LONGER, max(request.steps, _MOST_STEPS))
 
-    def separated(scenes: Sequence[Worst], steps: int) -> list[SeparationResult]:
+    def separate_all(scenes: Sequence[Worst], steps: int) -> list[SeparationResult]:
         plan, tasks = Plan(), [_task(each, steps) for each in scenes]
         for task in tasks:
             plan.need(task, "the gallery of the worst scenes")
@@ -46,27 +46,28 @@ def gallery(
         of_tasks = [results[task.key] for task in tasks]
         return [result for result in of_tasks if isinstance(result, SeparationResult)]
 
-    runs = separated(found.worst, longer)
-    again = [w for w, run in zip(found.worst, runs, strict=True) if run.status != "finished"]
-    short = iter(separated(again, asked.steps))
+    runs = separate_all(hunted.worst, longer)
+    # A longer run that leaves the range is replaced by one as long as the hunt's.
+    again = [w for w, run in zip(hunted.worst, runs, strict=True) if run.status != "finished"]
+    short = iter(separate_all(again, request.steps))
     return Gallery(
-        measure=asked.measure,
-        sentence=MEASURES[asked.measure].sentence,
-        seed=asked.seed,
-        examples=found.examples,
-        steps=asked.steps,
+        measure=request.measure,
+        sentence=MEASURES[request.measure].sentence,
+        seed=request.seed,
+        examples=hunted.examples,
+        steps=request.steps,
         reach=text(REACH),
         step_sizes=(text(STEP_SIZES[0]), text(STEP_SIZES[1])),
         coefficients=(str(COEFFICIENTS[0]), str(COEFFICIENTS[1])),
         scenes=tuple(
-            _shown(worst, run if run.status == "finished" else next(short), run)
-            for worst, run in zip(found.worst, runs, strict=True)
+            _gallery_scene(worst, run if run.status == "finished" else next(short), run)
+            for worst, run in zip(hunted.worst, runs, strict=True)
         ),
     )
 
 
 def _task(worst: Worst, steps: int) -> SeparationTask:
-    sample = Sample.of(scene_of(worst))
+    sample = Sample.from_scene(scene_of(worst))
     return SeparationTask(
         **sample.scene.hamiltonian_fields(),
         scheme=sample.scheme.name,
@@ -75,8 +76,8 @@ def _task(worst: Worst, steps: int) -> SeparationTask:
     )
 
 
-def _shown(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
-    points = orbit(Sample.of(scene_of(worst)))
+def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
+    points = orbit(Sample.from_scene(scene_of(worst)))
     lost = meaningless(run.plain.series if run.plain else ())
     return GalleryScene(
         value=worst.value,
@@ -90,7 +91,7 @@ def _shown(worst: Worst, run: SeparationResult, longer: SeparationResult) -> Gal
 
 
 def _separating(worst: Worst) -> str:
-    """The scene's text, which asks for what the gallery shows."""
+    """Return the scene's text, with the request to separate Λ as the gallery does."""
     scene = scene_of(worst)
     assert scene.grid is not None  # noqa: S101 - as drawn
     grid = scene.grid.model_copy(update={"separate": True})
@@ -99,31 +100,39 @@ def _separating(worst: Worst) -> str:
 
 @dataclass(frozen=True)
 class Meaningless:
-    """The first checkpoint, in steps, at which no digit of Λ is right, and that from which on some
-    are again, to the end of the run; None where there is none."""
+    """The steps between which Λ is meaningless; None where there is no such checkpoint.
+
+    `first`: the first checkpoint, in steps, at which no digit of Λ is right. `over`: the checkpoint
+    from which on some digits are right again up to the end of the run.
+    """
 
     first: int | None
     over: int | None
 
 
 def meaningless(series: Sequence[PartsAt]) -> Meaningless:
-    """Where the greatest |rounding| so far is not below the greatest |truncation| so far.
+    """Find the checkpoints at which max |rounding| so far is not below max |truncation| so far.
 
     `series`: Λ's parts at checkpoints of one run, in the order of steps.
 
-    The greatest ones, as Λ itself may pass through 0. A part that is exactly 0, or of which no
-    digit is known, is "0": one that is known is then the greater, and nothing is said of two.
+    The greatest parts so far are compared, as Λ itself may pass through 0. A part that is exactly
+    0, or has no known digit, is "0": a part with known digits is then the greater one, and two such
+    parts are not compared.
     """
-    lost = [at.steps for at, below in zip(series, _below(series), strict=True) if not below]
+    lost = [
+        checkpoint.steps
+        for checkpoint, below in zip(series, _below(series), strict=True)
+        if not below
+    ]
     if not lost:
         return Meaningless(None, None)
-    over = (at.steps for at in series if at.steps > lost[-1])
+    over = (checkpoint.steps for checkpoint in series if checkpoint.steps > lost[-1])
     return Meaningless(lost[0], next(over, None))
 
 
 def _below(series: Sequence[PartsAt]) -> Iterator[bool]:
     rounding = truncation = Fraction(0)
-    for at in series:
-        rounding = max(rounding, abs(Fraction(at.total)))
-        truncation = max(truncation, abs(Fraction(at.truncation)))
+    for checkpoint in series:
+        rounding = max(rounding, abs(Fraction(checkpoint.total)))
+        truncation = max(truncation, abs(Fraction(checkpoint.truncation)))
         yield rounding < truncation or not rounding

@@ -1,18 +1,18 @@
-"""The worst scenes for a measure, over islands that are searched each by itself.
+"""The search for the worst scenes for a measure, on islands that are searched independently.
 
-Each island has a seed of its own; the worst scenes of all are put together, one for each shape of
-H, so that ten of them are not ten times the same.
+Each island has a seed of its own. The worst scenes of all islands are merged, with one for each
+shape of H, so that they are not variants of a single scene.
 """
 
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
-from verify.exploration.different_scenes import by_shape, different
-from verify.exploration.island_search import KEPT, MOST_EXAMPLES, by_value, hunted_scenes
+from verify.exploration.different_scenes import select_by_shape, select_different
+from verify.exploration.island_search import KEPT, MOST_EXAMPLES, hunted_scenes, sorting_key
 from verify.exploration.measures import MEASURES
 from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.tasks import HuntTask
@@ -24,10 +24,10 @@ _ISLAND = 200  # scenes that one task looks at
 
 @dataclass(frozen=True)
 class Hunt:
-    """What is hunted for: `steps` steps each of so many scenes.
+    """A request to hunt among `examples` scenes of `steps` steps each.
 
-    Raises InputError for an unknown measure, fewer than one example, a seed below 0, and for what
-    scenes cannot be drawn of.
+    Raises InputError for an unknown measure, fewer than one example, a seed below 0, and a space
+    from which no scenes can be drawn.
     """
 
     measure: str
@@ -38,19 +38,20 @@ class Hunt:
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
-            raise unknown("maximise", self.measure, MEASURES)
+            raise unknown_name("maximise", self.measure, MEASURES)
         if self.drawn.degrees > 1 and not MEASURES[self.measure].several:
-            allowed = ", ".join(name for name, x in MEASURES.items() if x.several)
-            problem = f"is of one degree of freedom; allowed in more: {allowed}"
+            names = ", ".join(name for name, x in MEASURES.items() if x.several)
+            problem = f"is of one degree of freedom; allowed in more: {names}"
             raise InputError("maximise", self.measure, problem)
         check_scenes(self.seed, self.examples, MOST_EXAMPLES)
         if not 2 <= self.steps <= _MOST_STEPS:
             raise InputError("steps", self.steps, f"must be 2 … {_MOST_STEPS}")
+        # Built here for its errors alone: a request that cannot be drawn must not be planned.
         hunted_scenes(self.drawn, self.steps)
 
     @cached_property
     def plan(self) -> Plan:
-        """The tasks, each of an island of 200 scenes at most."""
+        """The tasks, each for an island of at most 200 scenes."""
         plan = Plan()
         for island, first in enumerate(range(0, self.examples, _ISLAND)):
             task = HuntTask(
@@ -66,16 +67,19 @@ class Hunt:
 
 
 def hunt(
-    asked: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
+    request: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
 ) -> HuntResult:
-    """The worst scenes found on all islands, six at most, each different from the others.
+    """Search all islands and return at most six worst scenes that differ from each other.
 
     Their values are decimal logarithms (see `verify.exploration.measures`), confirmed with twice
-    the digits. What the store has of the islands is not searched again.
+    the digits. Islands whose result is in the store are not searched again.
     """
-    plan = asked.plan
+    plan = request.plan
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
-    together = sorted((each for island in islands for each in island.worst), key=by_value)
+    # Islands may find the same scene: the best of each shape is taken over all of them.
+    together = sorted((each for island in islands for each in island.worst), key=sorting_key)
     examples = sum(island.examples for island in islands)
-    return HuntResult(worst=tuple(different(by_shape(together))[:KEPT]), examples=examples)
+    return HuntResult(
+        worst=tuple(select_different(select_by_shape(together))[:KEPT]), examples=examples
+    )

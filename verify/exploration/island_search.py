@@ -1,8 +1,7 @@
-"""One island of a hunt: searched with hypothesis's `target`, then refined one number at a time.
+"""The search on one island of a hunt: by hypothesis's `target`, then refined by single numbers.
 
-What is kept was measured twice, the second time with twice the digits.
-
-Scenes that differ from one in a single number, a little: where a local search looks next.
+A local search moves to neighbours, scenes that differ slightly in a single number. Each scene of
+the result was measured twice, the second time with twice the digits.
 """
 
 from collections.abc import Iterable, Iterator
@@ -19,7 +18,7 @@ from hypothesis.errors import Unsatisfiable
 from verify import strategies
 from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
-from verify.exploration.different_scenes import by_shape, scene_of, shape_of
+from verify.exploration.different_scenes import scene_of, select_by_shape, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
@@ -42,37 +41,48 @@ def neighbours(
     steps: tuple[Fraction, Fraction],
     coefficients: tuple[Fraction, Fraction],
 ) -> Iterator[Scene]:
-    """Each once: with another initial value in reach, step size within `steps`, or |coefficient| of
-    H within `coefficients`; without that last bound a search would only make H ever larger."""
-    sample = Sample.of(scene)
-    formula, at, h, n = scene.hamiltonian or "", sample.place, sample.step_size, len(sample.place)
-    order = (*range(n // 2, n), *range(n // 2))  # q, then p
-    moved = [(*at[:k], at[k] + move, *at[k + 1 :]) for move in _MOVES for k in order]
-    sizes = [min(max(_rounded(h * factor), steps[0]), steps[1]) for factor in _FACTORS]
-    others = chain(
-        ((formula, at, size) for size in sizes),
-        ((formula, other, h) for other in moved if max(map(abs, other)) <= reach),
-        ((other, at, h) for other in _formulas(sample.hamiltonian, coefficients)),
+    """Yield each neighbour once: with another initial value, step size or coefficient of H.
+
+    Initial values stay within `reach`, step sizes within `steps`, and the |coefficients| of H
+    within `coefficients`; without that last bound a search would only make H ever larger.
+    """
+    sample = Sample.from_scene(scene)
+    formula, place, h, n = (
+        scene.hamiltonian or "",
+        sample.place,
+        sample.step_size,
+        len(sample.place),
     )
-    seen = {(formula, at, h)}
+
+    order = (*range(n // 2, n), *range(n // 2))  # q, then p
+    moved_places = [
+        (*place[:k], place[k] + move, *place[k + 1 :]) for move in _MOVES for k in order
+    ]
+    sizes = [min(max(_round(h * factor), steps[0]), steps[1]) for factor in _FACTORS]
+    others = chain(
+        ((formula, place, size) for size in sizes),
+        ((formula, other, h) for other in moved_places if max(map(abs, other)) <= reach),
+        ((other, place, h) for other in _formulas(sample.hamiltonian, coefficients)),
+    )
+    yielded = {(formula, place, h)}
     for other in others:
-        if other not in seen:
-            seen.add(other)
+        if other not in yielded:
+            yielded.add(other)
             with suppress(InputError):  # such as an H that is not defined there
                 yield _scene(sample, *other)
 
 
-def _scene(sample: Sample, formula: str, at: Iterable[Fraction], h: Fraction) -> Scene:
-    moved = sample.at(at).run_arguments
-    start = {name: moved[name] for name in ("q", "p")}
+def _scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction) -> Scene:
+    arguments = sample.with_place(place).run_arguments
+    start = {name: arguments[name] for name in ("q", "p")}
     grid = {"steps": sample.steps, "step_sizes": [h], "initial_values": [start]}
     whole = {"hamiltonian": formula, "t0": sample.t0, "schemes": sample.scene.schemes, "grid": grid}
     return scene_from(whole, "neighbour")
 
 
-def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> Iterator[str]:
-    """H with one coefficient of its sum changed."""
-    least, most = within
+def _formulas(hamiltonian: Hamiltonian, bounds: tuple[Fraction, Fraction]) -> Iterator[str]:
+    """Yield H with one coefficient of its sum changed."""
+    least, greatest = bounds
     terms = sympy.Add.make_args(hamiltonian.exact)
     for k, term in enumerate(terms):
         content, primitive = term.as_content_primitive()  # 1/(2*p**2 + 2) has a factor of ½
@@ -81,14 +91,14 @@ def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> It
         if not coefficient.is_Rational or rest.is_number:
             continue
         for factor in (*_FACTORS, Fraction(-1)):
-            value = _rounded(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
-            if least <= abs(value) <= most:
-                changed = sympy.Rational(value) * rest
-                yield to_text(sympy.Add(*terms[:k], changed, *terms[k + 1 :]))
+            value = _round(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
+            if least <= abs(value) <= greatest:
+                changed_term = sympy.Rational(value) * rest
+                yield to_text(sympy.Add(*terms[:k], changed_term, *terms[k + 1 :]))
 
 
-def _rounded(x: Fraction) -> Fraction:
-    """To so few decimals that the scene stays readable."""
+def _round(x: Fraction) -> Fraction:
+    """Round to so few decimals that the scene stays readable."""
     return round(x, _PLACES)
 
 
@@ -106,63 +116,66 @@ _AGREEMENT = 0.01  # of lg of a measure, with twice the digits
 def search_island(
     measure: str, space: SampleSpace, seed: int, island: int, *, count: int, steps: int
 ) -> HuntResult:
-    """The worst scenes among `count` that the island looks at, of so many steps each."""
+    """Return the worst scenes among the `count` that the island measures, of `steps` steps each."""
     look = MeasuredScenes(MEASURES[measure], count)
+    # Seeds of two islands differ, also for different seeds of the hunt: see MOST_EXAMPLES.
     chance = seed * MOST_EXAMPLES + island
-    _directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
-    _refined(look)
-    return HuntResult(worst=tuple(_confirmed(look)), examples=len(look.seen))
+    _search_directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
+    _refine(look)
+    return HuntResult(worst=tuple(_confirm_worst(look)), examples=len(look.seen))
 
 
 class MeasuredScenes:
-    """Measures scenes, at most so many, and remembers what it found."""
+    """The measured scenes of an island, at most `limit`, with their values."""
 
-    def __init__(self, measure: Measure, most: int) -> None:
-        self.measure, self.most = measure, most
+    def __init__(self, measure: Measure, limit: int) -> None:
+        self.measure, self.limit = measure, limit
         self.seen: dict[str, float | None] = {}
 
     def __call__(self, scene: Scene) -> float | None:
-        """What a scene measures; None too where there is nothing left to measure it with."""
+        """Measure a scene; None also if the limit of scenes is reached."""
+        # The text identifies a scene, so that a scene drawn twice is measured once.
         text = scene_text(scene)
-        if text not in self.seen and self.left:
-            self.seen[text] = self.measure.of(Sample.of(scene), DIGITS)
+        if text not in self.seen and self.has_room:
+            self.seen[text] = self.measure.evaluate(Sample.from_scene(scene), DIGITS)
         return self.seen.get(text)
 
     @property
-    def left(self) -> bool:
-        """Whether it may measure one more."""
-        return len(self.seen) < self.most
+    def has_room(self) -> bool:
+        """True if one more scene may be measured."""
+        return len(self.seen) < self.limit
 
     def worst(self) -> list[Worst]:
-        """All that have a value, the worst first."""
-        known = ((text, value) for text, value in self.seen.items() if value is not None)
-        return sorted((Worst(value=value, scene=text) for text, value in known), key=by_value)
+        """Return all scenes that have a value, the worst first."""
+        values = ((text, value) for text, value in self.seen.items() if value is not None)
+        return sorted((Worst(value=value, scene=text) for text, value in values), key=sorting_key)
 
 
-def by_value(each: Worst) -> tuple[float, int, str]:
-    """The worst first, of equal ones the shortest."""
+def sorting_key(each: Worst) -> tuple[float, int, str]:
+    """Return the sorting key: the worst first, among equal ones the shortest."""
     return -each.value, len(each.scene), each.scene
 
 
-def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
-    """The worst of each shape that measures the same with twice the digits."""
-    found: set[str] = set()
+def _confirm_worst(look: MeasuredScenes) -> Iterator[Worst]:
+    """Yield the worst scene of each shape whose value is confirmed with twice the digits."""
+    shapes: set[str] = set()
     for each in look.worst():
         shape = shape_of(each)
-        if len(found) == KEPT:
+        if len(shapes) == KEPT:
             return
-        if shape in found:
+        if shape in shapes:
             continue
-        again = look.measure.of(Sample.of(scene_of(each)), 2 * DIGITS)
+        again = look.measure.evaluate(Sample.from_scene(scene_of(each)), 2 * DIGITS)
+        # A value that changes with more digits is made of rounding errors, and is no measure.
         if again is not None and abs(again - each.value) <= _AGREEMENT:
-            found.add(shape)
+            shapes.add(shape)
             yield Worst(value=again, scene=each.scene)
 
 
-def _directed(
+def _search_directed(
     look: MeasuredScenes, scenes: st.SearchStrategy[Scene], chance: int, count: int
 ) -> None:
-    """Looks at so many scenes that hypothesis draws, ever nearer to what measures most."""
+    """Measure `count` scenes drawn by hypothesis, which targets those with large values."""
 
     @seeded(chance)
     @settings(
@@ -173,40 +186,40 @@ def _directed(
         suppress_health_check=list(HealthCheck),
     )
     @given(scenes)
-    def looked(scene: Scene) -> None:
+    def look_at(scene: Scene) -> None:
         value = look(scene)
         if value is not None:
             target(value)
 
     # Where every scene that is drawn has to be rejected, there are none to look at.
     with suppress(Unsatisfiable):
-        looked()
+        look_at()
 
 
-def _refined(look: MeasuredScenes) -> None:
-    """Climbs from the worst scene of each shape in turn, as long as scenes may be looked at."""
-    for begin in by_shape(look.worst()):
-        if not look.left:
+def _refine(look: MeasuredScenes) -> None:
+    """Climb from the worst scene of each shape in turn, as long as scenes may be measured."""
+    for begin in select_by_shape(look.worst()):
+        if not look.has_room:
             return
         _climb(begin, look)
 
 
 def _climb(begin: Worst, look: MeasuredScenes) -> None:
-    """Moves to the first neighbour that is worse, as long as there is one."""
-    value, scene, moved = begin.value, scene_of(begin), True
-    while moved:
-        moved = False
+    """Move to the first neighbour that is worse, as long as there is one."""
+    value, scene, has_moved = begin.value, scene_of(begin), True
+    while has_moved:
+        has_moved = False
         for other in neighbours(scene, reach=REACH, steps=STEP_SIZES, coefficients=COEFFICIENTS):
-            if not look.left:
+            if not look.has_room:
                 return
-            found = look(other)
-            if found is not None and found > value:
-                value, scene, moved = found, other, True
+            measured_value = look(other)
+            if measured_value is not None and measured_value > value:
+                value, scene, has_moved = measured_value, other, True
                 break
 
 
 def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
-    """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
+    """Return a strategy for plain scenes: few terms, starts in tenths, h from 1/1000 to 1/10."""
     # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
     # the modules loaded, and what is drawn would then depend on which these are. A coefficient with
     # its sign is drawn as a number below 2·SIZE².

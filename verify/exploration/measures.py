@@ -1,7 +1,7 @@
-"""How bad a scene is for float64, or for its scheme: what worst-case hunting makes as large as can.
+"""Measures of how bad a scene is for float64, or for its scheme, which a hunt maximises.
 
-Each is a decimal logarithm, None where the scene has none: its orbit leaves a bounded part of the
-plane, or what is divided, or what it is divided by, is 0 or of no known digit.
+Each value is a decimal logarithm, or None: if the orbit leaves a bounded part of the plane, or if
+the numerator or the denominator is 0 or has no known digit.
 """
 
 import math
@@ -13,8 +13,8 @@ from typing import Any
 from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Sample
 from verify.kernels.stepping import Outcome
-from verify.lockstep import alone
-from verify.studies.separation.links import separated_chains
+from verify.lockstep import run_alone
+from verify.studies.separation.links import separate_chains
 from verify.studies.separation.stepper.run import Stopped
 from verify.studies.separation.stepper.trail import Trail
 
@@ -22,37 +22,42 @@ DIGITS = 40  # of what stands for exact arithmetic
 _SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves
 _POINTS = 100  # of an orbit that is drawn
 _FAR = 10  # a run that goes farther from the origin is of no ordinary scene
+# 2⁻⁵³, the greatest relative rounding error of float64.
 _ROUNDOFF = Fraction(1, 2**53)
 
 
 @dataclass(frozen=True)
 class Measure:
-    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is, and `several` what it is
-    in n degrees of freedom; "" of one that is of the plane.
+    """A measure with its description.
+
+    `value(sample, digits)`: its decimal logarithm, or None. `sentence` describes it, and `several`
+    in n degrees of freedom; "" for a measure that exists in the plane alone.
     """
 
     sentence: str
     value: Callable[[Any, int], float | None]
     several: str = ""
 
-    def of(self, sample: Sample, digits: int) -> float | None:
-        """Its value for a sample; None where it is not of so many degrees of freedom."""
-        return self.value(sample, digits) if self.said(sample.hamiltonian.degrees) else None
+    def evaluate(self, sample: Sample, digits: int) -> float | None:
+        """Return its value for a sample; None if it does not exist in its degrees of freedom."""
+        return self.value(sample, digits) if self.describe(sample.hamiltonian.degrees) else None
 
-    def said(self, degrees: int) -> str:
-        """What it is, in so many degrees of freedom."""
+    def describe(self, degrees: int) -> str:
+        """Return its description in so many degrees of freedom; "" if it does not exist there."""
         return self.sentence if degrees == 1 else self.several
 
 
 def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the greatest rounding part over the greatest truncation part, at checkpoints of a run.
+    """Return lg of the greatest rounding part over the greatest truncation part of a run.
 
-    The greatest ones, as Λ itself may pass through 0, where any error is infinitely large.
+    The greatest parts at its checkpoints are taken, as Λ itself may pass through 0, where any
+    relative error is infinite.
     """
     if _stays(sample, digits) is None:
         return None
     try:
-        chains = alone(separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE)))
+        # Parts need more working digits than asked for, which they choose by themselves.
+        chains = run_alone(separate_chains(*sample.kernel_inputs, max(1, digits // _SHARE)))
     except Stopped:
         return None
     (chain,) = chains.plain
@@ -61,75 +66,84 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
 
 
 def _greatest(trail: Trail, bound: Fraction) -> Fraction:
-    """The greatest |value|; 0 where no digit of it is known, since noise is not what is hunted."""
+    """Return the greatest |value|; 0 if no digit of it is known, since noise is not hunted."""
+    # A value below ten times its bound has no certain digit.
     top = trail.largest
     return top if top > 10 * bound else Fraction(0)
 
 
 def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the error of float64's coordinates after the run, in units of its roundoff.
+    """Return lg of the error of float64's coordinates after the run, in units of its roundoff.
 
-    Relative to the farthest that the orbit is from the origin: where it comes near to that, no
-    digit is lost that anything hangs on.
+    The error is relative to the greatest coordinate along the orbit: near the origin a relative
+    error may be large without any loss that matters.
     """
     exact = _stays(sample, digits)
     if exact is None:
         return None
-    found = sample.run("float64", 17)
-    return None if found.done < sample.steps else _lost(sample, exact, found)
+    outcome = sample.run("float64", 17)
+    return None if outcome.done < sample.steps else _lost(sample, exact, outcome)
 
 
-def _lost(sample: Sample, exact: Outcome, found: Outcome) -> float | None:
+def _lost(sample: Sample, exact: Outcome, outcome: Outcome) -> float | None:
     names = tuple(sample.point)
     size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
-    error = max(abs(found.values[n] - exact.values[n]) for n in names)
+    error = max(abs(outcome.values[n] - exact.values[n]) for n in names)
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
 def growth(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
-    degrees of freedom of the greatest |entry| of W of the whole run."""
-    value = _observed(sample, digits, sample.hamiltonian.structure.over_run)
+    """Return lg of the greatest |Λ| of the run, computed with so many digits, free of rounding.
+
+    In n degrees of freedom it is the greatest |entry| of W of the whole run.
+    """
+    value = _observable(sample, digits, sample.hamiltonian.structure.over_run)
     return _lg(value) if value else None
 
 
 def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |ΔJ| of the run, in n degrees of freedom of the greatest |entry| of S of
-    any step, over h to the power that is proved of it."""
+    """Return lg of the greatest |ΔJ| of a step, divided by h to its proved order.
+
+    In n degrees of freedom it is the greatest |entry| of S of a step.
+    """
     order = sample.proof.order if sample.ordinary else None
     if order is None:
         return None
-    value = _observed(sample, digits, sample.hamiltonian.structure.of_step)
+    value = _observable(sample, digits, sample.hamiltonian.structure.of_step)
     return _lg(value / sample.step_size**order) if value else None
 
 
-def _observed(sample: Sample, digits: int, name: str) -> Fraction | None:
-    """The observable of the run; None of one that goes far."""
+def _observable(sample: Sample, digits: int, name: str) -> Fraction | None:
+    """Return the observable of the run; None if the run goes far."""
     run = _stays(sample, digits, name)
     return run.values[name] if run else None
 
 
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
-    """Points (q, p) of the run with 40 digits, from the initial value on."""
+    """Return points (q, p) of the run with 40 digits, from the initial value on."""
     trail = sample.run("mpfr", DIGITS, sections=_POINTS).trail
     return [(sample.point["q"], sample.point["p"]), *((x["q"], x["p"]) for x in trail)]
 
 
 def _stays(sample: Sample, digits: int, *observables: str) -> Outcome | None:
-    """The run with so many digits; None where it goes far, or, in n degrees of freedom, where its
-    kernel is long or nothing is to be observed."""
+    """Run with so many digits; None if the orbit goes far.
+
+    In n degrees of freedom it is also None if the kernel is long, or if the observables vanish
+    because the scheme is symplectic by its conditions.
+    """
     if not sample.hamiltonian.planar and (
         not sample.short or (observables and sample.step_map.symplectic_by_conditions)
     ):
         return None
-    found = sample.run("mpfr", digits, *observables)
-    if found.done < sample.steps:
+    outcome = sample.run("mpfr", digits, *observables)
+    if outcome.done < sample.steps:
         return None
-    near = all(abs(x[name]) <= _FAR for x in found.trail for name in sample.point)
-    return found if near else None
+    near = all(abs(x[name]) <= _FAR for x in outcome.trail for name in sample.point)
+    return outcome if near else None
 
 
 def _lg(x: Fraction) -> float:
+    # lg x = e + lg(x/10^e): the quotient has the size of a float, which x itself may not.
     e = magnitude(x)
     return e + math.log10(x / Fraction(10) ** e)
 

@@ -1,4 +1,4 @@
-"""What a property is: a sentence that always holds, and how one sample is held against it."""
+"""Properties: sentences that hold for every sample, each with the check of one sample."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,21 +11,21 @@ T = TypeVar("T")
 
 
 class Violation(Exception):  # noqa: N818 - it is a finding about the code, not a failure of it
-    """A sample for which a property does not hold; the message is one line with the numbers."""
+    """A property does not hold for a sample; the message is one line with the numbers."""
 
 
 class Silent(Exception):  # noqa: N818 - nothing is wrong
-    """A sentence that does not speak of a sample, or speaks of what cannot be had of it."""
+    """A property does not apply to a sample, or its quantities cannot be computed for it."""
 
 
 def only_if(condition: bool) -> None:
-    """Silent unless the sentence speaks of the sample."""
+    """Raise Silent unless the condition under which the property applies is met."""
     if not condition:
         raise Silent
 
 
-def known(x: T | None) -> T:
-    """What is there; Silent where it is None."""
+def require_value(x: T | None) -> T:
+    """Return the value; raise Silent if it is None."""
     if x is None:
         raise Silent
     return x
@@ -33,7 +33,7 @@ def known(x: T | None) -> T:
 
 @contextmanager
 def silent_at(*errors: type[Exception]) -> Iterator[None]:
-    """Makes these errors Silent: what is asked for cannot be had."""
+    """Turn these errors into Silent: the property's quantities cannot be computed."""
     try:
         yield
     except errors:
@@ -42,11 +42,11 @@ def silent_at(*errors: type[Exception]) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Property:
-    """`check(sample)` raises Violation where the sentence is wrong for it, and Silent where it does
-    not speak of it.
+    """A sentence with its check.
 
-    Any other exception is an error of the code under test, too. `scheme`: that of which it speaks,
-    where this is not the sample's. `speaks_of`: the samples that it is asked of.
+    `check(sample)` raises Violation if the sentence is wrong for the sample, and Silent if it does
+    not apply. Any other exception is an error of the code under test, too. `scheme`: the scheme
+    that it tests, if this is not the sample's. `speaks_of`: the samples to which it applies.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Property:
     speaks_of: Callable[[Sample], bool] = lambda _: True
 
     def holds(self, sample: Sample) -> bool:
-        """True, or False where the sentence does not speak of the sample; else as `check`."""
+        """Return True if the property holds, and False if it does not apply; else as `check`."""
         try:
             only_if(self.speaks_of(sample))
             self.check(sample)

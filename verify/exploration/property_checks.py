@@ -1,4 +1,4 @@
-"""Properties held against sampled scenes, and the simplest scene for which one does not hold."""
+"""The check of properties on sampled scenes, and the simplest scene for which one fails."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -15,7 +15,7 @@ from verify.scenes.toml_text import scene_text
 
 
 def properties_of(names: Sequence[str], claims: Sequence[str]) -> tuple[Property, ...]:
-    """The properties of these names, and what these claims (each as JSON) say.
+    """Return the properties of these names, and those of these claims (each as JSON).
 
     Raises InputError for an unknown property.
     """
@@ -25,50 +25,51 @@ def properties_of(names: Sequence[str], claims: Sequence[str]) -> tuple[Property
 def check_properties(
     properties: Sequence[Property], space: SampleSpace, seed: int, numbers: Iterable[int]
 ) -> ExploreResult:
-    """Holds each property against the scenes of these numbers of the seed."""
-    looked_at, failed = Counter[str](), Counter[str]()
+    """Check each property on the scenes of these numbers of the seed."""
+    tested, failures = Counter[str](), Counter[str]()
     first: dict[str, Failure] = {}
     for number in numbers:
-        sample = Sample.of(sample_scene(space, seed, number))
+        # The sample, with its map and proof, is shared by all properties.
+        sample = Sample.from_scene(sample_scene(space, seed, number))
         for each in properties:
-            spoke, wrong = outcome(each, sample)
-            looked_at[each.name] += spoke
+            spoke, wrong = check_sample(each, sample)
+            tested[each.name] += spoke
             if wrong:
-                failed[each.name] += 1
-                found = Failure(property=each.name, example=number, message=wrong)
-                first.setdefault(each.name, found)
+                failures[each.name] += 1
+                failure = Failure(property=each.name, example=number, message=wrong)
+                first.setdefault(each.name, failure)
     names = [each.name for each in properties]
     return ExploreResult(
-        looked_at={name: looked_at[name] for name in names},
-        failed={name: failed[name] for name in names},
+        looked_at={name: tested[name] for name in names},
+        failed={name: failures[name] for name in names},
         first=tuple(first.values()),
     )
 
 
-def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
-    """Whether the property speaks of the sample, and what is wrong; empty where nothing is."""
+def check_sample(property_: Property, sample: Sample) -> tuple[bool, str]:
+    """Return True if the property applies to the sample, and what is wrong, empty if nothing is."""
     try:
-        return asked.holds(sample), ""
+        return property_.holds(sample), ""
     except Violation as violation:
         return True, str(violation)
     except Exception as error:  # whatever the code under test may raise is a finding
         return True, f"raised {type(error).__name__}: {' '.join(str(error).split())}"
 
 
-def shrink(asked: Property, space: SampleSpace, seed: int, number: int) -> ShrunkResult:
-    """The simplest scene for which the property fails as for that scene of the seed."""
+def shrink(property_: Property, space: SampleSpace, seed: int, number: int) -> ShrunkResult:
+    """Find the simplest scene for which the property fails, from that scene of the seed."""
     scene, message = simplest(
-        space, seed, number, lambda scene: outcome(asked, Sample.of(scene))[1]
+        space, seed, number, lambda scene: check_sample(property_, Sample.from_scene(scene))[1]
     )
     # Another scheme may have been drawn than the one that a claim speaks of.
-    named = scene.model_copy(
-        update={"name": slug(asked.name), "schemes": (asked.scheme or scene.schemes[0],)}
+    named_scene = scene.model_copy(
+        update={"name": slug(property_.name), "schemes": (property_.scheme or scene.schemes[0],)}
     )
     origin = f"example {number} of seed {seed}, shrunk"
-    comment = f"{asked.name}: {asked.sentence}\n{message}\n{origin}"
+    comment = f"{property_.name}: {property_.sentence}\n{message}\n{origin}"
     return ShrunkResult(
-        property=asked.name,
+        property=property_.name,
         example=number,
         message=message,
-        scene=scene_text(named, comment=comment),
+        scene=scene_text(named_scene, comment=comment),
     )

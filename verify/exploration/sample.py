@@ -1,4 +1,4 @@
-"""A drawn scene as properties look at it: an H, scheme, step size, start, t₀ and N."""
+"""A drawn scene as properties use it: H, scheme, step size, start, t₀ and N."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -29,11 +29,11 @@ from verify.structures import AREA, SYMPLECTIC
 
 
 class Most(NamedTuple):
-    """The terms up to which a proof is made, a kernel written, points looked at in a moment,
-    and a single step.
+    """The greatest numbers of terms for which each computation still takes only a moment.
 
-    `unproved`: whether kernels are written also of what is not proved; `runs`: whether what claims
-    say of runs is looked at.
+    `proof`: a proof; `kernels`: writing a kernel; `points`: evaluating the map at a few points;
+    `step`: a single step. `unproved`: kernels are written also where the map is too long for a
+    proof; `runs`: claims on runs are tested.
     """
 
     proof: int
@@ -55,7 +55,7 @@ _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' 
 
 @dataclass(frozen=True)
 class Sample:
-    """What a property is asked about; the map and its proof are made once for all of them.
+    """A drawn scene; its map and its proof are computed once for all properties.
 
     `place`: the coordinates at the start, in their order.
     """
@@ -69,10 +69,10 @@ class Sample:
     place: tuple[Fraction, ...]
 
     @classmethod
-    def of(cls, scene: Scene) -> Self:
-        """The first scheme, step size and initial value of a scene that has a [grid].
+    def from_scene(cls, scene: Scene) -> Self:
+        """Take the first scheme, step size and initial value of a scene that has a [grid].
 
-        Raises InputError for one that has none, or whose start is not one of its H.
+        Raises InputError for a scene without [grid], or with a start that does not fit its H.
         """
         if scene.grid is None:
             raise InputError("scene", scene.name, "has no [grid], which gives step and start")
@@ -88,8 +88,8 @@ class Sample:
             place=tuple(point_of(hamiltonian, start.q, start.p).values()),
         )
 
-    def at(self, place: Iterable[Fraction]) -> Self:
-        """The same from another point, whose coordinates are given in their order."""
+    def with_place(self, place: Iterable[Fraction]) -> Self:
+        """Return the sample with another start, whose coordinates are given in their order."""
         return replace(self, place=tuple(place))
 
     @property
@@ -99,54 +99,59 @@ class Sample:
 
     @cached_property
     def step_map(self) -> StepMap:
-        """The map of one step, for this H; asked for where it is `brief`."""
+        """The map of one step for this H, to be used only where the sample is `brief`."""
         return self.scheme.step_map(self.hamiltonian)
 
     @cached_property
     def proof(self) -> Proof:
-        """What is proved of the map: orders, the leading coefficient of its defect."""
+        """The proof about the map: its orders, and the leading coefficient of its defect."""
         return prove(self.step_map, self.scheme)
 
     @cached_property
     def potential(self) -> Potential | None:
-        """That of the leading coefficient of ΔJ; None in n degrees of freedom."""
+        """The potential of the leading coefficient of ΔJ; None in n degrees of freedom."""
         return potential_of(self.proof, self.scheme) if self.hamiltonian.planar else None
 
     # -- how long it is ---------------------------------------------------------------------------
 
     @property
-    def most(self) -> Most:
-        """The terms that it may have."""
+    def limits(self) -> Most:
+        """The limits of terms for its number of degrees of freedom."""
         return _MOST[self.hamiltonian.structure]
 
     @cached_property
     def terms(self) -> float:
-        """How many terms its map has in the plane; in n degrees of freedom its slopes, of a Taylor
-        series those of all its terms, made one after the other and as long as they are few."""
+        """The number of terms of its map, or in n degrees of freedom of its slopes.
+
+        For a Taylor series in n degrees of freedom the terms of all powers are counted, one power
+        after the other; it is infinite as soon as they are too many.
+        """
         if self.hamiltonian.planar:
             return self.step_map.terms
         field, generic = self.field, self.scheme.every_h
         total: float = sum(map(len, field.slopes))
         if not isinstance(generic, TaylorSeries):
             return total
+        # The limit is tested before each power: a power of many terms alone may take minutes.
         for n in range(2, generic.eta + 1):
-            if total > self.most.points:
+            if total > self.limits.points:
                 return inf
             total += sum(map(len, field.power(n)))
         return total
 
     @cached_property
     def ordinary(self) -> bool:
-        """Whether its map is short enough to be proved in a moment.
+        """True if its map is short enough to be proved in a moment.
 
-        What needs a proof speaks of these alone, so that among thousands of drawn
+        Properties that need a proof apply to these samples alone, so that among thousands of drawn
         scenes not one takes minutes: lie6 of a trigonometric H has a thousand terms, and a
         composition's series for a rational H as many denominators.
         """
         scheme = self.scheme
-        if self.terms > self.most.proof:
+        if self.terms > self.limits.proof:
             return False
         if not self.hamiltonian.planar:
+            # The series of other functions have many terms, which make proofs long.
             exact = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
             return exact and scheme.order <= _MOST_ORDER
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
@@ -155,31 +160,31 @@ class Sample:
 
     @property
     def in_closed_form(self) -> bool:
-        """Whether its map is ordinary, and solves no equations."""
+        """True if its map is ordinary and solves no equations."""
         return self.ordinary and not self.step_map.implicit
 
     @property
     def short(self) -> bool:
-        """Whether kernels of it are written in a moment."""
-        return self.terms <= self.most.kernels and (self.most.unproved or self.ordinary)
+        """True if its kernels are written in a moment."""
+        return self.terms <= self.limits.kernels and (self.limits.unproved or self.ordinary)
 
     @property
     def brief(self) -> bool:
-        """Whether its map is short enough to be looked at in a few points in a moment."""
-        return self.terms <= self.most.points
+        """True if its map is evaluated at a few points in a moment."""
+        return self.terms <= self.limits.points
 
     @property
     def light(self) -> bool:
-        """Whether one step of it is looked at: in the plane of every one, however long its map."""
-        return self.most.step == inf or self.terms <= self.most.step
+        """True if a single step is computed: in the plane always, however long the map is."""
+        return self.limits.step == inf or self.terms <= self.limits.step
 
     @property
     def field(self) -> CanonicalField:
-        """H's own, with its derivatives by the coordinates."""
+        """The canonical field of H, with its derivatives by the coordinates."""
         return canonical_field(self.hamiltonian)[0]
 
     def flow(self, digits: int) -> Flow:
-        """The exact flow, to so many digits."""
+        """Return the exact flow, to so many digits."""
         return Flow(self.field, digits)
 
     @property
@@ -189,12 +194,12 @@ class Sample:
 
     @property
     def polynomial(self) -> bool:
-        """Whether H is a polynomial."""
+        """True if H is a polynomial."""
         return self._kinds <= {"variable"}
 
     @cached_property
     def _kinds(self) -> set[str]:
-        """Of what the slopes are made."""
+        """The kinds of the generators in the slopes."""
         ring, slopes = self.slopes
         return {g.kind for g in ring.generators_in(*slopes)}
 
@@ -202,14 +207,15 @@ class Sample:
 
     @property
     def turn(self) -> int:
-        """A number by which properties choose what they look at of a sample."""
+        """A number from the sample by which slow properties select the samples that they test."""
+        # Any fixed function of the sample would do; chance would not, as failures must repeat.
         p, q = self.place[0], self.place[self.hamiltonian.degrees]
         return 7 * self.steps + abs(p.numerator) + q.denominator
 
     def is_turn(self, one_in: int, after: int = 0) -> bool:
-        """Whether a property that takes long looks at this sample: at one in so many.
+        """Return True for one sample in `one_in`, those that a slow property tests.
 
-        `after`: properties with different ones look at different samples.
+        `after`: the remainder; properties with different ones test different samples.
         """
         return self.turn % one_in == after
 
@@ -217,30 +223,29 @@ class Sample:
 
     @property
     def kernel_inputs(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
-        """What a `KernelRun` and a `Separation` begin with."""
+        """The first arguments of a `KernelRun` and a `Separation`."""
         return self.hamiltonian, self.scheme.name, self.start, self.steps
 
     def run(
         self, number_system: str, digits: int, *observables: str, sections: int = SECTIONS
     ) -> Outcome:
-        """Its run in a kernel, with the trail of so many sections."""
+        """Run it in a kernel, with a trail of so many sections."""
         run = KernelRun(*self.kernel_inputs, frozenset(observables), 0, sections=sections)
         return run.run(number_systems.get(number_system, digits))
 
     @property
     def run_arguments(self) -> dict[str, Any]:
-        """What `run` and `separate` are called with beside H and the scheme."""
-        own = start_texts(self.hamiltonian, self.point, self.t0)
-        return own | {"step_size": self.step_size, "steps": self.steps}
+        """The arguments of `run` and `separate`, except H and the scheme."""
+        arguments = start_texts(self.hamiltonian, self.point, self.t0)
+        return arguments | {"step_size": self.step_size, "steps": self.steps}
 
     @property
-    def timed(self) -> bool:
-        """Whether H depends on t."""
+    def depends_on_time(self) -> bool:
+        """True if H depends on t."""
         return self.hamiltonian.time_dependent
 
     @property
     def start(self) -> dict[str, Fraction]:
-        """The coordinates and h by name, and t where H depends on it, as a run and an enclosure
-        want them."""
-        own = {**self.point, "h": self.step_size}
-        return own | {"t": self.t0} if self.timed else own
+        """The coordinates and h by name, with t if H depends on it, for runs and enclosures."""
+        values = {**self.point, "h": self.step_size}
+        return values | {"t": self.t0} if self.depends_on_time else values

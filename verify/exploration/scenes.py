@@ -1,6 +1,6 @@
-"""The scenes of a seed: number k of seed S is the same scene everywhere and always.
+"""The scenes of a seed: scene k of seed S is the same everywhere and always.
 
-A scene is drawn from bytes that S and k alone make, so that it does not matter which of the others
+A scene is drawn from bytes that depend on S and k alone, so that it does not matter which others
 were drawn, where, or by how many workers.
 """
 
@@ -21,6 +21,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene
 from verify.strategies.schemes import separable_for
 
+# Bytes for one scene: hypothesis rejects a draw that needs more.
 _BYTES = 4096
 _MOST_STEPS = 12
 _ATTEMPTS = 100
@@ -31,7 +32,10 @@ Fault = Callable[[Scene], str]  # what is wrong with a scene; empty where nothin
 
 @lru_cache(maxsize=32)
 def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
-    """The strategy. Raises InputError for an unknown kind or scheme, and a degree below 1."""
+    """Return the strategy for the space's scenes.
+
+    Raises InputError for an unknown kind or scheme, and a degree below 1.
+    """
     terms = _TERMS if drawn.degrees == 1 else _TERMS_IN_DEGREES
     usual = not drawn.kinds and drawn.degree == SampleSpace().degree
     return strategies.scenes(
@@ -46,7 +50,7 @@ def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
 def hamiltonians_of(
     drawn: SampleSpace, terms: int, size: int = 9
 ) -> st.SearchStrategy[Hamiltonian]:
-    """Those of the space; `terms` and `size` as `verify.strategies.hamiltonians` has them."""
+    """Return the strategy for the H of the space; see `verify.strategies.hamiltonians`."""
     return strategies.hamiltonians(
         drawn.kinds or strategies.KINDS,
         degree=drawn.degree,
@@ -59,7 +63,7 @@ def hamiltonians_of(
 
 
 def sample_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
-    """Scene `number` of the seed."""
+    """Draw scene `number` of the seed."""
     box, fuzz = _drawer(drawn)
     for attempt in range(_ATTEMPTS):
         box.clear()
@@ -70,7 +74,7 @@ def sample_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
 
 
 def bytes_of(seed: int, number: int, attempt: int = 0) -> bytes:
-    """What a scene is drawn from."""
+    """Return the bytes from which a scene is drawn."""
     return random.Random(f"{seed}:{number}:{attempt}").randbytes(_BYTES)  # noqa: S311 - no secret
 
 
@@ -87,13 +91,14 @@ def _drawer(drawn: SampleSpace) -> tuple[list[Scene], Callable[[bytes], Any]]:
 
 
 def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[Scene, str]:
-    """The simplest scene that hypothesis shrinks that one to, where `look` still finds something.
+    """Return the simplest scene to which hypothesis shrinks that one, and its fault by `look`.
 
-    It must find something in that scene itself.
+    `look` must report a fault of that scene itself.
     """
-    found: list[tuple[Scene, str]] = []
+    failures: list[tuple[Scene, str]] = []
 
     @settings(
+        # The database keeps the failing example, from which `fails()` shrinks.
         database=InMemoryExampleDatabase(),
         phases=(Phase.reuse, Phase.shrink),
         deadline=None,
@@ -106,7 +111,7 @@ def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[S
     def fails(scene: Scene) -> None:
         wrong = look(scene)
         if wrong:
-            found.append((scene, wrong))
+            failures.append((scene, wrong))
             raise Violation(wrong)
 
     for attempt in range(_ATTEMPTS):
@@ -117,5 +122,5 @@ def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[S
     try:
         fails()
     except Violation:  # hypothesis ends with the simplest
-        return found[-1]
+        return failures[-1]
     raise RuntimeError(f"scene {number} of seed {seed} fails no more")

@@ -10,6 +10,7 @@ from verify.scenes.results.exploration import ExploreResult, HuntResult, ShrunkR
 
 _SCENE_COST = 10_000  # of one property of one scene
 _HUNTED_COST = 10 * _SCENE_COST
+# About three runs measure a scene: one in many digits, one in float64, one to confirm it.
 _RUNS_OF_A_MEASURE = 3
 
 
@@ -19,7 +20,7 @@ class _OnSamples(Task):
 
 
 class _OnProperties(_OnSamples):
-    """`properties`: names of the catalogue; `claims`: claims to be looked at so, each as JSON."""
+    """A task on `properties`, names of the catalogue, and `claims`, each as JSON."""
 
     properties: tuple[str, ...]
     claims: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Closed forms in ball arithmetic: certified, however many digits are asked for.
+"""Closed forms in ball arithmetic: certified to any number of digits.
 
 A ball holds the exact solution whatever the precision, and is wide or not finite where digits are
 lost: near a separatrix, after a long time, close to a blow-up. Then the precision is doubled.
@@ -22,7 +22,7 @@ _MOST_PRECISION = 2 * bits_for(MOST_DIGITS)
 _GUARD = 30  # bits that a formula may well lose
 _FINER = 8  # bits of a value beyond its digits
 _MOST_BITS = 1 << 20  # of exponents: a state beyond it is of no use to anyone
-_TOLD = 12  # digits of a time at which a solution ends
+_TIME_DIGITS = 12  # digits of a time at which a solution ends
 
 Numbers = Sequence[Fraction]  # p, q; p1 … pn, q1 … qn
 Evaluation = tuple[Numbers, Fraction]  # with a bound of the error of each, which is certified
@@ -30,33 +30,41 @@ T = TypeVar("T")
 
 
 def evaluate(motion: Motion, start: Numbers, time: Fraction, digits: int) -> Evaluation:
-    """φ_time(start), its bound at most 10^−digits times the largest coordinate at both ends.
+    """Return φ_time(start), with a bound of at most 10^−digits times the largest coordinate.
+
+    The largest coordinate is taken over both ends.
 
     Raises NoFlowError where the solution blows up before, and where the digits are not reached.
     """
     if motion.rest or time == 0:
         return start, Fraction(0)
-    ends_after(motion, time)
-    at = exactly(time)
-    return enclosed(lambda: motion.state(arb(at)), start, digits)
+    check_no_blow_up(motion, time)
+    exact_time = exactly(time)
+    return evaluate_enclosure(lambda: motion.state(arb(exact_time)), start, digits)
 
 
-def enclosed(state: Callable[[], Sequence[arb]], start: Numbers, digits: int) -> Evaluation:
-    """What the balls of `state` hold, with a bound as `evaluate` has it; NoFlowError as there."""
+def evaluate_enclosure(
+    state: Callable[[], Sequence[arb]], start: Numbers, digits: int
+) -> Evaluation:
+    """Return the numbers that the balls of `state` enclose, with a bound as in `evaluate`.
+
+    Raises NoFlowError as `evaluate` does.
+    """
     least = exactly(max(map(abs, start)))
-    return until(lambda: _on_grid(state(), arb(least), digits), digits)
+    return try_precisions(lambda: _round_to_grid(state(), arb(least), digits), digits)
 
 
-def until(found: Callable[[], T | None], digits: int) -> T:
-    """What is found at the first precision that gives it. Raises NoFlowError."""
-    return from_precision(found, first_precision(digits))
+def try_precisions(attempt: Callable[[], T | None], digits: int) -> T:
+    """Return the value of `attempt` at the first precision that gives one. Raises NoFlowError."""
+    return try_precisions_from(attempt, first_precision(digits))
 
 
-def from_precision(found: Callable[[], T | None], bits: int) -> T:
-    """The same, with so many bits at first."""
+def try_precisions_from(attempt: Callable[[], T | None], bits: int) -> T:
+    """Return the same, beginning with so many bits."""
+    # Doubling costs at most twice the work of the last attempt in all.
     while bits <= _MOST_PRECISION:
         with working_precision(bits):
-            value = found()
+            value = attempt()
         if value is not None:
             return value
         bits *= 2
@@ -64,56 +72,59 @@ def from_precision(found: Callable[[], T | None], bits: int) -> T:
 
 
 def first_precision(digits: int) -> int:
-    """Bits that are likely to give so many digits."""
+    """Return the number of bits that are likely to give so many digits."""
     return bits_for(digits) + _GUARD
 
 
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
-    """|t| at which the solution ends, forwards (1) or backwards (−1); None where it does not."""
+    """Return |t| where the solution ends, forwards (1) or backwards (−1); None if it does not."""
     end_of = motion.blow_up
     if end_of is None:
         return None
 
-    def found() -> tuple[Fraction | None] | None:
+    def enclose_time() -> tuple[Fraction | None] | None:
         end = end_of(sign)
         if end is None:
             return (None,)
-        known = end.is_finite() and end.rel_accuracy_bits() > bits_for(digits)
-        low, high = bounds(end) if known else (Fraction(0), Fraction(0))
-        return ((low + high) / 2,) if known else None
+        is_accurate = end.is_finite() and end.rel_accuracy_bits() > bits_for(digits)
+        low, high = bounds(end) if is_accurate else (Fraction(0), Fraction(0))
+        return ((low + high) / 2,) if is_accurate else None
 
-    return until(found, digits)[0]
+    return try_precisions(enclose_time, digits)[0]
 
 
-def ends_by(motion: Motion, time: Fraction) -> bool:
-    """Whether the solution blows up until that time, or cannot be told not to."""
+def may_end_by(motion: Motion, time: Fraction) -> bool:
+    """Return True if the solution blows up until that time, or may do so as far as is decided."""
     end_of = motion.blow_up
     if end_of is None:
         return False
-    sign, at = (-1 if time < 0 else 1), exactly(abs(time))
+    # The motion gives the end of the solution in one direction of time.
+    sign, exact_time = (-1 if time < 0 else 1), exactly(abs(time))
 
-    def found() -> bool | None:
+    def has_ended() -> bool | None:
         end = end_of(sign)
-        if end is None or end > at:
+        if end is None or end > exact_time:
             return False
-        return True if end < at else None
+        return True if end < exact_time else None
 
     try:
-        return until(found, 1)
+        return try_precisions(has_ended, 1)
     except NoFlowError:
         return True  # a rational time, where the invariants are 0
 
 
-def ends_after(motion: Motion, time: Fraction) -> None:
-    """NoFlowError where the solution blows up until that time, or cannot be told not to."""
-    if ends_by(motion, time):
+def check_no_blow_up(motion: Motion, time: Fraction) -> None:
+    """Raise NoFlowError if the solution blows up until that time, or may do so."""
+    if may_end_by(motion, time):
         sign = -1 if time < 0 else 1
-        told = plain(blow_up(motion, sign, _TOLD) or Fraction(0), _TOLD)
-        raise NoFlowError(f"the exact solution blows up at t = {'−' if time < 0 else ''}`{told}`")
+        time_text = plain(blow_up(motion, sign, _TIME_DIGITS) or Fraction(0), _TIME_DIGITS)
+        raise NoFlowError(
+            f"the exact solution blows up at t = {'−' if time < 0 else ''}`{time_text}`"
+        )
 
 
-def _on_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation | None:
-    """The state on a grid of the digits asked for, where its balls are no wider."""
+def _round_to_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation | None:
+    """Round the state to a grid of the requested digits; None where its balls are wider."""
     if not all(x.is_finite() for x in state):
         return None
     scale = least
@@ -126,18 +137,20 @@ def _on_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation | None
         raise NoFlowError(f"the exact solution is beyond `2^{_MOST_BITS}` by then")
     if not scale > 0 or size < -_MOST_BITS:
         return None
+    # One grid unit is 2^unit. As scale ≥ 2^(size − 1), it is below 10^−digits of the scale by
+    # `_FINER` bits, which leaves room for balls of up to 2^_FINER units.
     unit = size - 1 - bits_for(digits) - _FINER
     # What is far below the grid may have too small an exponent for a fraction.
-    found = [_rounded(x * arb(2) ** -unit) for x in state]
-    apart = max(error for _, error in found)
-    if apart > 1 << _FINER:
+    rounded = [_round_ball(x * arb(2) ** -unit) for x in state]
+    largest = max(error for _, error in rounded)
+    if largest > 1 << _FINER:
         return None
     grid = Fraction(2) ** unit
-    return [whole * grid for whole, _ in found], apart * grid
+    return [whole * grid for whole, _ in rounded], largest * grid
 
 
-def _rounded(x: arb) -> tuple[int, int]:
-    """A whole number near the ball, and a bound of the distance of all of the ball from it."""
+def _round_ball(x: arb) -> tuple[int, int]:
+    """Return a whole number near the ball, and a bound of its distance from all of the ball."""
     whole = (x.mid() + 0.5).floor().unique_fmpz()
     if whole is None:
         return 0, 2 << _FINER

@@ -7,7 +7,7 @@ a separatrix or one that leaves is a NoFlowError that says what was seen.
 The flow is followed with few digits until it crosses, in the direction of f(z₀), the line through
 z₀ normal to f(z₀), and comes back to z₀ there. Newton's method then gives the period, and it is
 seen whether the orbit closes to all digits: one on a separatrix does not, as the digits decide how
-near it comes to the saddle. The period of one close beside it has fewer digits than were asked for.
+near it comes to the saddle. The period of one close beside it has fewer digits than requested.
 """
 
 import math
@@ -44,7 +44,7 @@ _HALVINGS, _BISECTIONS, _NEWTON = 100, 6, 8
 
 @dataclass(frozen=True)
 class Orbit:
-    """The closed orbit through z₀ at M equally spaced times k P / M.
+    """The closed orbit through z₀ at the M equally spaced times k P / M.
 
     `period` is None for an equilibrium, which has one point. `shift`: z(P) − z₀, not zero for a
     rotation. `flow` is the exact flow with the digits that the points have.
@@ -62,40 +62,43 @@ class Orbit:
         return "rotation" if any(self.shift) else "libration"
 
     def values(self, element: Element) -> list[Number]:
-        """A function of p and q at the points. Raises NoFlowError where it is not defined."""
-        at = functions_at(self.flow.arithmetic, [element])
+        """Evaluate a function of p and q at the points.
+
+        Raises NoFlowError where it is not defined.
+        """
+        function = functions_at(self.flow.arithmetic, [element])
         try:
             with self.flow.arithmetic.context():
-                return [at(*z)[0] for z in self.points]
+                return [function(*z)[0] for z in self.points]
         except (ArithmeticError, ValueError):
             raise NoFlowError("the function is not defined along the whole orbit") from None
 
     def finer(self) -> "Orbit":
-        """The same with one point more between each two. Raises NoFlowError."""
+        """Return the orbit with one more point between each two. Raises NoFlowError."""
         time = self.time(Fraction(1, 2 * len(self.points)))
         between = [self.flow.advance(z, time) for z in self.points]
         points = tuple(z for pair in zip(self.points, between, strict=True) for z in pair)
         return Orbit(self.flow, points, self.period, self.shift)
 
     def time(self, part: Fraction) -> Number:
-        """That part of the period."""
+        """Return that part of the period."""
         assert self.period is not None  # noqa: S101 - an equilibrium has none
         with self.flow.arithmetic.context():
             return self.period * self.flow.number(part)
 
 
 def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
-    """The orbit through z₀ = (p, q) at `count` times. Raises NoFlowError where it is not closed."""
+    """Return the orbit through z₀ = (p, q) at `count` times. Raises NoFlowError if not closed."""
     hamiltonian.check_planar()
     field, _ = canonical_field(hamiltonian)
-    if at_rest(hamiltonian, field, start):
+    if is_equilibrium(hamiltonian, field, start):
         flow = Flow(field, digits)
         zero = flow.number(Fraction(0))
         p, q = (flow.number(x) for x in start)
         return Orbit(flow, ((p, q),), None, (zero, zero))
-    found = _first_return(hamiltonian, start)
+    first_return = _first_return(hamiltonian, start)
     for more in _MORE:
-        orbit = _polished(Flow(field, digits + more), start, found, digits, count)
+        orbit = _refine_period(Flow(field, digits + more), start, first_return, digits, count)
         if orbit is not None:
             return orbit
     raise NoFlowError(
@@ -104,15 +107,15 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
     )
 
 
-def at_rest(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bool:
-    """Whether z₀ is an equilibrium, by algebra. Raises NoFlowError where H is not defined there."""
+def is_equilibrium(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bool:
+    """Return True if z₀ is an equilibrium, by algebra; NoFlowError where H is not defined."""
     ring = field.ring
     numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
     point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
     slopes = [ring.expression(x) for x in field.slopes]
     try:
-        _, *there = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
-        constants, elements = embed(there, ())
+        _, *slope_values = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
+        constants, elements = embed(slope_values, ())
     except (InputError, ArithmeticError):
         raise NoFlowError("H is not defined at the initial value, or too large there") from None
     zero = [constants.decide(x).zero for x in elements]
@@ -122,7 +125,7 @@ def at_rest(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bo
 
 
 def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
-    """(0, 0) and ± the periods of H in p and in q, in units of 2π."""
+    """Yield (0, 0) and ± the periods of H in p and in q, in units of 2π."""
     zero = Fraction(0)
     yield zero, zero
     for name in ("p", "q"):
@@ -138,7 +141,10 @@ def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
 
 @dataclass(frozen=True)
 class _Return:
-    """Back at z₀ + `shift` (in units of 2π) after about `time`; `reach`: how far the orbit goes."""
+    """The first return to z₀ + `shift` (in units of 2π), after about `time`.
+
+    `reach`: the greatest distance of the orbit from z₀.
+    """
 
     time: float
     shift: tuple[Fraction, Fraction]
@@ -149,38 +155,43 @@ class _Return:
 def _first_return(hamiltonian: Hamiltonian, start: Start) -> _Return:
     # An average asks for the same orbit twice and more, each time to other digits.
     rough = Flow(canonical_field(hamiltonian)[0], _ROUGH)
-    return _ReturnSearch(rough, start, list(shifts(hamiltonian))).back()
+    return _ReturnSearch(rough, start, list(shifts(hamiltonian))).find_return()
 
 
 class _ReturnSearch:
-    """Follows the flow from z₀ until it is back."""
+    """A search that follows the flow from z₀ until it returns."""
 
     def __init__(self, flow: Flow, start: Start, shifts: list[tuple[Fraction, Fraction]]) -> None:
         self.flow = flow
         self.z0: State = flow.number(start[0]), flow.number(start[1])
         self.f0 = flow.slope(self.z0)
-        self.targets = [(shift, _shifted(flow, self.z0, shift)) for shift in shifts]
+        self.targets = [(shift, _shift_state(flow, self.z0, shift)) for shift in shifts]
         self.reach = 0.0
 
-    def back(self) -> _Return:
+    def find_return(self) -> _Return:
         z, time = self.z0, 0.0
         span = 1 + max(_distance(target, (0, 0)) for _, target in self.targets)
         step = span / _distance(self.f0, (0, 0)) / 16
         for _ in range(_MOST_STEPS):
-            step, after, turned = self.stepped(z, step)
+            step, after, cosine = self.take_step(z, step)
             self.reach = max(self.reach, _distance(after, self.z0))
-            crossed = [back for t in self.targets if (back := self.crossing(z, step, after, t))]
-            if crossed:
-                first, shift = min(crossed)
+            crossings = [
+                back for t in self.targets if (back := self.find_crossing(z, step, after, t))
+            ]
+            if crossings:
+                first, shift = min(crossings)
                 return _Return(time + first, shift, self.reach)
             if self.reach > _FAR * span:
                 raise NoFlowError("the orbit is not closed: it goes far away")
             z, time = after, time + step
-            step *= 2 if turned > _TURN[1] else 1
+            step *= 2 if cosine > _TURN[1] else 1
         raise NoFlowError(f"the orbit is not seen to close until t = `{time:.3g}`")
 
-    def stepped(self, z: State, step: float) -> tuple[float, State, float]:
-        """The longest of step, step/2, … that is accurate and turns by little; where it leads."""
+    def take_step(self, z: State, step: float) -> tuple[float, State, float]:
+        """Return the longest of step, step/2, … that is accurate and turns by little.
+
+        With it are returned the state after it and the cosine of the angle it turns by.
+        """
         before = self.flow.slope(z)
         for _ in range(_HALVINGS):
             after = self.flow.step(z, _exactly(self.flow, step))
@@ -192,54 +203,58 @@ class _ReturnSearch:
         raise NoFlowError(LOST)
 
     def height(self, z: State, target: State) -> float:
-        """How far beyond the normal line through the target, in the direction of f(z₀)."""
+        """Return the height of z above the target's normal line, in the direction of f(z₀)."""
         return float(self.f0[0] * (z[0] - target[0]) + self.f0[1] * (z[1] - target[1]))
 
-    def crossing(
+    def find_crossing(
         self, z: State, step: float, after: State, goal: tuple[tuple[Fraction, Fraction], State]
     ) -> tuple[float, tuple[Fraction, Fraction]] | None:
-        """The time after z at which the orbit is at the target, if the step leads over it."""
+        """Return the time after z at which the orbit meets the target, if the step crosses it."""
         shift, target = goal
         if not self.height(z, target) < 0 <= self.height(after, target):
             return None
         low, high = 0.0, step
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
-            at = self.flow.advance(z, _exactly(self.flow, middle))
-            low, high = (middle, high) if self.height(at, target) < 0 else (low, middle)
+            state = self.flow.advance(z, _exactly(self.flow, middle))
+            low, high = (middle, high) if self.height(state, target) < 0 else (low, middle)
+        # Newton's method for height(φ_time(z)) = 0, whose derivative in time is f(z₀) · f(z).
         time = high
         for _ in range(_NEWTON):
-            at = self.flow.advance(z, _exactly(self.flow, time))
-            slope = self.flow.slope(at)
+            state = self.flow.advance(z, _exactly(self.flow, time))
+            slope = self.flow.slope(state)
             rate = float(self.f0[0] * slope[0] + self.f0[1] * slope[1])
             if rate <= 0:
                 return None
-            time -= self.height(at, target) / rate
+            time -= self.height(state, target) / rate
         near = max(self.reach, _distance(after, self.z0)) * _NEAR
-        return (time, shift) if _distance(at, target) < near else None
+        return (time, shift) if _distance(state, target) < near else None
 
 
 # -- all its digits -------------------------------------------------------------------------------
 
 
-def _polished(flow: Flow, start: Start, found: _Return, digits: int, count: int) -> Orbit | None:
-    """The orbit with its period to all digits; None where it does not close to so many."""
+def _refine_period(
+    flow: Flow, start: Start, first_return: _Return, digits: int, count: int
+) -> Orbit | None:
+    """Return the orbit with its period to all digits; None where it does not close to so many."""
     z0: State = flow.number(start[0]), flow.number(start[1])
-    target = _shifted(flow, z0, found.shift)
-    period, z = _exactly(flow, found.time), z0
+    target = _shift_state(flow, z0, first_return.shift)
+    period, z = _exactly(flow, first_return.time), z0
     for _ in range(_pieces(count)):
         z = flow.advance(z, _part(flow, period, _pieces(count)))
     f0 = flow.slope(z0)
+    # Near the period z(t) − target is about (t − P) f(z₀); its part along f(z₀) corrects the time.
     for _ in range(_NEWTON):
-        if _distance(z, target) > found.reach / 100:
+        if _distance(z, target) > first_return.reach / 100:
             return None
         with flow.arithmetic.context():
-            gap = f0[0] * (target[0] - z[0]) + f0[1] * (target[1] - z[1])
-            change = gap / (f0[0] ** 2 + f0[1] ** 2)
+            residual = f0[0] * (target[0] - z[0]) + f0[1] * (target[1] - z[1])
+            change = residual / (f0[0] ** 2 + f0[1] ** 2)
             period = period + change
         if change:
             z = flow.advance(z, change)
-    if _distance(z, target) * 10.0**digits > found.reach:
+    if _distance(z, target) * 10.0**digits > first_return.reach:
         return None
     points, time = [z0], _part(flow, period, count)
     for _ in range(count - 1):
@@ -258,7 +273,7 @@ def _part(flow: Flow, period: Number, count: int) -> Number:
         return period / count
 
 
-def _shifted(flow: Flow, z: State, shift: tuple[Fraction, Fraction]) -> State:
+def _shift_state(flow: Flow, z: State, shift: tuple[Fraction, Fraction]) -> State:
     if not any(shift):
         return z
     turn = flow.arithmetic.functions["pi"]

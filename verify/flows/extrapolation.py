@@ -14,50 +14,52 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import Written
+from verify.flows.functions import ElementCode
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
 State = tuple[Number, ...]  # the coordinates, and t where H depends on it
 
-GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
+GUARD = 12  # digits beyond those requested; extrapolation and rounding may lose LOST_DIGITS of them
 LOST_DIGITS = 8
 _HALVINGS = 12
 _MOST_STEPS = 200_000  # of one orbit: minutes
 _PATIENCE = 3  # steps after one that was too long before a longer one is tried
 _SHORTEST = 80  # halvings of the first step, after which time stands still
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
-STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
+STILL = 1000  # a step's error is relative to its length, and to this part of the state
 
 
 class NoFlowError(Exception):
-    """The flow could not be followed; `said` is why, the message its plain text.
+    """An exact flow that could not be followed; `reason` says why, the message is its plain text.
 
-    It is written as `read_prose` takes it, with formulas and numbers quoted.
+    The text is given as `read_prose` takes it, with formulas and numbers quoted.
     """
 
-    def __init__(self, said: str) -> None:
-        self.said = read_prose(said)
-        super().__init__(str(self.said))
+    def __init__(self, reason: str) -> None:
+        self.reason = read_prose(reason)
+        super().__init__(str(self.reason))
 
 
 def columns_for(digits: int) -> int:
-    """So many values are extrapolated at most; more gain less than a shorter step does."""
+    """Return the greatest number of columns; more gain less than a shorter step does."""
     return 6 + digits // 3
 
 
 class Flow:
-    """The exact flow of a field without symbols, in the plane or in n degrees of freedom, to
-    `digits` digits; a state has all its coordinates, and t where H depends on it."""
+    """The exact flow of a field without symbols, in n degrees of freedom, to `digits` digits.
+
+    A state has all coordinates, and t where H depends on it.
+    """
 
     def __init__(self, field: CanonicalField, digits: int) -> None:
         names, self.timed = field.names, field.timed
         self.arithmetic = mpfr.make(digits + GUARD)
         self.names = (*names, "t") if self.timed else tuple(names)
         slopes = [(field.ring, x) for x in field.slopes]
-        written = Written.of(self.arithmetic, slopes, self.names)
-        self._slopes, self._rule = written.at(), written.gragg_rule()
+        code = ElementCode.from_elements(self.arithmetic, slopes, self.names)
+        self._slopes, self._rule = code.build_function(), code.build_gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._factors = [
             # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
@@ -69,11 +71,11 @@ class Flow:
         return self.arithmetic.number(x)
 
     def state(self, point: Mapping[str, Fraction]) -> State:
-        """z at a point: the coordinates by name, and t where H depends on it."""
+        """Return z at a point: the coordinates by name, and t where H depends on it."""
         return tuple(self.number(point[name]) for name in self.names)
 
     def slope(self, z: State) -> State:
-        """f(z). Raises NoFlowError where it is not defined."""
+        """Return f(z). Raises NoFlowError where it is not defined."""
         try:
             with self.arithmetic.context():
                 return self._slopes(*z)
@@ -81,18 +83,18 @@ class Flow:
             raise NoFlowError("the orbit leaves where H is defined") from None
 
     def step(self, z: State, time: Number) -> State | None:
-        """φ_time(z) by one extrapolated step; None where that does not give the digits."""
+        """Return φ_time(z) by one extrapolated step; None where that does not give the digits."""
         try:
             with self.arithmetic.context():
-                return self._extrapolated(z, time)
+                return self._extrapolate(z, time)
         except (ArithmeticError, ValueError):  # a trial step may leave what the orbit does not
             return None
 
     def advance(self, z: State, time: Number, halvings: int = _HALVINGS) -> State:
-        """φ_time(z), by one extrapolated step or by the halves of it. Raises NoFlowError."""
-        found = self.step(z, time)
-        if found is not None:
-            return found
+        """Return φ_time(z), by one extrapolated step or by the halves of it. Raises NoFlowError."""
+        end = self.step(z, time)
+        if end is not None:
+            return end
         if not halvings:
             raise NoFlowError(LOST)
         with self.arithmetic.context():
@@ -101,7 +103,7 @@ class Flow:
         return self.advance(middle, half, halvings - 1)
 
     def follow(self, z: State, time: Fraction, most_steps: int = _MOST_STEPS) -> State:
-        """φ_time(z) for any time, also a long or a negative one, by at most so many steps.
+        """Return φ_time(z) for any time, also a long or a negative one, by at most so many steps.
 
         A step is as long as its accuracy allows; one of 30 digits takes about a millisecond, so
         that the most is minutes. Raises NoFlowError, naming the time reached, where the orbit ends
@@ -119,10 +121,11 @@ class Flow:
             with self.arithmetic.context():
                 last = done + step >= goal
                 step = goal - done if last else step
-                signed = sign * step
-            after = self.step(z, signed)
+                directed_step = sign * step
+            after = self.step(z, directed_step)
             with self.arithmetic.context():
                 if after is None:
+                    # The step failed: it is cut, and no longer one is tried for `_PATIENCE` steps.
                     good, step = 0, step * 2 / 3
                     if step < shortest or done + step == done:
                         raise NoFlowError(f"{LOST}, at about t = `{float(sign * done):.6g}`")
@@ -132,17 +135,21 @@ class Flow:
         raise NoFlowError(f"{most_steps} steps lead only to t = `{float(sign * done):.6g}`")
 
     def _first_step(self, z: State, goal: Number) -> Number:
-        """A guess: the time in which the state would become different."""
+        """Guess a first step: the time in which z would change by its own size."""
         slopes = self.slope(z)
         with self.arithmetic.context():
             speed = sum(map(abs, slopes))
             return min(goal, sum(map(abs, z[: len(slopes)]), 1) / speed) if speed else goal
 
-    def _extrapolated(self, z: State, time: Number) -> State | None:
-        """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
+    def _extrapolate(self, z: State, time: Number) -> State | None:
+        """Extrapolate by the Aitken–Neville scheme in squares of the step; None if not accurate.
+
+        The last two values of a row estimate the error: the result is taken where they differ by
+        less than the tolerance, relative to how far the step leads and to 1/`STILL` of the state.
+        """
         above: Sequence[Sequence[Number]] = [[] for _ in z]  # a row of values for each coordinate
         for j, factors in enumerate(self._factors, start=1):
-            rows, moved, size, apart = [], 0, 0, 0
+            rows, distance, size, error = [], 0, 0, 0
             for last, start, before in zip(self._rule(*z, time, 2 * j), z, above, strict=False):
                 x, row = last, [last]
                 for old, (up, down) in zip(before, factors, strict=True):
@@ -150,10 +157,11 @@ class Flow:
                     row.append(x)
                 rows.append(row)
                 if j > 2:
-                    moved += abs(x - start)
+                    distance += abs(x - start)
                     size += abs(x)
-                    apart += abs(x - row[-2])
-            if j > 2 and apart <= self._tolerance * (moved + size / STILL):
+                    error += abs(x - row[-2])
+            # At least three columns: the last two of fewer may agree by chance.
+            if j > 2 and error <= self._tolerance * (distance + size / STILL):
                 ends = [row[-1] for row in rows]
                 return (*ends, z[-1] + time) if self.timed else tuple(ends)
             above = rows

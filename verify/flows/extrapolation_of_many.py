@@ -2,7 +2,7 @@
 
 As `verify.flows.extrapolation` follows one point with any number of digits; here all take the same
 steps, as long as the least accurate of them allows. They are in the C compiler's long double, which
-is not much slower here: in float64 what is lost grows with the time to 10⁻¹⁰ and more.
+is not much slower here: in float64 the error grows with the time to 10⁻¹⁰ and more.
 """
 
 import math
@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.float_context import WIDE
-from verify.arithmetic.number_system import Arithmetic, interpreted
+from verify.arithmetic.number_system import Arithmetic, interpret
 from verify.arithmetic.systems import float64
 from verify.flows.extrapolation import LOST, NoFlowError
 from verify.flows.functions import functions_at
@@ -40,8 +40,9 @@ def follow(
     columns: int,
     t0: Fraction = _ZERO,
 ) -> Array:
-    """φ_t of all points, p and q or p1 … qn: an array (coordinate, time, point). Times may have
-    either sign, and are those since t0, where H depends on time.
+    """Return φ_t of all points, p and q or p1 … qn: an array (coordinate, time, point).
+
+    Times may have either sign; where H depends on time they are counted from t0.
 
     `columns` of the extrapolation: two different numbers of them give independent errors. Raises
     NoFlowError, naming a point, where one cannot be followed.
@@ -49,21 +50,21 @@ def follow(
     import numpy as np
 
     start = np.array(points, dtype=WIDE.type)
-    found = np.empty((len(start), len(times), start.shape[1]))
+    states = np.empty((len(start), len(times), start.shape[1]))
     with np.errstate(all="ignore"):
         slopes = slopes_of(hamiltonian)
         for sign in (1, -1):
             walk = CommonSteps(slopes, start, sign, columns, WIDE.rational(t0))
             order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
             for time in order:
-                walk.to(WIDE.rational(abs(time)))
+                walk.advance_to(WIDE.rational(abs(time)))
                 for k in (k for k, t in enumerate(times) if t == time):
-                    found[:, k] = walk.z
-    return found
+                    states[:, k] = walk.z
+    return states
 
 
 def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
-    """f at the coordinates and a t, which an H without time does not look at."""
+    """Return f as a function of the coordinates and t; an H without time ignores t."""
     field, _ = canonical_field(hamiltonian)
     elements = [(field.ring, x) for x in field.slopes]
     names = hamiltonian.coordinates
@@ -74,11 +75,12 @@ def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
 
 
 def arrays() -> Arithmetic:
-    """Long double over arrays."""
+    """Return the arithmetic of arrays of long doubles."""
     import numpy as np
 
     def root(x: Array, n: int) -> Array:
         y = np.power(x, 1 / n)
+        # One step of Newton's method corrects the rounding of 1/n in the exponent.
         return y - np.where(y > 0, (y**n - x) / (n * y ** (n - 1)), 0.0)  # 1/n is rounded
 
     functions = {
@@ -89,17 +91,19 @@ def arrays() -> Arithmetic:
     }
     return replace(
         float64.make(17), name="arrays", bits=WIDE.prec, number=WIDE.rational,
-        functions=functions, compile=interpreted, context=nullcontext,
+        functions=functions, compile=interpret, context=nullcontext,
     )  # fmt: skip
 
 
 def _short(step: float) -> float:
+    """Round a step down to few bits, so that sums of steps are exact."""
+    # Rounded down to `_STEP_BITS` bits, a step can be added to the time without rounding.
     mantissa, exponent = math.frexp(step)
     return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
 
 
 class CommonSteps:
-    """All points on their way, by common steps."""
+    """A walk of all points along their orbits, by steps common to all."""
 
     def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int, t0: Any) -> None:
         import numpy as np
@@ -111,20 +115,21 @@ class CommonSteps:
         self._done = WIDE.mpf(0)
         self._tolerance = _TOLERANCE * float(WIDE.eps)
         self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
-        at = np.broadcast_arrays(*slopes(*start, t0), start[0])[:-1]
-        speed = np.max(abs(np.array(at)), axis=0)
+        start_slopes = np.broadcast_arrays(*slopes(*start, t0), start[0])[:-1]
+        speed = np.max(abs(np.array(start_slopes)), axis=0)
+        # A point at 0 has no scale of its own; 1 stands for it.
         size = np.where(self._scale > 0, self._scale, 1.0)
         fastest = float(np.max(speed / size, initial=0.0))
         self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
         self._least = self._step * _SHORTEST
 
-    def to(self, goal: Any) -> None:
-        """To this time since the start. Raises NoFlowError."""
+    def advance_to(self, goal: Any) -> None:
+        """Advance all points to this time since the start. Raises NoFlowError."""
         for _ in self.steps_to(goal):
             pass
 
     def steps_to(self, goal: Any) -> Iterator[tuple[Array, Any]]:
-        """After each step, where the points were before it, and its length."""
+        """Yield, after each step, the points before it and its length."""
         import numpy as np
 
         for _ in range(_MOST_STEPS):
@@ -132,12 +137,14 @@ class CommonSteps:
                 return
             last = self._done + self._step >= goal
             step = goal - self._done if last else self._step
-            moved, error = self._extrapolated(self.z, self._sign * step)
-            size = np.maximum(self._scale, np.max(np.abs(self.z + moved), axis=0))
+            change, error = self._extrapolate(self.z, self._sign * step)
+            # The scale of an orbit is the greatest coordinate so far: it never falls, so that an
+            # orbit that passes 0 does not stall.
+            size = np.maximum(self._scale, np.max(np.abs(self.z + change), axis=0))
             ratio = error / np.where(size > 0, size, 1.0)
             worst = float(ratio.max(initial=0.0))
             if worst <= self._tolerance:
-                before, self.z, self._scale = self.z, self.z + moved, size
+                before, self.z, self._scale = self.z, self.z + change, size
                 self._done = goal if last else self._done + step
                 yield before, step
                 if worst <= _EASY * self._tolerance and not last:
@@ -145,21 +152,24 @@ class CommonSteps:
                 continue
             self._step = _short(float(step) * _SHORTER)
             if self._step < self._least or self._done + self._step == self._done:
-                raise NoFlowError(self._lost(ratio))
+                raise NoFlowError(self._describe_failure(ratio))
         raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = `{self._sign * self._done:.6g}`")
 
-    def _lost(self, ratio: Array) -> str:
+    def _describe_failure(self, ratio: Array) -> str:
         import numpy as np
 
         i = int(np.argmax(np.where(np.isfinite(ratio), ratio, np.inf)))
         return f"point {i}: {LOST}, at about t = `{self._sign * self._done:.6g}`"
 
-    def moved(self, z: Array, time: Array) -> Array:
-        """How far points move in a time each, of a step's length or less, of an H without time."""
-        return self._extrapolated(z, time)[0]
+    def change_over(self, z: Array, time: Array) -> Array:
+        """Return how far points move, each in its own time of a step's length or less.
 
-    def _extrapolated(self, z: Array, time: Any) -> tuple[Array, Array]:
-        """How far the points move by Aitken and Neville's scheme, and its estimated error."""
+        H must not depend on time.
+        """
+        return self._extrapolate(z, time)[0]
+
+    def _extrapolate(self, z: Array, time: Any) -> tuple[Array, Array]:
+        """Return how far the points move, by the Aitken–Neville scheme, and its estimated error."""
         import numpy as np
 
         t = self._t0 + self._sign * self._done
@@ -168,13 +178,14 @@ class CommonSteps:
         above: list[Array] = []
         for j in range(1, self._columns + 1):
             row = [self._midpoint(z, first, t, time, 2 * j)]
+            # Aitken and Neville in (1/n_j)² with n_j = 2 j: the weights are (n_j / n_{j−k})² − 1.
             for k, before in enumerate(above, start=1):
                 row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
             above = row
         return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
 
     def _midpoint(self, z: Array, first: Array, t: Any, time: Any, count: int) -> Array:
-        """Gragg's rule with so many steps, smoothed at its end: what is added to z.
+        """Return the change of z by Gragg's rule with so many steps, smoothed at its end.
 
         `first`: the slopes at z and t.
         """
@@ -182,22 +193,22 @@ class CommonSteps:
 
         h = WIDE.mpf(time) / count
         twice = 2 * h
-        before, at = np.zeros_like(z), first * h
+        before, current = np.zeros_like(z), first * h
         place, change = np.empty_like(z), np.empty_like(z)  # one array each for all steps
         for k in range(1, count):
-            _fill(change, self.slopes(*np.add(z, at, out=place), t + k * h))
+            _fill(change, self.slopes(*np.add(z, current, out=place), t + k * h))
             change *= twice
             change += before
-            before, at, change = at, change, before
-        _fill(change, self.slopes(*np.add(z, at, out=place), t + time))
+            before, current, change = current, change, before
+        _fill(change, self.slopes(*np.add(z, current, out=place), t + time))
         change *= h
-        at += before
-        at += change
-        at /= 2
-        return at
+        current += before
+        current += change
+        current /= 2
+        return current
 
 
 def _fill(rows: Array, values: Sequence[Array]) -> None:
-    """A row may be one number for all points."""
+    """Write each value into its row; a value may be one number for all points."""
     for k, value in enumerate(values):
         rows[k] = value

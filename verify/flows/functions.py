@@ -1,7 +1,7 @@
-"""What a flow evaluates, written as functions for a field and an arithmetic.
+"""Functions that a flow evaluates, compiled for one field and one arithmetic.
 
-Gragg's modified midpoint rule is one of them: the slopes stand in its loop and each coordinate is a
-variable, which takes a tenth to a third off a step of several coordinates.
+Gragg's modified midpoint rule is one of them. Its loop contains the slopes and has a variable for
+each coordinate, which takes a tenth to a third off a step of several coordinates.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,54 +25,71 @@ Function = Callable[..., tuple[Any, ...]]  # numbers of the arithmetic
 def functions_at(
     arithmetic: Arithmetic, elements: Elements, names: Sequence[str] = ("p", "q")
 ) -> Function:
-    """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
-    return Written.of(arithmetic, elements, names).at()
+    """Return (p, q) ↦ the values of ring elements in these names alone.
+
+    The function must be called inside the arithmetic's context.
+    """
+    return ElementCode.from_elements(arithmetic, elements, names).build_function()
 
 
-def defined_values(own: Arithmetic, at: Function, columns: Sequence[Sequence[Any]]) -> list[Any]:
-    """A function's one value at points, given by each coordinate's numbers: Fractions, or what
-    gmpy2 adds to its own. None where it has none there, or one too large."""
-    zero = own.number(Fraction(0))
+def defined_values(
+    arithmetic: Arithmetic, function: Function, columns: Sequence[Sequence[Any]]
+) -> list[Any]:
+    """Evaluate a function of one value at points, given by the numbers of each coordinate.
+
+    The numbers are Fractions, or numbers that gmpy2 can add to its own. A value is None where the
+    function is not defined or too large.
+    """
+    zero = arithmetic.number(Fraction(0))
     try:
-        with own.context():
-            found = [x for (x,) in map(at, *([x + zero for x in column] for column in columns))]
-    except (ArithmeticError, ValueError):  # at one of them: at which, each says by itself
+        with arithmetic.context():
+            values = [
+                x for (x,) in map(function, *([x + zero for x in column] for column in columns))
+            ]
+    except (ArithmeticError, ValueError):  # at some point: each is then tried alone
         points = list(zip(*columns, strict=True))
         if len(points) == 1:
             return [None]
-        return [x for z in points for x in defined_values(own, at, [[x] for x in z])]
-    return [x if own.finite(x) else None for x in found]
+        return [x for z in points for x in defined_values(arithmetic, function, [[x] for x in z])]
+    return [x if arithmetic.finite(x) else None for x in values]
 
 
 def energies_at(
     hamiltonian: Hamiltonian, digits: int, columns: Sequence[Sequence[Any]]
 ) -> list[Any]:
-    """H to so many digits at points, given by each coordinate's numbers, as `defined_values` has
-    them: numbers of MPFR, or None where it is not defined or too large."""
+    """Evaluate H to so many digits at points, given as `defined_values` takes them.
+
+    The values are numbers of MPFR, or None where H is not defined or too large.
+    """
     return defined_values(*_energy(hamiltonian, digits), columns)
 
 
 @lru_cache(maxsize=64)
 def _energy(hamiltonian: Hamiltonian, digits: int) -> tuple[Arithmetic, Function]:
-    """What H is evaluated in, and H as a function of the coordinates; runs of one H share it."""
+    """Return the arithmetic and H as a function of the coordinates; runs of one H share both."""
     arithmetic = mpfr.make(digits)
     return arithmetic, functions_at(arithmetic, [energy_of(hamiltonian)], hamiltonian.coordinates)
 
 
 @dataclass(frozen=True)
-class Written:
-    """Ring elements in these names alone as lines: those before a loop and in it, what they call
-    the values, and what the names in them stand for."""
+class ElementCode:
+    """Ring elements in these names alone as lines of code.
+
+    `static`: the lines before a loop, and `dynamic` those in it. `values`: the names of the
+    elements' values. `namespace`: the constants and functions that the lines refer to.
+    """
 
     arithmetic: Arithmetic
     names: Sequence[str]
     static: Sequence[str]
     dynamic: Sequence[str]
     values: Sequence[str]
-    given: Mapping[str, Any]
+    namespace: Mapping[str, Any]
 
     @classmethod
-    def of(cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]) -> "Written":
+    def from_elements(
+        cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]
+    ) -> "ElementCode":
         program = Program()
         inputs = {name: program.input(name, static=False) for name in names}
         roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
@@ -84,42 +101,43 @@ class Written:
             arithmetic, names, static, dynamic, values, {**arithmetic.functions, **constants}
         )
 
-    def at(self) -> Function:
-        """z ↦ the values; call it inside the context."""
+    def build_function(self) -> Function:
+        """Return z ↦ the values, to be called inside the context."""
         lines = [
             f"def at({', '.join(self.names)}):",
-            *_in(1, [*self.static, *self.dynamic, f"return ({', '.join(self.values)},)", ""]),
+            *_indent(1, [*self.static, *self.dynamic, f"return ({', '.join(self.values)},)", ""]),
         ]
-        at: Function = self.arithmetic.compile("\n".join(lines), "at", self.given)
-        return at
+        function: Function = self.arithmetic.compile("\n".join(lines), "at", self.namespace)
+        return function
 
-    def gragg_rule(self) -> Function:
-        """(z, time, count) ↦ where `count` steps lead in that time, smoothed at the end.
+    def build_gragg_rule(self) -> Function:
+        """Return (z, time, count) ↦ the state after `count` steps in that time, smoothed at last.
 
-        The values are the coordinates' slopes; the names end with t where H depends on it: then
-        each slope is taken at its own time. Call it inside the context.
+        The values are the coordinates' slopes. The names end with t where H depends on it, and then
+        each slope is taken at its own time. The rule must be called inside the context.
         """
+        # t has no slope: where there are more names than values, the last name is the time.
         moves = list(zip(self.names, self.values, strict=False))
-        timed = len(self.names) > len(moves)
+        has_time = len(self.names) > len(moves)
 
-        def at(t: str) -> list[str]:
-            return [f"t = {t}", *self.dynamic] if timed else list(self.dynamic)
+        def slope_lines(t: str) -> list[str]:
+            return [f"t = {t}", *self.dynamic] if has_time else list(self.dynamic)
 
         start = [f"{x}_0, {x} = {x}, {x} + h * {dx}" for x, dx in moves]
         onwards = [f"{x}_0, {x} = {x}, {x}_0 + twice * {dx}" for x, dx in moves]
         ends = ", ".join(f"({x} + {x}_0 + h * {dx}) / 2" for x, dx in moves)
-        begun = ["h = time / count", "twice = 2 * h", *(["t_0 = t"] if timed else [])]
+        setup = ["h = time / count", "twice = 2 * h", *(["t_0 = t"] if has_time else [])]
         lines = [
             f"def rule({', '.join(self.names)}, time, count):",
-            *_in(1, [*self.static, *begun, *self.dynamic, *start]),
+            *_indent(1, [*self.static, *setup, *self.dynamic, *start]),
             "    for k in range(1, count):",
-            *_in(2, [*at("t_0 + k * h"), *onwards]),
-            *_in(1, [*at("t_0 + time"), f"return ({ends},)", ""]),
+            *_indent(2, [*slope_lines("t_0 + k * h"), *onwards]),
+            *_indent(1, [*slope_lines("t_0 + time"), f"return ({ends},)", ""]),
         ]
-        given = {**self.given, "range": range}
-        rule: Function = self.arithmetic.compile("\n".join(lines), "rule", given)
+        namespace = {**self.namespace, "range": range}
+        rule: Function = self.arithmetic.compile("\n".join(lines), "rule", namespace)
         return rule
 
 
-def _in(levels: int, lines: Sequence[str]) -> list[str]:
+def _indent(levels: int, lines: Sequence[str]) -> list[str]:
     return ["    " * levels + line for line in lines]

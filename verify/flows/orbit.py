@@ -1,6 +1,6 @@
-"""How the exact orbit runs over a time: how far it goes, how stiff it is, whether it leaves.
+"""The exact orbit over a time: its reach, its stiffness, and whether it leaves every bound.
 
-What a stability verdict needs to know of the exact solution, before any scheme is looked at. The
+A stability verdict needs these facts of the exact solution before it looks at any scheme. The
 flow is followed with few digits until it closes (in phase space, or up to a period of H in p or q),
 or until the time is over. Lengths are measured in each coordinate by the orbit's own reach, so that
 neither the size of an orbit nor the units of p and q matter.
@@ -27,41 +27,48 @@ from verify.prose import prose
 def exact_orbit(
     hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction = Fraction(0)
 ) -> ExactOrbit:
-    """The orbit through (p, q), at t0 where H depends on it, for the length `time`."""
-    known = _closed_orbit(hamiltonian, p, q)
-    if known and time >= known[0].least_time:
-        return known[0].orbit
+    """Return the orbit through (p, q), at t0 where H depends on it, for the length `time`."""
+    # The cache is a list that is filled in place, since `lru_cache` cannot store a value later.
+    cache = _cached_closed_orbit(hamiltonian, p, q)
+    if cache and time >= cache[0].least_time:
+        return cache[0].orbit
     search = OrbitSearch(hamiltonian, (p, q), time, t0)
-    orbit = search.orbit()
+    orbit = search.find_orbit()
     if search.least_time is not None:
-        known[:] = [_ClosedOrbit(orbit, search.least_time)]
+        cache[:] = [_ClosedOrbit(orbit, search.least_time)]
     if hamiltonian.time_dependent or orbit.kind not in ("escapes", "open"):
         return orbit
-    exactly = _by_algebra(hamiltonian, p, q, time)
-    if exactly is None:
+    statement = _describe_departure(hamiltonian, p, q, time)
+    if statement is None:
         return orbit
     return replace(
         orbit,
-        summary=prose(exactly) if orbit.kind == "escapes" else prose(orbit.summary, "; ", exactly),
+        summary=prose(statement)
+        if orbit.kind == "escapes"
+        else prose(orbit.summary, "; ", statement),
     )
 
 
 class _ClosedOrbit(NamedTuple):
-    """An orbit that a search has followed until it closed, as one over any time from `least_time`
-    on does, by the same steps."""
+    """An orbit that was followed until it closed.
+
+    A search over any time from `least_time` on takes the same steps, and finds the same orbit.
+    """
 
     orbit: ExactOrbit
     least_time: Fraction
 
 
 @lru_cache(maxsize=4096)
-def _closed_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> list[_ClosedOrbit]:
-    """That through a point, once one is known."""
+def _cached_closed_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> list[_ClosedOrbit]:
+    """Return a list for the closed orbit through a point: empty until a search fills it."""
     return []
 
 
-def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> str | None:
-    """How it leaves, of an orbit for which that is known so."""
+def _describe_departure(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction
+) -> str | None:
+    """Describe how the orbit leaves every bound; None where algebra does not decide it."""
     try:
         summary = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
     except (InputError, NoFlowError):

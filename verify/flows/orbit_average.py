@@ -1,4 +1,4 @@
-"""Time averages along closed orbits of the exact flow, to the digits asked for.
+"""Time averages along closed orbits of the exact flow, to a requested number of digits.
 
 ⟨g⟩ is the mean of g over M equally spaced times of one period: for an analytic g that converges
 like e^(−cM), so M is doubled until the mean over every second point is the same. Then the period,
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.arb import in_reach, middle_and_radius
+from verify.arithmetic.arb import is_representable, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.flows.closed_orbit import Element, Orbit, Start, closed_orbit
 from verify.flows.extrapolation import NoFlowError, Number, State
@@ -23,14 +23,14 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 MOST_DIGITS = 200
 _ATTEMPTS = ((0, 32), (15, 64), (30, 128))  # digits more, and the fewest points of a mean
 _MOST = 1 << 13
-_CHECK = 10  # digits more of what is computed again
+_CHECK = 10  # further digits of the second computation
 _NEWTON = 50
 _SETTLED = 1e-14  # of the period
 
 
 @dataclass(frozen=True)
 class Average:
-    """⟨g⟩ over the closed orbit, which keeps the points that the mean was taken over.
+    """The average ⟨g⟩ over a closed orbit, with the points that the mean was taken over.
 
     `bound` is estimated, but of an equilibrium, where ⟨g⟩ = g(z₀) and it is enclosed. `period` is
     None there, `values` are g at the orbit's points.
@@ -44,7 +44,7 @@ class Average:
 
 
 def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> Average:
-    """⟨g⟩ along the exact orbit through start = (p, q), to so many digits of the greatest |g|.
+    """Return ⟨g⟩ along the exact orbit through start = (p, q), to so many digits of max |g|.
 
     g: a ring element in p and q alone. Raises NoFlowError where the orbit is not closed, is not
     known to be, or so many digits are not reached.
@@ -53,26 +53,30 @@ def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> 
         first = closed_orbit(hamiltonian, start, digits + more, fewest)
         if first.period is None:
             return _at_rest(first, g, start, digits)
-        first, mean = _enough(first, g, digits)
+        first, mean = _refine_until_settled(first, g, digits)
         finest = digits + more + _CHECK
+        # 3/2 as many points alias other harmonics, so that equal means are no accident.
         again = closed_orbit(hamiltonian, start, finest, len(first.points) * 3 // 2)
-        better = _mean(again, g)
+        better = _compute_mean(again, g)
         exact = again.flow.arithmetic.exact
         before, period = exact(first.period), exact(again.period)
-        apart = abs(period - before) + _last(finest) * period
-        bound = abs(better.value - mean.value) + _last(finest) * better.size
-        if apart <= _last(digits) * period and bound <= _last(digits) * better.size:
-            return Average(better.value, bound, (period, apart), again, better.values)
+        period_error = abs(period - before) + _last_digit(finest) * period
+        bound = abs(better.value - mean.value) + _last_digit(finest) * better.size
+        if (
+            period_error <= _last_digit(digits) * period
+            and bound <= _last_digit(digits) * better.size
+        ):
+            return Average(better.value, bound, (period, period_error), again, better.values)
     raise NoFlowError(f"{digits} digits of the average were not reached")
 
 
-def _enough(orbit: Orbit, g: Element, digits: int) -> tuple[Orbit, "_Mean"]:
-    """The orbit with so many points that the mean over every second one is the same."""
-    mean = _mean(orbit, g)
+def _refine_until_settled(orbit: Orbit, g: Element, digits: int) -> tuple[Orbit, "_Mean"]:
+    """Return the orbit with so many points that the mean over every second one is the same."""
+    mean = _compute_mean(orbit, g)
     while len(orbit.points) < _MOST:
         half, orbit = mean, orbit.finer()
-        mean = _mean(orbit, g)
-        if abs(mean.value - half.value) <= _last(digits) * mean.size:
+        mean = _compute_mean(orbit, g)
+        if abs(mean.value - half.value) <= _last_digit(digits) * mean.size:
             return orbit, mean
     raise NoFlowError(f"{_MOST} points are too few for {digits} digits of the average")
 
@@ -84,57 +88,59 @@ class _Mean:
     values: tuple[float, ...]
 
 
-def _mean(orbit: Orbit, g: Element) -> _Mean:
-    found = [orbit.flow.arithmetic.exact(x) for x in orbit.values(g)]
-    mean = sum(found, Fraction(0)) / len(found)
-    return _Mean(mean, max(map(abs, found)), tuple(map(float, found)))
+def _compute_mean(orbit: Orbit, g: Element) -> _Mean:
+    numbers = [orbit.flow.arithmetic.exact(x) for x in orbit.values(g)]
+    mean = sum(numbers, Fraction(0)) / len(numbers)
+    return _Mean(mean, max(map(abs, numbers)), tuple(map(float, numbers)))
 
 
-def _last(digits: int) -> Fraction:
+def _last_digit(digits: int) -> Fraction:
     return Fraction(1, 10**digits)
 
 
 def _at_rest(orbit: Orbit, g: Element, start: Start, digits: int) -> Average:
-    """g(z₀), enclosed."""
+    """Return the average at an equilibrium, g(z₀), enclosed."""
     ring, x = g
     bits = 4 * digits + 64
     value = enclose(ring, x, {"p": start[0], "q": start[1]}, bits)
     with working_precision(bits):
-        if value is None or not in_reach(value):
+        if value is None or not is_representable(value):
             raise NoFlowError("the function is not defined at the equilibrium")
-        middle, radius = middle_and_radius(value)
+        middle, radius = midpoint_and_radius(value)
     return Average(middle, radius, None, orbit, (float(middle),))
 
 
 # -- the bounded part -----------------------------------------------------------------------------
 
 
-def bounded_part(found: Average) -> Callable[[State], float]:
-    """z ↦ B(z) − B(z₀) for z near the orbit, B as in the module's text, to float64's digits.
+def bounded_part(orbit_average: Average) -> Callable[[State], float]:
+    """Return z ↦ B(z) − B(z₀) for z near the orbit, with B of the module's text, in float64.
 
     B is taken at the point of the orbit that is nearest to z; so it is off by O(|H(z) − H(z₀)|).
     """
     import numpy as np
 
-    if found.period is None:
+    if orbit_average.period is None:
         return lambda z: 0.0
-    count = len(found.values)
+    count = len(orbit_average.values)
     harmonics = np.arange(1, count // 2)
-    rates = 2j * np.pi * harmonics / float(found.period[0])
-    weights = np.fft.fft(found.values)[1 : count // 2] / count / rates
+    # A harmonic's integral from 0 to t is (e^(iωt) − 1)/(iω); `expm1` cancels no digits of it.
+    rates = 2j * np.pi * harmonics / float(orbit_average.period[0])
+    weights = np.fft.fft(orbit_average.values)[1 : count // 2] / count / rates
 
-    def at(z: State) -> float:
-        time = phase(found.orbit, z)
+    def evaluate(z: State) -> float:
+        time = phase(orbit_average.orbit, z)
         return float(2 * np.real(np.sum(weights * np.expm1(rates * time))))
 
-    return at
+    return evaluate
 
 
 def phase(orbit: Orbit, z: State) -> float:
-    """The time t at which φ_t(z₀) is nearest to z, which must be near the orbit."""
-    z = _turned_back(orbit, z)
-    at = min(range(len(orbit.points)), key=lambda k: _squared(z, orbit.points[k]))
-    point, time = orbit.points[at], float(orbit.time(Fraction(at, len(orbit.points))))
+    """Return the time t at which φ_t(z₀) is nearest to z, which must be near the orbit."""
+    # A rotation runs on by whole periods of H, while the orbit's points cover one.
+    z = _remove_turns(orbit, z)
+    nearest = min(range(len(orbit.points)), key=lambda k: _squared_distance(z, orbit.points[k]))
+    point, time = orbit.points[nearest], float(orbit.time(Fraction(nearest, len(orbit.points))))
     most = float(orbit.time(Fraction(1, len(orbit.points))))  # beyond it there is no nearest point
     for _ in range(_NEWTON):
         p, q = orbit.flow.slope(point)
@@ -147,16 +153,16 @@ def phase(orbit: Orbit, z: State) -> float:
     return time
 
 
-def _turned_back(orbit: Orbit, z: State) -> State:
-    """z with whole shifts taken off, so that it lies beside the orbit's points."""
+def _remove_turns(orbit: Orbit, z: State) -> State:
+    """Subtract whole shifts from z, so that it lies beside the orbit's points."""
     first = orbit.points[0]
-    moved = []
+    coordinates = []
     for x, x0, shift in zip(z, first, orbit.shift, strict=True):
         turns = Fraction(int(((x - x0) / shift) // 1)) if shift else Fraction(0)
         with orbit.flow.arithmetic.context():
-            moved.append(x - orbit.flow.number(turns) * shift)
-    return moved[0], moved[1]
+            coordinates.append(x - orbit.flow.number(turns) * shift)
+    return coordinates[0], coordinates[1]
 
 
-def _squared(z: State, other: State) -> Number:
+def _squared_distance(z: State, other: State) -> Number:
     return (z[0] - other[0]) ** 2 + (z[1] - other[1]) ** 2

@@ -35,7 +35,7 @@ Kind = Literal[
 
 @dataclass(frozen=True)
 class ExactOrbit:
-    """What is known of the orbit through z₀ over a time T.
+    """The facts about the orbit through z₀ over a time T.
 
     `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open), or
     at its end where H depends on time (driven), leaves every bound (escapes), or not followed to
@@ -45,8 +45,8 @@ class ExactOrbit:
     det Hess H on the orbit; `period`: that of a closed one, about. `more_digits`: those that z₀ is
     given with, beyond those of ordinary numbers.
 
-    `has_neighbours`: whether it is followed beside neighbours, which tell how fast they part, in
-    place of whether it closes.
+    `has_neighbours`: True if it is followed beside neighbours, which show how fast they part,
+    instead of until it closes.
     """
 
     kind: Kind
@@ -72,6 +72,8 @@ class ExactOrbit:
 
 
 class OrbitSearch:
+    """A search that follows the flow from z₀ until it closes, leaves, or the time is over."""
+
     def __init__(
         self,
         hamiltonian: Hamiltonian,
@@ -83,23 +85,24 @@ class OrbitSearch:
         (force, speed), diff = field.slopes, field.ring.diff
         ring = field.ring
         h_pp, h_pq = diff(speed, "p"), diff(speed, "q")
+        # det Hess H = H_pp H_qq − H_pq², with force = −H_q and speed = H_p.
         stiffness = ring.reduce(-h_pp * diff(force, "q") - h_pq * h_pq)
         self.more_digits = initial_value_digits(start)
         self.flow = Flow(field, _DIGITS + self.more_digits)
         self.arithmetic = self.flow.arithmetic
         elements = [(ring, x) for x in (force, speed, stiffness, field.energy)]
-        self.at = functions_at(self.arithmetic, elements, self.flow.names)
+        self.evaluate_at = functions_at(self.arithmetic, elements, self.flow.names)
         self.start, self.time, self.timed = start, self.number(time), field.timed
         self.z0: State = tuple(map(self.number, (*start, t0)[: len(self.flow.names)]))
-        self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
+        self.shifts = [self.shift_in_radians(s) for s in shifts(hamiltonian)]
         self.free = tuple(x.is_zero() for x in (speed, force))  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
         # From which on any time gives the same, where it closes by steps that its end never cuts.
         self.least_time: Fraction | None = None
 
-    def turned(self, shift: tuple[Fraction, Fraction]) -> State:
-        """A shift that is given in units of 2π."""
+    def shift_in_radians(self, shift: tuple[Fraction, Fraction]) -> State:
+        """Convert a shift from units of 2π."""
         with self.arithmetic.context():
             turn = 2 * self.arithmetic.functions["pi"]
             return turn * self.number(shift[0]), turn * self.number(shift[1])
@@ -107,62 +110,64 @@ class OrbitSearch:
     def number(self, x: Fraction) -> Number:
         return self.arithmetic.number(x)
 
-    def orbit(self) -> ExactOrbit:
+    def find_orbit(self) -> ExactOrbit:
         try:
-            self.note(self.z0)
+            self.record_rates(self.z0)
         except NoFlowError as error:
-            return self.found("unknown", error.said)
+            return self.build_orbit("unknown", error.reason)
         if not self.timed and not any(self.rates[0][:2]):
-            return self.found("at rest", "stays where it is, an equilibrium")
+            return self.build_orbit("at rest", "stays where it is, an equilibrium")
         if not self.timed and any(self.free):
             names = ("p", "q") if self.free[0] else ("q", "p")
             summary = (
                 f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
             )
-            return self.found("rotates", summary, self.free)
+            return self.build_orbit("rotates", summary, self.free)
         try:
-            return self.integrated()
+            return self.integrate()
         except NoFlowError as error:
-            return self.found("unknown", error.said)
+            return self.build_orbit("unknown", error.reason)
 
-    def note(self, z: State) -> None:
-        """Keeps what is to be known at a point of the orbit."""
+    def record_rates(self, z: State) -> None:
+        """Record f and ω² at a point of the orbit; NoFlowError where they are not defined."""
         try:
             with self.arithmetic.context():
-                dp, dq, stiffness, _ = self.at(*z)  # H too has to be defined there
+                dp, dq, stiffness, _ = self.evaluate_at(*z)  # H too has to be defined there
         except (ArithmeticError, ValueError):
             raise NoFlowError("H or its derivatives are not defined there") from None
         self.rates.append((dp, dq, stiffness))
 
-    def integrated(self) -> ExactOrbit:
+    def integrate(self) -> ExactOrbit:
         with self.arithmetic.context():
             z, time, step = self.z0, self.time - self.time, self.time / 16
         outwards, longest, cut, least = 0, None, False, time
         for k in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
             with self.arithmetic.context():
-                left, allowed = self.time - time, self.allowed()
-                tried = min(2 * step, allowed)
-                cut = cut or tried >= left or (k == 0 and tried < allowed)
-                least = max(least, time + tried, _FIRST * tried if k == 0 else least)
-                step = min(tried, left)
-            step, after = self.stepped(z, step)
-            if after is None or (longest and step < left and step * _FASTER < longest):
+                remaining, limit = self.time - time, self.largest_step()
+                # Steps grow by a factor of 2 at most, so that one bad guess cannot jump over a fast
+                # stretch.
+                candidate = min(2 * step, limit)
+                cut = cut or candidate >= remaining or (k == 0 and candidate < limit)
+                least = max(least, time + candidate, _FIRST * candidate if k == 0 else least)
+                step = min(candidate, remaining)
+            step, after = self.take_step(z, step)
+            if after is None or (longest and step < remaining and step * _FASTER < longest):
                 summary = f"becomes ever faster at t = `{self.clock(time):.6g}`"
-                return self.found("escapes", summary)
+                return self.build_orbit("escapes", summary)
             with self.arithmetic.context():
                 time = time + step
                 longest = max(longest or step, step)
                 grown = self.size(after)
                 outwards = outwards + 1 if grown > self.size(z) else 0
             self.points.append(after)
-            self.note(after)
+            self.record_rates(after)
             if grown > _FAR and outwards >= _OUTWARDS:
                 summary = (
                     f"is `{_FAR:.0e}` times as far out as z0 at t = `{self.clock(time):.6g}`, "
                     "and goes on"
                 )
-                return self.found("escapes", summary)
-            back = None if self.timed else self.returned(z, after)
+                return self.build_orbit("escapes", summary)
+            back = None if self.timed else self.find_return(z, after)
             if back is not None:
                 shift, part = back
                 with self.arithmetic.context():
@@ -171,29 +176,31 @@ class OrbitSearch:
                     self.least_time = self.arithmetic.exact(least) * _ROUNDED
                 kind: Kind = "rotates" if any(shift) else "closed"
                 summary = f"{kind}, with a period of about `{float(period):.3g}`"
-                return self.found(kind, summary, shift, period=self.arithmetic.exact(period))
+                return self.build_orbit(kind, summary, shift, period=self.arithmetic.exact(period))
             z = after
             if time >= self.time and self.timed:
-                return self.found(
+                return self.build_orbit(
                     "driven", f"is driven; followed to its end, t = `{self.clock(time):.6g}`"
                 )
             if time >= self.time:
-                return self.found("open", f"is still under way at t = `{self.clock(time):.6g}`")
-        return self.found("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
+                return self.build_orbit(
+                    "open", f"is still under way at t = `{self.clock(time):.6g}`"
+                )
+        return self.build_orbit("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
 
     def clock(self, time: Number) -> float:
-        """t after so long."""
+        """Return t after this time since the start."""
         return float(time) + (float(self.z0[2]) if self.timed else 0)
 
-    def allowed(self) -> Number:
-        """The step that the local frequency allows; call it inside the context."""
+    def largest_step(self) -> Number:
+        """Return the step that the local frequency allows; call it inside the context."""
         stiffness = abs(self.rates[-1][2])
         if stiffness == 0:
             return self.time
         return self.number(_PART) / self.arithmetic.functions["sqrt"](stiffness)
 
-    def stepped(self, z: State, step: Number) -> tuple[Number, State | None]:
-        """The longest of step, step/2, … that is accurate, and where it leads."""
+    def take_step(self, z: State, step: Number) -> tuple[Number, State | None]:
+        """Return the longest of step, step/2, … that is accurate, and the state after it."""
         for _ in range(_HALVINGS):
             after = self.flow.step(z, step)
             if after is not None:
@@ -203,29 +210,33 @@ class OrbitSearch:
         return step, None
 
     def size(self, z: State) -> Number:
-        """|z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
+        """Return |z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
         near = (self.z0, self.points[min(1, len(self.points) - 1)])
         first, second = (max(map(abs, x[:2])) for x in near)
         return max(map(abs, z[:2])) / (first or second) if first or second else first
 
-    def returned(self, z: State, after: State) -> tuple[State, Number] | None:
-        """The shift with which the last step crossed the line through z₀, if it did so near z₀.
+    def find_return(self, z: State, after: State) -> tuple[State, Number] | None:
+        """Return the shift with which the last step crossed the line through z₀ near z₀, if any.
 
-        And after which part of that step.
+        With it is returned the part of the step after which it crossed.
         """
         with self.arithmetic.context():
             reach = self._ends()[1]
+            # The first steps are still near z₀, and would count as a return.
             if len(self.points) < 4 or not all(reach):
                 return None
             for shift in self.shifts:
                 target = (self.z0[0] + shift[0], self.z0[1] + shift[1])
-                part = self._crossed(z, after, target, reach)
+                part = self._find_crossing(z, after, target, reach)
                 if part is not None:
                     return shift, part
         return None
 
-    def _crossed(self, z: State, after: State, target: State, reach: State) -> Number | None:
-        """Where from z to after the line through the target, normal to f(z₀), is crossed."""
+    def _find_crossing(self, z: State, after: State, target: State, reach: State) -> Number | None:
+        """Return the part of the chord from z to `after` that lies before the target's normal.
+
+        None where it does not cross the line, which is normal to f(z₀), near the target.
+        """
         slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
 
         def height(point: State) -> Number:
@@ -237,19 +248,20 @@ class OrbitSearch:
         if not low < 0 <= high:
             return None
         part = -low / (high - low)
-        at = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
+        crossing = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
         near = all(
-            abs(x - t) < self.number(_NEAR) * r for x, t, r in zip(at, target, reach, strict=True)
+            abs(x - t) < self.number(_NEAR) * r
+            for x, t, r in zip(crossing, target, reach, strict=True)
         )
         return part if near else None
 
     def _ends(self) -> tuple[State, State]:
-        """The middle of the points seen, and how far they reach from it."""
+        """Return the middle of the points so far, and how far they reach from it."""
         ends = [(min(x), max(x)) for x in list(zip(*self.points, strict=True))[:2]]
         middle = tuple((low + high) / 2 for low, high in ends)
         return middle, tuple((high - low) / 2 for low, high in ends)
 
-    def found(
+    def build_orbit(
         self,
         kind: Kind,
         summary: str,
@@ -258,13 +270,13 @@ class OrbitSearch:
     ) -> ExactOrbit:
         exact, zero = self.arithmetic.exact, self.number(Fraction(0))
         with self.arithmetic.context():
-            centre, reached = self._ends()
+            centre, half_widths = self._ends()
             fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
             stiffest = max((r[2] for r in self.rates), default=zero)
         # An orbit that has hardly moved in that time is measured by where it is.
         reach = tuple(
             exact(r) if exact(r) > abs(x) / _STILL else abs(x)
-            for r, x in zip(reached, self.start, strict=True)
+            for r, x in zip(half_widths, self.start, strict=True)
         )
         # H_p = q' and H_q = −p': H changes by about so much across the orbit.
         scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
@@ -273,23 +285,26 @@ class OrbitSearch:
             summary=read_prose(summary),
             centre=tuple(map(exact, centre)),
             reach=reach,
-            turns=self.turns(reached, shift),
+            turns=self.find_turns(half_widths, shift),
             scale=scale,
             stiffness=exact(stiffest),
             period=period,
             more_digits=self.more_digits,
         )
 
-    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, ...]:
-        """In which coordinates it goes round: that of its own shift; in time, where it has gone
-        further than a period of H."""
+    def find_turns(self, half_widths: State, shift: Sequence[Number]) -> tuple[bool, ...]:
+        """Return, for each coordinate, True if the orbit goes round in it.
+
+        It does so in the coordinates of its shift; where H depends on time, in those in which it
+        has gone further than a period of H.
+        """
         if not self.timed:
             return tuple(map(bool, shift))
-        farthest = enumerate(reached)
+        farthest = enumerate(half_widths)
         return tuple(any(2 * x > abs(s[k]) > 0 for s in self.shifts) for k, x in farthest)
 
 
 def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:
-    """How many digits an initial value is given with, beyond those of ordinary numbers."""
-    written = max(len(str(x.numerator).rstrip("0")) for x in start)
-    return min(written, _MOST_DIGITS) if written > _DIGITS else 0
+    """Return the number of digits of an initial value, beyond those of ordinary numbers."""
+    digits = max(len(str(x.numerator).rstrip("0")) for x in start)
+    return min(digits, _MOST_DIGITS) if digits > _DIGITS else 0

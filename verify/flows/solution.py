@@ -1,6 +1,6 @@
 """The exact solution of p' = −H_q, q' = H_p at one time, with its error bound.
 
-H is taken apart into what is not coupled. A part in one degree of freedom has a closed form where
+H is split into its uncoupled parts. A part in one degree of freedom has a closed form where
 one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with a polynomial V of
 degree up to 4), and so has Kepler's problem where the orbit is an ellipse. All else is followed by
 the numerical flow, with more digits until two of them agree; poles in t are found before.
@@ -21,43 +21,44 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import plain
-from verify.effort import MOST, unless_long
+from verify.effort import MOST, answer_unless_long
 from verify.errors import InputError
 from verify.flows import closed_form
-from verify.flows.closed_orbit import at_rest
+from verify.flows.closed_orbit import is_equilibrium
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import kepler_motion, known_flows
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.systems import get
-from verify.hamiltonians.times_on_the_way import first_fault
-from verify.hamiltonians.uncoupled import uncoupled
+from verify.hamiltonians.times_on_the_way import find_first_fault
+from verify.hamiltonians.uncoupled import uncouple
 from verify.structures import AREA, SYMPLECTIC
 
 METHOD = "numerical flow: Gragg's method, extrapolated"
-_GUARD = 6  # digits beyond those asked for with which the first flow is followed
-_MORE = 10  # and how many more the next one has
+_GUARD = 6  # digits of the first flow, beyond those requested
+_MORE = 10  # further digits of each flow after the first
 _TRIES = 6
 _SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
 _PARTS = 1024  # of the time, in which poles of H are looked for
 
 
 def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
-    """NoFlowError where H is not smooth at some time on the way."""
+    """Raise NoFlowError if H is not smooth at some time on the way."""
     part = time / _PARTS
-    passed, words = first_fault(hamiltonian, t0, part, _PARTS)
+    parts, words = find_first_fault(hamiltonian, t0, part, _PARTS)
     if words:
-        between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
+        between = f"t = {plain(t0 + parts * part, 6)} and {plain(t0 + (parts + 1) * part, 6)}"
         raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
 
 
-def confirmed(
+def follow_confirmed(
     field: CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
 ) -> tuple[list[Fraction], Fraction]:
-    """The coordinates after the time and a bound of the error of each, an estimate; NoFlowError.
+    """Follow the numerical flow with more and more digits until two runs agree.
 
-    `start`: the coordinates, and t where H depends on it.
+    Returns the coordinates after the time and a bound of the error of each, which is an estimate.
+    `start`: the coordinates, and t where H depends on it. Raises NoFlowError.
     """
     coordinates = len(field.names)
     before: list[Fraction] | None = None
@@ -66,6 +67,8 @@ def confirmed(
         z = flow.follow(tuple(map(flow.number, start)), time)
         after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
         if before is not None:
+            # The finer flow is nearer to the truth than the two are to each other; the factor
+            # allows for a coarser one that is right by luck.
             bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
             if bound * 10**digits <= max(map(abs, (*start[:coordinates], *after))):
                 return after, bound
@@ -73,7 +76,7 @@ def confirmed(
     raise NoFlowError("the digits asked for are lost along the orbit")
 
 
-_TOLD = 12  # digits of a time at which a solution ends
+_TIME_DIGITS = 12  # digits of a time at which a solution ends
 NOT_KNOWN = "not known"
 
 _FORCED = "closed form of the forced oscillator"  # the one that is known in time
@@ -85,10 +88,11 @@ ITSELF = "the initial value itself"
 
 @dataclass(frozen=True)
 class Solution:
-    """z = φ_time(z₀), the coordinates by their names: `bound` ≥ |error| of each; `method` says how.
+    """The state z = φ_time(z₀), by coordinates' names: `bound` ≥ |error| of each.
 
-    In closed form the bound is `enclosed`, by ball arithmetic, and 0 where the solution is exact;
-    else it is an estimate, by a second evaluation with more digits.
+    `method` names the way it was computed. In closed form the bound is `enclosed`, by ball
+    arithmetic, and 0 where the solution is exact; else it is an estimate, by a second evaluation
+    with more digits.
     """
 
     point: Point
@@ -98,12 +102,12 @@ class Solution:
 
     @property
     def p(self) -> Fraction:
-        """In the plane."""
+        """The momentum, in the plane."""
         return self.point["p"]
 
     @property
     def q(self) -> Fraction:
-        """In the plane."""
+        """The coordinate, in the plane."""
         return self.point["q"]
 
 
@@ -116,14 +120,14 @@ def exact_solution(
     digits: int,
     t0: Fraction = _FROM_START,
 ) -> Solution:
-    """φ_time(p, q), numbers in the plane and lists in n degrees of freedom: see `solution_from`."""
+    """Return φ_time(p, q), for numbers in the plane and lists in n degrees: see `solution_from`."""
     return solution_from(hamiltonian, point_of(hamiltonian, q, p), time, digits, t0)
 
 
 def solution_from(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
 ) -> Solution:
-    """φ_time(point), whose bound is at most 10^−digits times the orbit's scale.
+    """Return φ_time(point), with a bound of at most 10^−digits times the orbit's scale.
 
     Where H depends on time the orbit begins at t0, and `time` is how long it lasts.
     The orbit's scale is the largest coordinate, in size, at its two ends. Time may be negative.
@@ -133,64 +137,76 @@ def solution_from(
     _check(hamiltonian, digits)
     if time == 0:
         return Solution(point, Fraction(0), ITSELF)
-    found: dict[str, Fraction] = {}
+    coordinates: dict[str, Fraction] = {}
     solutions = []
-    for part, names in uncoupled(hamiltonian):
-        own = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
-        known = {AREA: _of_plane, SYMPLECTIC: _ellipse}[part.structure]
-        solved = known(part, own, time, digits, t0)
-        solutions.append(solved or numerical_solution(part, own, time, digits, t0))
-        found |= dict(zip(names, solutions[-1].point.values(), strict=True))
+    for part, names in uncouple(hamiltonian):
+        part_point = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
+        solve_closed_form = {AREA: _solve_in_plane, SYMPLECTIC: _solve_ellipse}[part.structure]
+        solution = solve_closed_form(part, part_point, time, digits, t0)
+        solutions.append(solution or numerical_solution(part, part_point, time, digits, t0))
+        coordinates |= dict(zip(names, solutions[-1].point.values(), strict=True))
     return Solution(
-        {name: found[name] for name in hamiltonian.coordinates},
-        max(solved.bound for solved in solutions),
-        "; ".join(dict.fromkeys(solved.method for solved in solutions)),
-        all(solved.enclosed for solved in solutions),
+        {name: coordinates[name] for name in hamiltonian.coordinates},
+        max(solution.bound for solution in solutions),
+        "; ".join(dict.fromkeys(solution.method for solution in solutions)),
+        all(solution.enclosed for solution in solutions),
     )
 
 
-def _in_closed_form(point: Point, evaluation: closed_form.Evaluation, method: str) -> Solution:
+def _closed_form_solution(
+    point: Point, evaluation: closed_form.Evaluation, method: str
+) -> Solution:
     after, bound = evaluation
     return Solution(dict(zip(point, after, strict=True)), bound, method)
 
 
-def _of_plane(
+def _solve_in_plane(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
 ) -> Solution | None:
-    """In closed form, where one is known."""
+    """Return the solution in closed form, or None where no closed form is known."""
     p, q = start = tuple(point.values())
     if hamiltonian.time_dependent:
         state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
         if state is None:
             return None
-        return _in_closed_form(point, closed_form.enclosed(state, start, digits), _FORCED)
-    known = known_flows.closed_form(hamiltonian, p, q)
-    rest = known.rest if known else at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
+        return _closed_form_solution(
+            point, closed_form.evaluate_enclosure(state, start, digits), _FORCED
+        )
+    motion = known_flows.closed_form(hamiltonian, p, q)
+    rest = (
+        motion.rest
+        if motion
+        else is_equilibrium(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
+    )
     if rest:
         return Solution(point, Fraction(0), ITSELF)
-    if known is None:
+    if motion is None:
         return None
-    return _in_closed_form(point, closed_form.evaluate(known, start, time, digits), known.method)
+    return _closed_form_solution(
+        point, closed_form.evaluate(motion, start, time, digits), motion.method
+    )
 
 
-def _ellipse(
+def _solve_ellipse(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
 ) -> Solution | None:
-    """In closed form, where H is Kepler's and the orbit is bound."""
-    mu = unless_long(lambda: _strength(hamiltonian), None, MOST)
+    """Return the solution in closed form where H is Kepler's and the orbit is bound, else None."""
+    mu = answer_unless_long(lambda: _kepler_strength(hamiltonian), None, MOST)
     if mu is None:
         return None
     p1, p2, q1, q2 = start = tuple(point.values())
     q, p = (q1, q2), (p1, p2)
     if not kepler_motion.is_ellipse(mu, q, p):
         return None
-    after = closed_form.enclosed(lambda: kepler_motion.after(mu, q, p, time), start, digits)
-    return _in_closed_form(point, after, _ELLIPSE)
+    after = closed_form.evaluate_enclosure(
+        lambda: kepler_motion.after(mu, q, p, time), start, digits
+    )
+    return _closed_form_solution(point, after, _ELLIPSE)
 
 
 @lru_cache(maxsize=64)
-def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
-    """μ, where H is Kepler's but for a constant."""
+def _kepler_strength(hamiltonian: Hamiltonian) -> Fraction | None:
+    """Return μ where H is Kepler's but for a constant, else None."""
     kepler = get("kepler").hamiltonian({}).expression
     if len(hamiltonian.coordinates) != 4 or hamiltonian.time_dependent:
         return None
@@ -198,31 +214,31 @@ def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
         return None
     mu = symbol("mu")
     # At q = (1, 0) and p = 0 it is −μ, and at q = (2, 0) half of that.
-    at = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]
-    first, second = (hamiltonian.exact.subs(x) for x in at)
+    points = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]
+    first, second = (hamiltonian.exact.subs(x) for x in points)
     value = sympy.nsimplify(2 * (second - first)) if (second - first).is_number else None
     if value is None or not value.is_Rational:
         return None
-    gap = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
-    same = gap.is_number and not gap.free_symbols
+    difference = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
+    same = difference.is_number and not difference.free_symbols
     return Fraction(int(value.p), int(value.q)) if same else None
 
 
 def numerical_solution(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
 ) -> Solution:
-    """By the numerical flow with more and more digits, until two of them agree."""
+    """Solve by the numerical flow with more and more digits, until two of them agree."""
     check_poles(hamiltonian, t0, time)
     field, _ = canonical_field(hamiltonian)
     start = [*point.values(), *([t0] if field.timed else [])]
-    after, bound = confirmed(field, start, time, digits)
+    after, bound = follow_confirmed(field, start, time, digits)
     return Solution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
 
 
 def leaves_by_algebra(
     hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
 ) -> str | None:
-    """How the exact solution leaves every bound, as a short statement; None if it does not.
+    """Describe how the exact solution leaves every bound; None if it does not.
 
     It does where it blows up until that time ≥ 0, or goes to infinity as t grows (a pendulum that
     goes round does, by its angle): by exact algebra, `NOT_KNOWN` where that alone does not tell.
@@ -230,20 +246,22 @@ def leaves_by_algebra(
     value.
     """
     hamiltonian.check_planar()
-    _check(hamiltonian, _TOLD)
+    _check(hamiltonian, _TIME_DIGITS)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
     if hamiltonian.time_dependent:
         raise InputError("hamiltonian", hamiltonian.formula, "depends on t; allowed: one without")
-    known = known_flows.closed_form(hamiltonian, p, q)
-    if known is not None:
-        end = closed_form.blow_up(known, 1, _TOLD)
+    motion = known_flows.closed_form(hamiltonian, p, q)
+    if motion is not None:
+        end = closed_form.blow_up(motion, 1, _TIME_DIGITS)
         if end is None:
-            return known.goes()
-        return f"it blows up at t = {plain(end, 6)}" if closed_form.ends_by(known, time) else None
-    if at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q)):
+            return motion.goes()
+        return (
+            f"it blows up at t = {plain(end, 6)}" if closed_form.may_end_by(motion, time) else None
+        )
+    if is_equilibrium(hamiltonian, canonical_field(hamiltonian)[0], (p, q)):
         return None
-    for match in known_flows.named(hamiltonian):
+    for match in known_flows.named_systems(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)
     return NOT_KNOWN

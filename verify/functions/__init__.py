@@ -1,7 +1,7 @@
 """The elementary functions that a formula may have: `elementary/` has one a file.
 
-A file of `elementary/` defines `FUNCTION`, all that is asked of that function anywhere: in algebra,
-in every number system, in kernels, of traced code, on pages.
+A file of `elementary/` defines `FUNCTION`, all that any other room needs of that function: algebra,
+every number system, kernels, traced code, pages.
 """
 
 from functools import cache
@@ -13,17 +13,18 @@ _FILES = Catalogue(f"{__name__}.elementary", [f"{folder}/elementary" for folder 
 
 
 def names() -> tuple[str, ...]:
-    """The names of all functions, as formulas have them, in alphabetical order."""
+    """Return the names of all functions, as formulas have them, in alphabetical order."""
     return _FILES.names
 
 
 @cache
 def by_name() -> dict[str, Function]:
-    """All functions by their names."""
+    """Return all functions by their names."""
     return {name: _FILES.module(name).FUNCTION for name in names()}
 
 
 @cache
 def in_rings() -> dict[str, Function]:
-    """Those that a ring has generators of, and so a kernel calls: the others are made of them."""
+    """Return the functions that a ring has generators of, and so a kernel calls: the others are
+    made of them."""
     return {name: each for name, each in by_name().items() if each.image is not None}

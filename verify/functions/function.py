@@ -1,8 +1,8 @@
-"""An elementary function of one real number: all that is asked of it, in one object.
+"""An elementary function of one real number: all that other rooms need of it, in one object.
 
-What holds in numbers of any kind is written once, with + − * and `apply`, which applies a function
-to such a number by its name, "inverse" and "sqrt" among them: the numbers may be MPFR's, balls,
-elements of a ring, series, operations of a program. No library is imported here.
+A formula that holds in numbers of any kind is written once, with + − * and `apply`, which applies a
+function to such a number by its name, "inverse" and "sqrt" among them: the numbers may be MPFR's,
+balls, elements of a ring, series, operations of a program. No library is imported here.
 """
 
 from collections.abc import Callable
@@ -27,9 +27,8 @@ CIRCLE, HYPERBOLA = Pair("sin", "cos", -1), Pair("sinh", "cosh", 1)
 
 @dataclass(frozen=True)
 class Domain:
-    """Where a function is defined: where `inside`, made from its argument, is ≠ 0, ≥ 0 or > 0; or
-    `through`, the function of that name, of it is.
-    """
+    """The domain of a function: `inside`, made from its argument, is ≠ 0, ≥ 0 or > 0; or `through`,
+    the function of that name, of it is."""
 
     relation: Literal["!=", ">=", ">"]
     inside: Callable[[Number], Number] = lambda x: x
@@ -38,7 +37,7 @@ class Domain:
 
 @dataclass(frozen=True)
 class FixedPoint:
-    """How exact a function is in fixed point, and how it is made where it is made of others.
+    """The accuracy of a function in fixed point, and how it is computed where it is made of others.
 
     A result is off by `units` in the last place at most, and by its size divided by `share` more,
     where that is not 0. `composed`: the function in finer numbers, from these and its argument (see
@@ -52,23 +51,25 @@ class FixedPoint:
 
 @dataclass(frozen=True)
 class Function:
-    """`name`: in formulas, as sympy, arb, MPFR, mpmath, `math` and the C library know it.
+    """An elementary function; `name`: in formulas, in sympy, arb, MPFR, mpmath, `math` and the C
+    library.
 
     - `slope`: its derivative, from the argument; or `equation`, from the value. Without a pair it
       is made with "inverse" and "sqrt" alone, which a ring has.
-    - `lipschitz`: what its slope nowhere exceeds, which is 1: it then stays in a range that its
+    - `lipschitz`: a bound on |slope|, which is 1: the function then stays in a range that its
       argument is in, such as fixed point's; None where the slope has no bound.
     - `domain`: where it is defined; None: everywhere.
-    - `pair`, `parts`: of what pair's odd and even function it is made, and how, with a quotient.
-    - `image`: what it is in the field of `verify.algebra.identities.translation`, from its
+    - `pair`, `parts`: the pair whose odd and even function it is made of, and how, with a quotient.
+    - `image`: its image in the field of `verify.algebra.identities.translation`, from its
       argument's image. None: it is made of others, and a ring has no generator of it.
     - `turns`: whether sums of it, as of arctangents, are the same but for multiples of π.
-    - `bounded`: whether it is between −1 and 1. `positive`: whether it is > 0 everywhere, or what,
-      made from its argument, is > 0 where it is.
+    - `bounded`: whether it is between −1 and 1. `positive`: whether it is > 0 everywhere, or an
+      expression of its argument that is > 0 where the function is.
     - `ball`: a ball around its values on one, where arb's own method is too wide.
     - `fixed`: in fixed point; None: that has none.
-    - `numpy`: its name there; `shown`: on pages; `tex`: a command of TeX's; each as its name tells
-      where nothing is given. `synonyms`: what others write for it, which a refused formula is told.
+    - `numpy`: its name there; `shown`: on pages; `tex`: a command of TeX's; each follows from the
+      name where it is empty. `synonyms`: other names for it, which the message for a refused
+      formula mentions.
     """
 
     name: str
@@ -90,18 +91,23 @@ class Function:
     synonyms: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        shown = self.shown or self.name
-        names = {"numpy": self.numpy or self.name, "shown": shown, "tex": self.tex or f"\\{shown}"}
+        shown_name = self.shown or self.name
+        names = {
+            "numpy": self.numpy or self.name,
+            "shown": shown_name,
+            "tex": self.tex or f"\\{shown_name}",
+        }
+        # The dataclass is frozen, so the defaults are set past its own __setattr__.
         for field, text in names.items():
             object.__setattr__(self, field, text)
 
     def of_balls(self, arb: Any) -> Callable[[Number], Number]:
-        """The function of arb's balls, which are of that type."""
+        """Return the function for arb's balls, which are of that type."""
         method: Callable[[Number], Number] = self.ball or getattr(arb, self.name)
         return method
 
     def derivative(self, x: Number, y: Number, apply: Apply) -> Number:
-        """f'(x), where y = f(x)."""
+        """Return f'(x), where y = f(x)."""
         if self.equation is not None:
             return self.equation(y)
         assert self.slope is not None  # noqa: S101 - each has one of the two

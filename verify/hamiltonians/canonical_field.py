@@ -1,4 +1,4 @@
-"""The vector field of H(p1 … pn, q1 … qn), and what is derived along it.
+"""The vector field of H(p1 … pn, q1 … qn), and derivatives along it.
 
 z = (p1 … pn, q1 … qn); z' = f with f = −∂H/∂q for a momentum and ∂H/∂p for a coordinate; X = f·∂ is
 the Lie derivative, and D = ∂_t + X takes its place where H depends on t.
@@ -20,7 +20,7 @@ from verify.late import sympy
 
 
 class Flow(ABC):
-    """What is derived along a field over any ring; `names` are p1 … pn, q1 … qn."""
+    """Derivatives along a field over any ring; `names` are p1 … pn, q1 … qn."""
 
     names: tuple[str, ...]
 
@@ -32,30 +32,30 @@ class Flow(ABC):
     @property
     @abstractmethod
     def slopes(self) -> tuple[Poly, ...]:
-        """f, a component for each name."""
+        """The components of f, one for each name."""
 
     @property
     def degrees(self) -> int:
-        """Of freedom: half as many as there are names."""
+        """The number of degrees of freedom: half as many as there are names."""
         return len(self.names) // 2
 
     @property
     def timed(self) -> bool:
-        """Whether H depends on t."""
+        """True if H depends on t."""
         return "t" in self.ring.places
 
     @cached_property
     def start(self) -> tuple[Poly, ...]:
-        """z itself."""
+        """The coordinates z, as elements of the ring."""
         return tuple(map(self.ring.variable, self.names))
 
     @cached_property
     def derivatives(self) -> tuple[Derivatives, ...]:
-        """f, with what is derived of it."""
+        """The components of f, with their cached derivatives."""
         return tuple(Derivatives(self.ring, x) for x in self.slopes)
 
     def derive(self, y: Poly) -> Poly:
-        """X y; D y where H depends on time."""
+        """Return X y; D y where H depends on time."""
         total = self.ring.diff(y, "t") if self.timed else self.ring.zero
         for slope, name in zip(self.slopes, self.names, strict=True):
             if not slope.is_zero():
@@ -67,17 +67,19 @@ class Flow(ABC):
         return {0: self.start, 1: tuple(map(self.ring.reduce, self.slopes))}
 
     def power(self, n: int) -> tuple[Poly, ...]:
-        """Xⁿz, made once."""
+        """Return Xⁿz, computed once."""
         if n not in self._powers:
+            # Threads may compute the same power at the same time; setdefault keeps the first of
+            # them.
             self._powers.setdefault(n, tuple(map(self.derive, self.power(n - 1))))
         return self._powers[n]
 
     def term(self, n: int) -> tuple[Poly, ...]:
-        """Xⁿz/n!, the coefficient of hⁿ in the exact flow."""
+        """Return Xⁿz/n!, the coefficient of hⁿ in the exact flow."""
         return tuple(x / math.factorial(n) for x in self.power(n))
 
     def gradients(self, n: int) -> tuple[tuple[Poly, ...], ...]:
-        """∂(Xⁿz/n!)/∂z by rows, made once."""
+        """Return ∂(Xⁿz/n!)/∂z by rows, computed once."""
         if n not in self._gradients:
             self._gradients.setdefault(n, tuple(map(self.gradient, self.term(n))))
         return self._gradients[n]
@@ -87,52 +89,53 @@ class Flow(ABC):
         return {}
 
     def gradient(self, x: Poly) -> tuple[Poly, ...]:
-        """∂x/∂z."""
+        """Return ∂x/∂z."""
         return tuple(self.ring.diff(x, name) for name in self.names)
 
 
 class CanonicalField(Flow):
-    """That of one H, an element of a ring with the coordinates, h, t where H has it, and
-    parameters."""
+    """The canonical field of one H, an element of a ring with the coordinates, h, t where H has it,
+    and parameters."""
 
     def __init__(self, ring: Ring, names: tuple[str, ...], energy: Poly) -> None:
         self._ring, self.names, self.energy = ring, names, energy
 
     @property
     def ring(self) -> Ring:
-        """The ring, in which zero is decided."""
+        """The ring, in which equality with zero is decided."""
         return self._ring
 
     @cached_property
     def slopes(self) -> tuple[Poly, ...]:
-        """f, a component for each name."""
+        """The components of f, one for each name."""
+        # z = (p, q): the first n components are p' = −∂H/∂q, the others q' = ∂H/∂p.
         n, diff = self.degrees, self.ring.diff
         forces = [-diff(self.energy, name) for name in self.names[n:]]
         return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
 
     def flow_changes(self, eta: int) -> list[Poly]:
-        """Σ hⁿ/n! Xⁿz, n = 1 … η: the change of z by the exact flow's Taylor polynomial."""
+        """Return Σ hⁿ/n! Xⁿz, n = 1 … η: the change of z by the exact flow's Taylor polynomial."""
         h, total = self.ring.variable("h"), [self.ring.zero] * len(self.names)
         for n in range(1, eta + 1):
             total = [x + h**n * y for x, y in zip(total, self.term(n), strict=True)]
         return total
 
     def shears(self, size: Poly | Fraction, places: Sequence[int]) -> list[Poly]:
-        """h size f in these places."""
+        """Return h · size · f in these places."""
         exact = self.ring.constant(size) if isinstance(size, Fraction) else size
         share = self.ring.variable("h") * exact
         return [self.ring.reduce(share * self.slopes[k]) for k in places]
 
     @cached_property
     def quadratic(self) -> bool:
-        """Whether H is seen to be a polynomial of degree 2 in z, at most, and without t."""
+        """True if H is seen to be a polynomial of degree 2 at most in z, and without t."""
         second = (y for x in self.slopes for y in self.gradient(x))
         depends = self.ring.depends
         return not self.timed and not any(depends(y, name) for y in second for name in self.names)
 
     @cached_property
     def separable(self) -> bool:
-        """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
+        """True if H = T(p) + V(q): all mixed derivatives are the zero function."""
         n, ring = self.degrees, self.ring
         mixed = (ring.diff(v, q) for v in self.slopes[n:] for q in self.names[n:])
         return all(ring.vanishes(x) is True for x in mixed)
@@ -141,23 +144,23 @@ class CanonicalField(Flow):
 def canonical_field(
     hamiltonian: Hamiltonian, *others: sympy.Expr, most_terms: int = MAX_TERMS
 ) -> tuple[CanonicalField, list[Poly]]:
-    """The field of `exact`, and other expressions as elements of its ring, in which each symbol
-    that H does not have is a variable too. Raises InputError."""
+    """Return the field of `exact`, and other expressions as elements of its ring, in which each
+    symbol that H does not have is a variable too. Raises InputError."""
     if not others and most_terms == MAX_TERMS:
-        return _shared(hamiltonian), []
-    ring, energy, elements = hamiltonian.embedded(*others, most_terms=most_terms)
+        return _cached_field(hamiltonian), []
+    ring, energy, elements = hamiltonian.embed_in_ring(*others, most_terms=most_terms)
     return CanonicalField(ring, hamiltonian.coordinates, energy), elements
 
 
-# Several schemes are proved for one H after another: what they share is made once. Few, since a
-# field keeps what was derived along it.
+# Several schemes are proved for one H after another and share its field. The cache is small, since
+# a field keeps all that was derived along it.
 @lru_cache(maxsize=8)
-def _shared(hamiltonian: Hamiltonian) -> CanonicalField:
-    ring, energy, _ = hamiltonian.embedded()
+def _cached_field(hamiltonian: Hamiltonian) -> CanonicalField:
+    ring, energy, _ = hamiltonian.embed_in_ring()
     return CanonicalField(ring, hamiltonian.coordinates, energy)
 
 
 def energy_of(hamiltonian: Hamiltonian) -> tuple[Ring, Poly]:
-    """The ring of H's field, and H in it."""
+    """Return the ring of H's field, and H in it."""
     field, _ = canonical_field(hamiltonian)
     return field.ring, field.energy

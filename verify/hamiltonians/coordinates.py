@@ -1,6 +1,6 @@
-"""Which names are coordinates: p and q, or p1 … pn and q1 … qn.
+"""The names of coordinates: p and q, or p1 … pn and q1 … qn.
 
-And names likely meant for something else where a coordinate is missing: x for q, pq for p*q.
+Names that are likely meant for a missing coordinate are recognised too: x for q, pq for p*q.
 """
 
 from __future__ import annotations
@@ -25,45 +25,50 @@ _CALL = re.compile(rf"({'|'.join((*names_of_functions(), 'ln'))})_?([pq])")
 
 
 def coordinates_of(names: Collection[str]) -> tuple[str, ...]:
-    """p and q; or, where these are not among the names and numbered ones are, p1 … pn, q1 … qn.
+    """Return p and q; or, where these are not among the names and numbered ones are, p1 … pn, q1 …
+    qn.
 
     >>> coordinates_of({"p1", "q2", "k"})
     ('p1', 'p2', 'q1', 'q2')
     """
-    numbers = [int(found[1]) for found in map(_NUMBERED.fullmatch, names) if found]
+    numbers = [int(match[1]) for match in map(_NUMBERED.fullmatch, names) if match]
     if not numbers or {"p", "q"} & set(names):
         return PLANE
-    return numbered(max(numbers))
+    return numbered_names(max(numbers))
 
 
-def numbered(degrees: int) -> tuple[str, ...]:
-    """p1 … pn, q1 … qn."""
+def numbered_names(degrees: int) -> tuple[str, ...]:
+    """Return p1 … pn, q1 … qn."""
     return tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
 
 
 def coordinates_in(degrees: int) -> tuple[str, ...]:
-    """Of so many degrees of freedom: p and q, or p1 … pn, q1 … qn."""
-    return PLANE if degrees == 1 else numbered(degrees)
+    """Return the coordinates for that number of degrees of freedom: p and q, or p1 … pn, q1 …
+    qn."""
+    return PLANE if degrees == 1 else numbered_names(degrees)
 
 
 def check_degrees(degrees: int) -> None:
-    """InputError unless that is a number of degrees of freedom."""
+    """Raise InputError unless that is an allowed number of degrees of freedom."""
     if not 1 <= degrees <= MOST_DEGREES:
         raise InputError("degrees", degrees, f"must be 1 … {MOST_DEGREES}")
 
 
 def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collection[str]) -> None:
-    """InputError where H has no p or no q, and among its parameters is a name that stands for it.
+    """Raise InputError where H has no p or no q, and a parameter's name is likely meant for it.
 
-    `parameters`: those without a value; whoever gives one its value says that it is one.
+    `parameters`: those without a value; a name that is given a value is a parameter on purpose.
     """
+    # A missing coordinate is legal (H = p²/2): it is refused only where a parameter looks like it.
     present = names_in(expression)
     if coordinates_of(present) != PLANE:
         _check_numbers(formula, present)
         return
-    beside = sorted(x for x in parameters if _NUMBERED.fullmatch(x))
-    if beside and {"p", "q"} & set(present):
-        problem = f"has {', '.join(beside)} beside p and q; allowed: p and q alone, a parameter of"
+    numbered = sorted(x for x in parameters if _NUMBERED.fullmatch(x))
+    if numbered and {"p", "q"} & set(present):
+        problem = (
+            f"has {', '.join(numbered)} beside p and q; allowed: p and q alone, a parameter of"
+        )
         raise InputError("hamiltonian", formula, f"{problem} that name with its value, or p1 … qn")
     missing = [name for name in _LIKELY if name not in present]
     if missing:
@@ -80,26 +85,28 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
 
 
 def _check_numbers(formula: str, present: Collection[str]) -> None:
-    """InputError where a number is left out, or there are too many."""
+    """Raise InputError where a number is left out, or there are too many."""
     degrees = len(coordinates_of(present)) // 2
     if degrees > MOST_DEGREES:
         problem = f"has {degrees} degrees of freedom; allowed: up to {MOST_DEGREES}"
         raise InputError("hamiltonian", formula, problem)
     for k in range(1, degrees):
         if not {f"p{k}", f"q{k}"} & set(present):
-            known = ", ".join(x for x in numbered(degrees) if x in present)
-            problem = f"has {known}, and neither p{k} nor q{k}; allowed: p1 … pn and q1 … qn"
+            present_names = ", ".join(x for x in numbered_names(degrees) if x in present)
+            problem = (
+                f"has {present_names}, and neither p{k} nor q{k}; allowed: p1 … pn and q1 … qn"
+            )
             raise InputError("hamiltonian", formula, problem)
 
 
 def _check_words(formula: str, lacks: str, parameters: Collection[str]) -> None:
-    """InputError where a parameter's name is a product or a call written in one."""
+    """Raise InputError where a parameter's name is a product or a call written as one word."""
     for name in parameters:
         write = ""
         if _PRODUCT.fullmatch(name):
             write = f"write {'*'.join(name)}"
-        elif called := _CALL.fullmatch(name):
-            write = f"write {called[1].replace('ln', 'log')}({called[2]})"
+        elif match := _CALL.fullmatch(name):
+            write = f"write {match[1].replace('ln', 'log')}({match[2]})"
         if write:
             problem = f"has no {lacks}, and {name} would be a parameter; {write}"
             raise InputError("hamiltonian", formula, f"{problem}, or give {name} its value")

@@ -1,16 +1,16 @@
 """Jacobi's and Weierstrass's functions on the real axis, in balls, by flint's theta functions.
 
 A result holds the true value, or is not finite, where flint's precision is too low for the argument
-or the modulus: who asks raises the precision. What does not depend on the argument is made once, so
-that a function belongs to the precision at which it was made.
+or the modulus: the caller then raises the precision. Everything that does not depend on the
+argument is computed once, so that a function belongs to the precision at which it was made.
 
 With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the values at z = 0)
 
-    sn = m^(−1/4) θ₁/θ₄,  cn = ((1 − m)/m)^(1/4) θ₂/θ₄,  dn = (1 − m)^(1/4) θ₃/θ₄.
+sn = m^(−1/4) θ₁/θ₄, cn = ((1 − m)/m)^(1/4) θ₂/θ₄, dn = (1 − m)^(1/4) θ₃/θ₄.
 
-℘'² = 4℘³ − g₂℘ − g₃ = 4 (℘ − e₁)(℘ − e₂)(℘ − e₃) with Δ = g₂³ − 27g₃² (Abramowitz and Stegun,
-18.9; DLMF 23.6). flint's own ℘ asks for the ratio of both periods, which are two Carlson R_F;
-sn asks for two arithmetic-geometric means.
+℘'² = 4℘³ − g₂℘ − g₃ = 4 (℘ − e₁)(℘ − e₂)(℘ − e₃) with Δ = g₂³ − 27g₃² (Abramowitz and Stegun, 18.9;
+DLMF 23.6). flint's own ℘ needs the ratio of both periods, which are two Carlson R_F; sn needs two
+arithmetic-geometric means.
 """
 
 from collections.abc import Callable
@@ -25,12 +25,14 @@ NOT_KNOWN = arb.nan()
 
 
 def jacobi(m: Real) -> Functions:
-    """u ↦ sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's transformation.
+    """Return u ↦ sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's
+    transformation.
 
     >>> sn, cn, dn = jacobi(arb(1) / 2)(arb(1))
     >>> (sn**2 + cn**2).overlaps(arb(1)), (dn**2 + sn**2 / 2).overlaps(arb(1))
     (True, True)
     """
+    # The limit of both cases (DLMF 22.5); the theta functions do not exist there, as K is infinite.
     if m == 1:
         return lambda u: (arb(u).tanh(), arb(u).sech(), arb(u).sech())
     if m > 1:
@@ -50,6 +52,7 @@ def _by_theta(turn: arb, tau: acb, modulus: arb, other: arb, u: Real) -> tuple[a
 
 
 def _beyond_one(m: Real) -> Functions:
+    """Return the functions for m > 1 from those for 1/m (DLMF 22.17: the reciprocal modulus)."""
     k, inside = arb(m).sqrt(), jacobi(1 / m)
 
     def functions(u: Real) -> tuple[arb, arb, arb]:
@@ -60,33 +63,37 @@ def _beyond_one(m: Real) -> Functions:
 
 
 def quarter_period(m: Real) -> arb:
-    """K(m), real m < 1: π/(2 M(1, √(1 − m))) by the arithmetic-geometric mean (DLMF 19.8.5)."""
+    """Return K(m), real m < 1: π/(2 M(1, √(1 − m))) by the arithmetic-geometric mean (DLMF
+    19.8.5)."""
     return arb.pi() / (2 * arb(1 - m).sqrt().agm())
 
 
 @dataclass(frozen=True)
 class Weierstrass:
-    """℘ by its roots: the real `first`, and e₂ ≥ e₃ below it or one of a conjugate pair."""
+    """The function ℘ by its roots: the real `first`, and e₂ ≥ e₃ below it or one of a conjugate
+    pair."""
 
     first: Real
     others: tuple[Real, Real] | acb
 
     @classmethod
-    def of(cls, g2: fmpq, g3: fmpq, delta: fmpq) -> "Weierstrass":
-        """By exact invariants, of which Δ tells which roots there are."""
+    def from_invariants(cls, g2: fmpq, g3: fmpq, delta: fmpq) -> "Weierstrass":
+        """Return ℘ for exact invariants; the sign of Δ tells which roots there are."""
         if delta == 0:
             d = double_root(g2, g3)
             return cls(d, (d, -2 * d)) if d >= 0 else cls(-2 * d, (d, d))
+        # Cardano's formulas for 4x³ − g₂x − g₃: trigonometric for three real roots, else by a cube
+        # root. The root of the largest size comes first, so that no sum cancels.
         sign, size, square = (-1 if g3 < 0 else 1), arb(abs(g3)), arb(g2) / 12
-        apart = arb(abs(delta)).sqrt()
-        part = apart / arb(27).sqrt()
+        discriminant_root = arb(abs(delta)).sqrt()
+        part = discriminant_root / arb(27).sqrt()
         if delta > 0:
             r = 2 * sign * square.sqrt() * (arb.atan2(part, size) / 3).cos()
         else:
             u = ((size + part) / 8).root(3)
             r = sign * (u + square / u)
         # The two others differ by √Δ / (4 (3r² − g₂/4)), without loss where that is little.
-        half = apart / (24 * (r * r - square))
+        half = discriminant_root / (24 * (r * r - square))
         if delta < 0:
             return cls(r, acb(-r / 2, half))
         above, below = -r / 2 + half, -r / 2 - half
@@ -94,24 +101,27 @@ class Weierstrass:
 
     @property
     def values(self) -> Callable[[Real], tuple[arb, arb]]:
-        """t ↦ ℘(t) and ℘'(t) for real t, where no two roots are the same."""
+        """The function t ↦ ℘(t) and ℘'(t) for real t, where no two roots are the same."""
         e1, others = self.first, self.others
         if isinstance(others, acb):
             size = abs(e1 - others)
             functions = jacobi(fmpq(1, 2) - 3 * e1 / (4 * size))
             return partial(_by_a_pair, e1, size, size.sqrt(), functions)
         e2, e3 = others
-        apart = e1 - e3
-        return partial(_by_three, e3, arb(apart).sqrt(), jacobi((e2 - e3) / apart))
+        difference = e1 - e3
+        return partial(_by_three, e3, arb(difference).sqrt(), jacobi((e2 - e3) / difference))
 
     def half_period(self) -> arb:
-        """Half of the real period, which is infinite where e₁ = e₂."""
+        """Return half of the real period, which is infinite where e₁ = e₂."""
         return carlson(arb(0), *(self.first - e for e in self._others()))
 
     def inverse(self, value: Real, side: int) -> arb:
-        """The least t > 0 with ℘(t) = value ≥ e₁, where ℘'(t) has that sign; 0 where it is 0."""
+        """Return the least t > 0 with ℘(t) = value ≥ e₁, where ℘'(t) has that sign; 0 where it is
+        0."""
         if side == 0:
             return self.half_period()
+        # t = ∫ dx/√(4(x − e₁)(x − e₂)(x − e₃)) from value to ∞ is R_F of the differences (DLMF
+        # 19.25.35).
         t = carlson(value - self.first, *(value - e for e in self._others()))
         return t if side < 0 else 2 * self.half_period() - t
 
@@ -121,33 +131,34 @@ class Weierstrass:
 
 
 def _by_three(e3: Real, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
-    """℘ and ℘' by roots that are all real; k² = e₁ − e₃."""
+    """Return ℘ and ℘' by three real roots; k² = e₁ − e₃."""
     sn, cn, dn = functions(k * t)
     pole = k / sn
     return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
 
 
 def _by_a_pair(e1: Real, size: arb, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
-    """℘ and ℘' by a real root and two that are conjugate; k² = `size` = |e₁ − e₂|."""
+    """Return ℘ and ℘' by a real root and a conjugate pair; k² = `size` = |e₁ − e₂|."""
     sn, cn, dn = functions(2 * k * t)
     less = 1 - cn
     return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
 
 
 def double_root(g2: fmpq, g3: fmpq) -> fmpq:
-    """The root that there is twice, where Δ = 0."""
+    """Return the double root, where Δ = 0."""
     return -3 * g3 / (2 * g2) if g2 else fmpq(0)
 
 
 def carlson(x: Real, y: Real | acb, z: Real | acb) -> arb:
-    """R_F of numbers ≥ 0, or of one and a conjugate pair; not finite where that is not certain."""
+    """Return R_F of numbers ≥ 0, or of one and a conjugate pair; not finite where that is not
+    certain."""
     if not x >= 0:
         return NOT_KNOWN
     return acb.elliptic_rf(*(v if isinstance(v, acb) else acb(v) for v in (x, y, z))).real
 
 
 def waves(square: Real, t: Real) -> tuple[arb, arb]:
-    """cosh κt and sinh(κt)/κ for real κ² of any sign; an exact 0 is known as such."""
+    """Return cosh κt and sinh(κt)/κ for real κ² of any sign; an exact 0 is recognised."""
     if square == 0:
         return arb(1), arb(t)
     if square > 0:

@@ -18,7 +18,7 @@ Ball = flint.arb
 def forced_oscillator(
     values: Mapping[str, Fraction], start: tuple[Fraction, Fraction, Fraction], time: Fraction
 ) -> tuple[Ball, Ball]:
-    """p and q after `time` from `start`, which is p, q, t; within the precision that is set.
+    """Return p and q at `time` after `start`, which is p, q, t; in flint's current precision.
 
     `values`: omega0, gamma and omega, as `forced-oscillator` has them.
     """
@@ -30,12 +30,15 @@ def forced_oscillator(
         c = g / (w**2 - drive**2)
         extra_q, extra_p = c * (drive * t).cos(), -c * drive * (drive * t).sin()
         first_q, first_p = c * (drive * t0).cos(), -c * drive * (drive * t0).sin()
+    # Resonance at frequency 0: a constant force on a free particle.
     elif values["omega0"] == 0:
         extra_q, extra_p, first_q, first_p = g * s**2 / 2, g * s, Ball(0), Ball(0)
     else:
+        # Resonance: the amplitude of the particular solution grows linearly in s.
         by = g / (2 * w)
         extra_q, extra_p = by * s * (w * t).sin(), by * ((w * t).sin() + w * s * (w * t).cos())
         first_q, first_p = Ball(0), by * (w * t0).sin()
+    # The initial values without the particular solution's move freely; both are added at the end.
     free_q, free_p = q - first_q, p - first_p
     cosine, sine = (w * s).cos(), (w * s).sin()
     over = sine / w if values["omega0"] else s

@@ -1,7 +1,7 @@
 """A Hamiltonian H(p, q), or H(p, q, t), with exact parameters.
 
-In n degrees of freedom its coordinates are p1 … pn and q1 … qn. What is derived along its flow is
-in `verify.hamiltonians.canonical_field`.
+In n degrees of freedom its coordinates are p1 … pn and q1 … qn. Derivatives along its flow are in
+`verify.hamiltonians.canonical_field`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from verify.algebra.embedding import MAX_TERMS, embed
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.expressions.monomials import names_in, reads_back
 from verify.algebra.formula import MAX_DEPTH, MAX_LENGTH, parameter_name, parse, read, symbol
-from verify.algebra.requirement import of_expression
+from verify.algebra.requirement import requirements_of_expression
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.ring_record import recorded
+from verify.algebra.ring_record import ring_from_record
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
@@ -32,39 +32,42 @@ from verify.structures import AREA, SYMPLECTIC, Structure
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
 @lru_cache(maxsize=64)
-def _of_formula(formula: str) -> Hamiltonian:
-    """H as it is read from its own text: tasks, kept results and certificates hold that.
+def _parse_formula(formula: str) -> Hamiltonian:
+    """Return H as it is read from its own text, which tasks, stored results and certificates hold.
 
-    It can be much longer than the formula, and sympy multiplies a number into a sum one level
-    deeper each time that it is read.
+    That text can be much longer than the formula, and sympy multiplies a number into a sum one
+    level deeper each time that it is read.
     """
-    found, required = read(formula, source="hamiltonian")
+    expression, requirements = read(formula, source="hamiltonian")
+    # The loop goes on to a fixed point: the text of the expression must be read as that expression.
     for _ in range(MAX_DEPTH):
-        same = reads_back(found, MAX_LENGTH)
-        again = found if same else parse(to_text(found), source="hamiltonian, written out")
-        if again == found:
-            made = Hamiltonian(found)
-            written = Domain.of(required) if required else EVERYWHERE
-            known = made.domain & written == made.domain
-            return made if known else replace(made, written=written)
-        found = again
+        same = reads_back(expression, MAX_LENGTH)
+        again = (
+            expression if same else parse(to_text(expression), source="hamiltonian, written out")
+        )
+        if again == expression:
+            hamiltonian = Hamiltonian(expression)
+            text_domain = Domain.from_requirements(requirements) if requirements else EVERYWHERE
+            is_implied = hamiltonian.domain & text_domain == hamiltonian.domain
+            return hamiltonian if is_implied else replace(hamiltonian, text_domain=text_domain)
+        expression = again
     raise InputError("hamiltonian", formula, "is read otherwise each time that it is written out")
 
 
 @lru_cache(maxsize=64)
-def _with_values(made: Hamiltonian, values: tuple[tuple[str, Fraction], ...]) -> Hamiltonian:
-    result = replace(made, values=values)
+def _with_values(hamiltonian: Hamiltonian, values: tuple[tuple[str, Fraction], ...]) -> Hamiltonian:
+    result = replace(hamiltonian, values=values)
     result.domain  # noqa: B018 - refuses values for which H is not defined
     return result
 
 
 class _ReadAgain:
-    """The expression of an H that was kept, read when it is first asked for."""
+    """The expression of an H that was restored from a record, parsed when it is first used."""
 
-    def __get__(self, kept: Hamiltonian | None, _: type) -> sympy.Expr:
-        if kept is None:
+    def __get__(self, owner: Hamiltonian | None, _: type) -> sympy.Expr:
+        if owner is None:
             raise AttributeError  # the field has no default
-        expression = vars(kept)["expression"] = parse(kept.formula, source="hamiltonian")
+        expression = vars(owner)["expression"] = parse(owner.formula, source="hamiltonian")
         return expression
 
 
@@ -75,36 +78,37 @@ class Hamiltonian:
     one.
 
     A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
-    `exact` has the values put in. `written`: what the text it was read from asks for, where that
-    is more than the expression does: √q·√q is q.
+    `exact` has the values put in. `text_domain`: the domain of the text it was read from, where
+    that is smaller than the expression's: √q·√q is q.
     """
 
     expression: sympy.Expr = _ReadAgain()
     values: tuple[tuple[str, Fraction], ...] = ()
-    written: Domain = EVERYWHERE
+    text_domain: Domain = EVERYWHERE
     _record: Mapping[str, Any] | None = field(default=None, init=False, repr=False)
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> Hamiltonian:
-        """As it was kept (see `verify.hamiltonians.kept`); its expression is read again only by who
-        asks for it."""
-        made = cls.__new__(cls)
-        vars(made).update(
+        """Return H from its record (see `verify.hamiltonians.kept`); its expression is parsed only
+        when it is used."""
+        hamiltonian = cls.__new__(cls)
+        vars(hamiltonian).update(
             formula=record["formula"],
             values=tuple((name, Fraction(value)) for name, value in record["values"]),
             parameters=tuple(record["parameters"]),
             coordinates=tuple(record["coordinates"]),
             time_dependent=record["time_dependent"],
-            written=EVERYWHERE,
+            text_domain=EVERYWHERE,
             domain=EVERYWHERE,
             _record=record,
         )
-        return made
+        return hamiltonian
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Hamiltonian):
             return NotImplemented
-        if (self.values, self.written) != (other.values, other.written):
+        # Formulas determine expressions: two records are compared without importing sympy.
+        if (self.values, self.text_domain) != (other.values, other.text_domain):
             return False
         if self._record and other._record:
             return self.formula == other.formula
@@ -114,61 +118,63 @@ class Hamiltonian:
         return hash((self.parameters, self.coordinates, self.values))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Hamiltonian, (self.expression, self.values, self.written)
+        return Hamiltonian, (self.expression, self.values, self.text_domain)
 
     @classmethod
     def parse(
         cls, formula: str, parameters: Mapping[str, Exact | None] | None = None
     ) -> Hamiltonian:
-        """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
+        """Return H from a formula (see `verify.algebra.formula`) and parameter values; None leaves
+        a symbol.
 
         Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
         name that is likely meant for a p or q that is missing.
         """
         if not isinstance(formula, str):  # the parser says so
             parse(formula, source="hamiltonian")
-        made = _of_formula(formula)
+        hamiltonian = _parse_formula(formula)
         if parameters is not None and not isinstance(parameters, Mapping):
             raise InputError("parameters", parameters, "is not a mapping of names to values")
-        result = made.with_values(parameters or {})
-        check_coordinates(formula, made.expression, result.symbols)
+        result = hamiltonian.with_values(parameters or {})
+        check_coordinates(formula, hamiltonian.expression, result.symbols)
         return result
 
     def with_values(self, parameters: Mapping[str, Exact | None]) -> Hamiltonian:
-        """The same H with these parameter values instead of its present ones."""
-        given = {}
+        """Return the same H with these parameter values instead of its present ones."""
+        numbers = {}
         for name, value in parameters.items():
             if parameter_name(name) not in self.parameters:
-                known = ", ".join(self.parameters) or "none"
-                raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
+                names = ", ".join(self.parameters) or "none"
+                raise InputError("parameter", name, f"H has no such parameter; it has: {names}")
             if value is not None:
-                given[name] = rational(value, f"parameter {name}")
-        if not given and not self.values:
+                numbers[name] = rational(value, f"parameter {name}")
+        if not numbers and not self.values:
             return self
-        return _with_values(self, tuple(sorted(given.items())))
+        return _with_values(self, tuple(sorted(numbers.items())))
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
-        """All parameter names, with or without a value."""
+        """The names of all parameters, with or without a value."""
         return tuple(sorted(names_in(self.expression) - {*self.coordinates, "t"}))
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
-        """p and q; or p1 … pn, q1 … qn where it has such."""
+        """The coordinates p and q; or p1 … pn, q1 … qn where it has such."""
         return coordinates_of(names_in(self.expression))
 
     @property
     def planar(self) -> bool:
-        """Whether its coordinates are p and q."""
+        """True if its coordinates are p and q."""
         return self.coordinates == PLANE
 
     @property
     def structure(self) -> Structure:
-        """What a canonical step of it keeps."""
+        """The structure that a canonical step of it keeps."""
         return AREA if self.planar else SYMPLECTIC
 
     def check_planar(self) -> None:
-        """InputError where its coordinates are not p and q, for what is of the plane."""
+        """Raise InputError where its coordinates are not p and q, for calls that work in the plane
+        alone."""
         if not self.planar:
             names = ", ".join(self.coordinates)
             problem = f"is of {names}; what is asked for takes p and q, one degree of freedom"
@@ -176,48 +182,52 @@ class Hamiltonian:
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
+        """The number of degrees of freedom."""
         return len(self.coordinates) // 2
 
     def halves(self, z: Sequence[Any]) -> tuple[Any, Any]:  # Any: one of z's, or several
-        """p and q of a point: one each in the plane, in n degrees of freedom n each, as z is."""
+        """Return p and q of a point: one each in the plane, in n degrees of freedom n each, as z
+        is."""
         return (z[0], z[1]) if self.planar else (z[: self.degrees], z[self.degrees :])
 
     @cached_property
     def time_dependent(self) -> bool:
-        """Whether t is in H, with the parameters' values put in."""
+        """True if t is in H, with the parameters' values put in."""
         return "t" in names_in(self.exact)
 
     @property
     def symbols(self) -> tuple[str, ...]:
         """The names of the parameters without a value."""
-        given = dict(self.values)
-        return tuple(name for name in self.parameters if name not in given)
+        values = dict(self.values)
+        return tuple(name for name in self.parameters if name not in values)
 
     @cached_property
     def exact(self) -> sympy.Expr:
-        """H with the values put in; InputError where it is not defined for them."""
-        return self.put_in(self.expression)
+        """The expression with the values put in; InputError where it is not defined for them."""
+        return self.substitute_values(self.expression)
 
     @cached_property
     def domain(self) -> Domain:
-        """Where `exact` is smooth, and what was written is defined."""
-        return Domain.of(of_expression(self.exact, smooth=True)) & self.written.replaced(self.put)
+        """The conditions under which `exact` is smooth, and the text it was read from is
+        defined."""
+        return Domain.from_requirements(
+            requirements_of_expression(self.exact, smooth=True)
+        ) & self.text_domain.substitute(self.value_substitutions)
 
     @property
     def domain_moves(self) -> bool:
-        """Whether `domain` speaks of coordinates or of t, so that a step may lead out of it."""
+        """True if `domain` speaks of coordinates or of t, so that a step may lead out of it."""
         return bool(self.domain.names & {*self.coordinates, "t"})
 
     @property
-    def put(self) -> dict[sympy.Symbol, sympy.Rational]:
+    def value_substitutions(self) -> dict[sympy.Symbol, sympy.Rational]:
         """The parameters' values by their symbols."""
         return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
 
-    def put_in(self, expression: sympy.Expr) -> sympy.Expr:
-        """Any expression with H's parameter values put in, under the parser's limits."""
-        shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
-        return substitute(expression, self.put, shown)
+    def substitute_values(self, expression: sympy.Expr) -> sympy.Expr:
+        """Return any expression with H's parameter values put in, under the parser's limits."""
+        values_text = ", ".join(f"{n}={text(v)}" for n, v in self.values)
+        return substitute(expression, self.value_substitutions, values_text)
 
     @cached_property
     def formula(self) -> str:
@@ -229,7 +239,7 @@ class Hamiltonian:
         return f"Hamiltonian({cut(self.formula)}{''.join(values)})"
 
     def _repr_latex_(self) -> str:
-        """H with its parameters as symbols, and the values of those that have one."""
+        """Return H with its parameters as symbols, and the values of those that have one."""
         lines = [f"H &= {short_latex(sympy.latex(self.expression))}"]
         for name, value in self.values:
             lines.append(f"{sympy.latex(symbol(name))} &= {sympy.latex(sympy.Rational(value))}")
@@ -237,15 +247,15 @@ class Hamiltonian:
 
     @property
     def texts(self) -> dict[str, Any]:  # Any: arguments of models, which check them
-        """Its formula and parameter values as text, by the names that results give them."""
+        """The formula and parameter values as text, by the names that results give them."""
         return {
             "hamiltonian": self.formula,
             "parameters": {name: text(value) for name, value in self.values},
         }
 
     def gradient(self) -> Callable[..., tuple[Any, Any]]:  # Any: floats, or lists of them
-        """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own; (p, q, t) ↦ where
-        H depends on time.
+        """Return (p, q) ↦ (H_p, H_q) in Python floats, for a user's step function; (p, q, t) ↦
+        (H_p, H_q) where H depends on time.
 
         In n degrees of freedom p, q, H_p and H_q are sequences of n floats; those that come back
         are lists.
@@ -256,15 +266,17 @@ class Hamiltonian:
         """
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
-        at = [symbol(name) for name in self.coordinates]
-        given, wanted = map(self.halves, (at, [self.exact.diff(x) for x in at]))
+        coordinates = [symbol(name) for name in self.coordinates]
+        arguments, derivatives = map(
+            self.halves, (coordinates, [self.exact.diff(x) for x in coordinates])
+        )
         time = (symbol("t"),) if self.time_dependent else ()
-        made: Callable[..., tuple[Any, Any]]
-        made = sympy.lambdify((*given, *time), wanted, modules="math", cse=True)
-        return made
+        function: Callable[..., tuple[Any, Any]]
+        function = sympy.lambdify((*arguments, *time), derivatives, modules="math", cse=True)
+        return function
 
     def with_symbols(self) -> Hamiltonian:
-        """H with its parameters as symbols, but for those of value 0, whose terms vanish.
+        """Return H with its parameters as symbols, except those of value 0, whose terms vanish.
 
         This is what a kernel is compiled for: the other values are its run-time arguments.
         """
@@ -276,21 +288,24 @@ class Hamiltonian:
             return self
         if self._record and self._record["generic"]:
             return Hamiltonian.from_record(self._record["generic"])
+        # A kernel for a value of 0 is faster, as whole terms vanish; other values share one kernel.
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
-    def embedded(
+    def embed_in_ring(
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple[Ring, Poly, list[Poly]]:
-        """A ring with the coordinates, h, t where H has it and the parameters; `exact` as its
-        element, and other expressions, each symbol of which is a variable too.
+        """Return a ring with the coordinates, h, t where H has it and the parameters; `exact` as
+        its element, and other expressions, each symbol of which is a variable too.
 
         Raises InputError where one has more than `most_terms` terms, or is not defined.
         """
         if self._record and not others and most_terms == MAX_TERMS:
-            return *recorded(self._record["ring"]), []
+            return *ring_from_record(self._record["ring"]), []
         time = ("t",) if self.time_dependent else ()
         variables = (*self.coordinates, "h", *time, *self.symbols)
+        # Symbols of the other expressions that H does not have become variables of the ring as
+        # well.
         symbols = {x.name for other in others for x in other.free_symbols}
         variables = (*variables, *sorted(symbols.difference(variables)))
         ring, (energy, *elements) = embed([self.exact, *others], variables, most_terms)

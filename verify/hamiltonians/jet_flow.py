@@ -6,28 +6,29 @@ from functools import cached_property, lru_cache
 from verify.algebra.ring import Poly
 from verify.algebra.series.jets import Jets, JetsInDegrees
 from verify.hamiltonians.canonical_field import Flow
-from verify.hamiltonians.coordinates import numbered
+from verify.hamiltonians.coordinates import numbered_names
 
 
 class JetFlow(Flow):
-    """f = (−∂H/∂q, ∂H/∂p) in these jets."""
+    """The flow of f = (−∂H/∂q, ∂H/∂p) in these jets."""
 
     def __init__(self, jets: JetsInDegrees) -> None:
         self._jets = jets
         self.names = tuple(name for name in jets.variables if name != "t")
 
     @classmethod
-    def of_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> "JetFlow":
-        """In so many degrees of freedom, with derivatives of H up to this order."""
+    def with_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> "JetFlow":
+        """Return the flow for that number of degrees of freedom, with derivatives of H up to this
+        order."""
         if degrees == 1:
-            return cls.over(Jets(order, separable=separable and not timed, timed=timed))
-        names = numbered(degrees)
-        return cls.over(JetsInDegrees(names, order, separable=separable, timed=timed))
+            return cls.from_jets(Jets(order, separable=separable and not timed, timed=timed))
+        names = numbered_names(degrees)
+        return cls.from_jets(JetsInDegrees(names, order, separable=separable, timed=timed))
 
     @classmethod
     @lru_cache(maxsize=4)
-    def over(cls, jets: JetsInDegrees) -> "JetFlow":
-        """In these jets; what is derived along it is kept for who asks again."""
+    def from_jets(cls, jets: JetsInDegrees) -> "JetFlow":
+        """Return the flow in these jets; the last ones are cached with their derivatives."""
         return cls(jets)
 
     @property
@@ -37,11 +38,11 @@ class JetFlow(Flow):
 
     @cached_property
     def slopes(self) -> tuple[Poly, ...]:
-        """−∂H/∂q and ∂H/∂p."""
+        """The components −∂H/∂q and ∂H/∂p."""
         n, first = self.degrees, self._jets.first
         return (*(-first(q) for q in self.names[n:]), *map(first, self.names[:n]))
 
     @property
     def at_rest(self) -> Mapping[str | int, int]:
-        """The values that make f vanish."""
+        """The values of jets that make f vanish."""
         return {f"H_{name}": 0 for name in self.names}

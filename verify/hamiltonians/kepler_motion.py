@@ -2,10 +2,10 @@
 
 With a = −μ/(2H), n = √(μ/a³), x the change of the eccentric anomaly in the time t, r₀ = |q₀|:
 
-    n t = x − C sin x + S (1 − cos x),   C = 1 − r₀/a,   S = q₀·p₀/√(μ a),   C² + S² = e²
+n t = x − C sin x + S (1 − cos x), C = 1 − r₀/a, S = q₀·p₀/√(μ a), C² + S² = e²
 
 (Danby, Fundamentals of Celestial Mechanics, 6.7–6.8). The right side has a slope of 1 − e at least,
-so that a number near its root with the residue F is within |F|/(1 − e) of it.
+so that a number near its root with the residual F is within |F|/(1 − e) of it.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,8 @@ _MOST = 200  # Newton steps
 
 
 def is_ellipse(mu: Fraction, q: Planar, p: Planar) -> bool:
-    """Whether the orbit from there is bound, and does not run into the centre."""
+    """Return True if the orbit from there is bound, and does not run into the centre."""
+    # Without angular momentum the orbit is a line through the centre.
     turn = q[0] * p[1] - q[1] * p[0]
     if mu <= 0 or not turn or not any(q):
         return False
@@ -30,7 +31,7 @@ def is_ellipse(mu: Fraction, q: Planar, p: Planar) -> bool:
 
 
 def after(mu: Fraction, q: Planar, p: Planar, time: Fraction) -> Sequence[arb]:
-    """p1, p2, q1, q2 at that time, of an ellipse, within flint's precision."""
+    """Return p1, p2, q1, q2 at that time, of an ellipse, within flint's precision."""
     (q1, q2), (p1, p2) = (tuple(map(rational_ball, x)) for x in (q, p))
     strength, t = rational_ball(mu), rational_ball(time)
     r0 = rational_ball(q[0] * q[0] + q[1] * q[1]).sqrt()
@@ -42,6 +43,7 @@ def after(mu: Fraction, q: Planar, p: Planar, time: Fraction) -> Sequence[arb]:
     x = _anomaly(rate * t, c, s, (c * c + s * s).sqrt())
     sin, cos = x.sin(), x.cos()
     r = a * (1 - c * cos + s * sin)
+    # Gauss's f and g series: q(t) = f q₀ + g p₀ and p(t) = f' q₀ + g' p₀.
     f = 1 - a / r0 * (1 - cos)
     g = t + (sin - x) / rate
     f_dot = -(strength * a).sqrt() / (r * r0) * sin
@@ -50,21 +52,22 @@ def after(mu: Fraction, q: Planar, p: Planar, time: Fraction) -> Sequence[arb]:
 
 
 def _anomaly(mean: arb, c: arb, s: arb, e: arb) -> arb:
-    """The root x of x − C sin x + S (1 − cos x) = mean; not finite where e may be 1."""
+    """Return the root x of x − C sin x + S (1 − cos x) = mean; not finite where e may be 1."""
 
-    def residue(x: arb) -> arb:
+    def residual_at(x: arb) -> arb:
         return x - c * x.sin() + s * (1 - x.cos()) - mean
 
     x, low, high = mean.mid(), (mean - 2).lower().mid(), (mean + 2).upper().mid()
     for _ in range(_MOST):  # Newton's method, held between the ends of where the root is
-        at = residue(x)
-        if at > 0:
+        residual = residual_at(x)
+        if residual > 0:
             high = x
-        elif at < 0:
+        elif residual < 0:
             low = x
         else:
             break
-        after_ = (x - at / (1 - c * x.cos() + s * x.sin())).mid()
+        after_ = (x - residual / (1 - c * x.cos() + s * x.sin())).mid()
         x = after_ if low < after_ < high else ((low + high) / 2).mid()
-    distance = abs(residue(x)) / (1 - e)
+    # The mean value theorem with the least slope 1 − e encloses the root, whatever Newton reached.
+    distance = abs(residual_at(x)) / (1 - e)
     return x + distance * arb(0, 1) if 1 - e > 0 else arb.nan()

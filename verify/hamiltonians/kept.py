@@ -1,12 +1,12 @@
-"""What was read of a Hamiltonian, kept on disk for the commands to come.
+"""Hamiltonians that were parsed, stored on disk for later commands.
 
-A run asks H for its text, its names, where it is smooth, and its element of a ring. To make that of
-a formula takes sympy, whose import is half of what a short command does. So what was made is kept
-beside the kernels (`verify.code_cache`), and the formula is read again only by who asks for its
-expression.
+A run needs the text of H, its names, the domain where it is smooth, and its element of a ring. To
+make these from a formula takes sympy, whose import is half of the time of a short command. So they
+are stored with the kernels (`verify.code_cache`), and the formula is parsed again only where its
+expression is used.
 
-Kept is an H that is smooth everywhere: under a name made of what it was read from, the values of
-its parameters, and the code and libraries that read it.
+Only an H that is smooth everywhere is stored: under a name made of the text it was read from, the
+values of its parameters, and the code and libraries that read it.
 """
 
 from __future__ import annotations
@@ -38,37 +38,38 @@ _CODE = (
 _LIBRARIES = ("sympy", "python-flint")
 
 
-def kept_or_read(
+def load_or_read(
     source: str, values: Mapping[str, str], read: Callable[[Mapping[str, str]], Hamiltonian]
 ) -> Hamiltonian:
-    """The H of that formula, or system, with these values: as it was kept, else as it is `read`,
-    and kept from then on where that can be done."""
+    """Return the H of that formula, or system, with these values: from the store, else as it is
+    `read`, and stored from then on where possible."""
     if code_cache.folder() is None or not _readers():
         return read(values)
-    given = json.dumps(sorted(values.items()))
-    key = code_cache.key_of(_FORMAT, _readers(), source, given)
-    known = code_cache.load(key)
-    if known is not None:
-        return Hamiltonian.from_record(json.loads(known))
-    found = read(values)
-    record = _record_of(found)
+    values_text = json.dumps(sorted(values.items()))
+    # The key has the code that reads formulas in it: a new version never uses an old record.
+    key = code_cache.key_of(_FORMAT, _readers(), source, values_text)
+    record_text = code_cache.load(key)
+    if record_text is not None:
+        return Hamiltonian.from_record(json.loads(record_text))
+    hamiltonian = read(values)
+    record = _record_of(hamiltonian)
     if record is not None:
-        written = json.dumps(record, separators=(",", ":")).encode()
-        if len(written) <= _MOST_BYTES:
-            code_cache.keep(key, written)
-    return found
+        encoded = json.dumps(record, separators=(",", ":")).encode()
+        if len(encoded) <= _MOST_BYTES:
+            code_cache.keep(key, encoded)
+    return hamiltonian
 
 
 def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
-    """What is kept of it; None where nothing is."""
-    if hamiltonian.domain or hamiltonian.written:
+    """Return the record of a Hamiltonian; None where it is not stored."""
+    if hamiltonian.domain or hamiltonian.text_domain:
         return None
     if parse(hamiltonian.formula) != hamiltonian.expression:  # with zeros put in it may be so
         return None
     try:
         # Anew, without what schemes have added to the ring that is shared.
-        ring, energy, _ = hamiltonian.embedded(most_terms=_MOST_TERMS)
-    except InputError:  # too large, or refused where it is asked for
+        ring, energy, _ = hamiltonian.embed_in_ring(most_terms=_MOST_TERMS)
+    except InputError:  # too large, or not defined: refused later, where it is used
         return None
     return {
         "formula": hamiltonian.formula,
@@ -83,7 +84,8 @@ def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
 
 @cache
 def _readers() -> str:
-    """A name for all that reads a formula; empty where the code is not there to look at."""
+    """Return a digest of all code that reads a formula; empty where the source files are not
+    available."""
     house = Path(__file__).parents[1]
     files = {str(x.relative_to(house)): x for pattern in _CODE for x in house.glob(pattern)}
     return digest_of(files, " ".join(map(version, _LIBRARIES))) if files else ""

@@ -1,4 +1,4 @@
-"""Which named system, or polynomial potential, a Hamiltonian is, whoever wrote it down.
+"""Recognition of a named system, or a polynomial potential, in any Hamiltonian.
 
 A constant added to H does not change its flow, so it is left out on both sides. A named system's
 parameters are read off by sympy's matching of a short sum, and a match counts only where algebra
@@ -16,7 +16,7 @@ from flint import fmpq
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import P, Q
-from verify.effort import unless_long
+from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians import potential_motion
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -36,18 +36,18 @@ class Named:
 
 
 def closed_form(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> Motion | None:
-    """The motion from (p, q) in closed form; None where none is known."""
+    """Return the motion from (p, q) in closed form; None where none is known."""
     return motions(hamiltonian)(p, q)
 
 
 def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion | None]:
-    """`closed_form` of this Hamiltonian, for many points."""
+    """Return `closed_form` of this Hamiltonian, for many points."""
     if hamiltonian.symbols or hamiltonian.time_dependent:
         return lambda p, q: None
-    found = potential(hamiltonian)
-    if found is not None:
-        return potential_motion.motions(*found)
-    flows = [(match.system.flow, match.values) for match in named(hamiltonian)]
+    coefficients = potential(hamiltonian)
+    if coefficients is not None:
+        return potential_motion.motions(*coefficients)
+    flows = [(match.system.flow, match.values) for match in named_systems(hamiltonian)]
 
     def motion(p: Fraction, q: Fraction) -> Motion | None:
         ways = (flow(values, p, q) for flow, values in flows if flow)
@@ -58,10 +58,11 @@ def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion |
 
 @lru_cache(maxsize=64)
 def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
-    """α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
+    """Return α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
     terms = _terms(hamiltonian.exact)
     if terms is None or not terms.is_polynomial(P, Q):
         return None
+    # Only α p²/2 and powers of q up to 4 are accepted: ℘ solves no others.
     kinetic, coefficients = fmpq(0), [fmpq(0)] * 5
     for (i, j), c in sympy.Poly(terms, P, Q).terms():
         if not c.is_Rational or (i and (i, j) != (2, 0)) or j > 4:
@@ -75,17 +76,17 @@ def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
 
 
 @lru_cache(maxsize=64)
-def named(hamiltonian: Hamiltonian) -> tuple[Named, ...]:
-    """The named systems that this Hamiltonian is, with their parameters' values."""
+def named_systems(hamiltonian: Hamiltonian) -> tuple[Named, ...]:
+    """Return the named systems that this Hamiltonian is, with their parameters' values."""
     return () if hamiltonian.time_dependent else tuple(_matches(hamiltonian))
 
 
 def state_in_time(
     hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction, Fraction], time: Fraction
 ) -> Callable[[], State] | None:
-    """p and q after `time` from `start`, p, q, t, within the precision that is set.
+    """Return p and q after `time` from `start`, p, q, t, within flint's current precision.
 
-    Where H(p, q, t) is a named system, as it is written there, whose flow is known; else None.
+    None unless H(p, q, t) is a named system, as it is written there, whose flow is known.
     """
     for system in all_systems().values():
         flow = system.flow_in_time
@@ -100,26 +101,26 @@ def _matches(hamiltonian: Hamiltonian) -> Iterator[Named]:
     for system in all_systems().values():
         if system.time_dependent:
             continue
-        own = system.hamiltonian().expression
-        if (own - hamiltonian.expression).is_number:
+        formula = system.hamiltonian().expression
+        if (formula - hamiltonian.expression).is_number:
             yield Named(system, dict(hamiltonian.values))
             continue
-        values = None if terms is None else _values(terms, own, tuple(system.parameters))
+        values = None if terms is None else _values(terms, formula, tuple(system.parameters))
         if values is not None and _same_field(system, values, exact):
             yield Named(system, values)
 
 
 def _terms(exact: sympy.Expr) -> sympy.Expr | None:
-    """H written out as a sum; None where that is long."""
+    """Return H written out as a sum; None where that is long."""
     ring, (element,) = embed([exact], ("p", "q"))
     return ring.expression(element) if len(element) <= _MOST_TERMS else None
 
 
-def _values(terms: sympy.Expr, own: sympy.Expr, names: tuple[str, ...]) -> Values | None:
-    """The parameters with which the system may be this sum."""
+def _values(terms: sympy.Expr, formula: sympy.Expr, names: tuple[str, ...]) -> Values | None:
+    """Return the parameters with which the system may be this sum."""
     wild = {symbol(name): sympy.Wild(name, exclude=[P, Q]) for name in names}
-    pattern = _without_constant(sympy.expand(own)).subs(wild)
-    match = unless_long(lambda: _without_constant(terms).match(pattern), None)
+    pattern = _without_constant(sympy.expand(formula)).subs(wild)
+    match = answer_unless_long(lambda: _without_constant(terms).match(pattern), None)
     if match is None or not all(x.is_Rational for x in match.values()):
         return None
     return {x.name: Fraction(int(value.p), int(value.q)) for x, value in match.items()}
@@ -133,8 +134,10 @@ def _same_field(system: System, values: Values, exact: sympy.Expr) -> bool:
     if set(values) != set(system.parameters):
         return False
     try:
-        own = system.hamiltonian(values)
+        candidate = system.hamiltonian(values)
     except InputError:
         return False
-    ring, (apart,) = embed([own.exact - exact], ("p", "q"))
-    return all(ring.decide(ring.diff(apart, name)).zero is True for name in ("p", "q"))
+    # sympy's match is only a guess; the ring decides that both derivatives of the difference
+    # vanish.
+    ring, (difference,) = embed([candidate.exact - exact], ("p", "q"))
+    return all(ring.decide(ring.diff(difference, name)).zero is True for name in ("p", "q"))

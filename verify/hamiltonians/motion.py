@@ -1,4 +1,4 @@
-"""The exact solution through one initial value in closed form: what a named system knows of it."""
+"""The exact solution through one initial value in closed form, as a named system provides it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,10 +15,10 @@ class Motion:
     """t ↦ (p, q) through one initial value, in closed form and in balls.
 
     `state(t)`, t ≠ 0, and `blow_up(sign)` hold the true values, or are not finite, where flint's
-    precision does not tell: who asks raises it. `blow_up`: |t| where the solution ends, forwards
-    (1) or backwards (−1) in time, None where it does not; itself None where no such solution does.
-    `goes()`: how it goes to infinity as t grows, where it does so without an end; None where it
-    stays bounded or blows up. `rest`: it stays where it is.
+    precision does not suffice: the caller then raises it. `blow_up`: |t| where the solution ends,
+    forwards (1) or backwards (−1) in time, None where it does not; itself None where no such
+    solution does. `goes()`: how it goes to infinity as t grows, where it does so without an end;
+    None where it stays bounded or blows up. `rest`: it stays at its start.
     """
 
     state: Callable[[arb], State]
@@ -29,7 +29,7 @@ class Motion:
 
 
 def at_rest(p: Fraction, q: Fraction) -> Motion:
-    """The motion that stays at an equilibrium."""
+    """Return the motion that stays at an equilibrium."""
     return Motion(lambda _: (arb(exactly(p)), arb(exactly(q))), "at rest", rest=True)
 
 
@@ -38,5 +38,5 @@ Flow = Callable[[Values, Fraction, Fraction], Motion | None]
 
 
 def exactly(x: Fraction) -> fmpq:
-    """flint's rational."""
+    """Return flint's rational."""
     return fmpq(x.numerator, x.denominator)

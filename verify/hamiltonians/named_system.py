@@ -1,4 +1,4 @@
-"""A named system: a Hamiltonian with its source, and what is known of its exact flow."""
+"""A named system: a Hamiltonian with its source, and its exact flow where that is known."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -17,14 +17,13 @@ Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 @dataclass(frozen=True)
 class System:
-    """`formula` is H(p, q), H(p, q, t), or H(p1, …, q1, …).
+    """A Hamiltonian with a name: `formula` is H(p, q), H(p, q, t), or H(p1, …, q1, …).
 
-    `parameters` explains each of its parameters.
-    `flow` is its exact flow in closed form, where that is known; of an H that depends on time,
-    `flow_in_time` gives p and q for (parameters, p, q and t at the start, how long). Without one,
-    `goes` may say of (parameters, p, q) how the orbit goes to infinity as t grows: None where it
-    stays bounded. `regimes` are examples of the kinds of orbits that it has; in several degrees of
-    freedom p and q are lists in them.
+    `parameters` explains each of its parameters. `flow` is its exact flow in closed form, where
+    that is known; of an H that depends on time, `flow_in_time` gives p and q for (parameters, p, q
+    and t at the start, how long). Without one, `goes` may say of (parameters, p, q) how the orbit
+    goes to infinity as t grows: None where it stays bounded. `regimes` are examples of the kinds of
+    orbits that it has; in several degrees of freedom p and q are lists in them.
 
     A `family` is a system for each number n of degrees of freedom from 2 on: it gives the formula
     for n, which is among the `parameters`, and `formula` is that where n is not given.
@@ -48,7 +47,7 @@ class System:
         return self.hamiltonian()._repr_latex_()
 
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
-        """H with these parameter values; parameters without one stay symbols.
+        """Return H with these parameter values; parameters without one stay symbols.
 
         Of a family n is no symbol of H: InputError where it is no whole number, 2 … 64.
         """
@@ -60,28 +59,30 @@ class System:
 
     @property
     def time_dependent(self) -> bool:
-        """Whether t is in H."""
+        """True if t is in H."""
         return self.hamiltonian().time_dependent
 
     @property
     def degrees(self) -> int:
-        """Of freedom; of a family, where n is not given."""
-        # By the text alone: whoever looks for the systems of the plane parses no others.
+        """The number of degrees of freedom; of a family, that of `formula`."""
+        # By the text alone, so that a search for systems of the plane parses no others.
         return len(coordinates_of(re.findall(r"[a-zA-Z]\w*", self.formula))) // 2
 
     @property
     def has_closed_form(self) -> bool:
-        """Whether its exact flow is known in closed form."""
+        """True if its exact flow is known in closed form."""
         return (self.flow or self.flow_in_time) is not None
 
     def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
-        """The parameters, p and q of an example."""
+        """Return the parameters, p and q of an example."""
+        # A regime has p and q of the start among its parameters.
         values = {key: rational(text, key) for key, text in self.regimes[name].items()}
         return values, values.pop("p"), values.pop("q")
 
 
-def _whole_number(given: Exact) -> int:
-    value = rational(given, "parameter n")
+def _whole_number(number: Exact) -> int:
+    """Return n of a family; InputError unless it is a whole number in its range."""
+    value = rational(number, "parameter n")
     if value.denominator != 1 or not 2 <= value <= MOST_DEGREES:
-        raise InputError("parameter n", given, f"must be a whole number, 2 … {MOST_DEGREES}")
+        raise InputError("parameter n", number, f"must be a whole number, 2 … {MOST_DEGREES}")
     return int(value)

@@ -1,4 +1,4 @@
-"""Periods of H(p, q, t), or of one in n degrees: in a variable, in t, and whether q is an angle."""
+"""Periods of H(p, q, t), in one or n degrees of freedom: in a variable, in t, and q as an angle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import lru_cache
 from verify.algebra.expressions.functions_used import waves_in
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
-from verify.effort import unless_long
+from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -17,8 +17,8 @@ from verify.late import sympy
 
 
 def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
-    """InputError where H at t + period differs from H at t, or may: what is not decided is not
-    taken for a period. H without t has every one.
+    """Raise InputError where H at t + period differs from H at t, or may: an undecided period is
+    not accepted. H without t has every period.
 
     >>> check_period(Hamiltonian.parse("p**2/2 + q**2*cos(2*pi*t)"), Fraction(1))
     """
@@ -26,13 +26,13 @@ def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
         return
     same = _is_same(hamiltonian, "t", sympy.Rational(period.numerator, period.denominator))
     if same is not True:
-        is_known = "is not known to be" if same is None else "is not"
-        problem = f"H {is_known} the same at t + {text(period)} as at t"
+        relation = "is not known to be" if same is None else "is not"
+        problem = f"H {relation} the same at t + {text(period)} as at t"
         raise InputError("period", text(period), problem)
 
 
 def is_angle(hamiltonian: Hamiltonian) -> bool:
-    """Whether q is known to be an angle: H at q + 2π is H at q.
+    """Return True if q is known to be an angle: H at q + 2π is H at q.
 
     >>> is_angle(Hamiltonian.parse("p**2/2 - cos(q)")), is_angle(Hamiltonian.parse("p**2 + q**2"))
     (True, False)
@@ -41,18 +41,21 @@ def is_angle(hamiltonian: Hamiltonian) -> bool:
 
 
 def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | None:
-    """Whether H is the same function with that added to q or t; None where it is not decided."""
+    """Return True if H is the same function with that added to q or t; None where it is not
+    decided."""
     x = symbol(name)
-    moved = unless_long(lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None)
-    if moved is None:
+    shifted = answer_unless_long(
+        lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None
+    )
+    if shifted is None:
         return None
-    field, (change,) = canonical_field(hamiltonian, moved - hamiltonian.exact)
+    field, (change,) = canonical_field(hamiltonian, shifted - hamiltonian.exact)
     return field.ring.decide(change).zero
 
 
 @lru_cache(maxsize=256)
 def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
-    """A period of H in p, q or t, shown by algebra: a rational number, or one times π.
+    """Return a period of H in p, q or t, shown by algebra: a rational number, or one times π.
 
     None where H is not known to have such a one. The parameters have their values.
 
@@ -67,6 +70,8 @@ def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     for unit in (sympy.S.One, sympy.pi):
         parts = [rate / unit for rate in rates]
         if parts and all(part.is_Rational for part in parts):
+            # With rates a_i/b_i the period is 2π · lcm(b_i)/gcd(a_i): a multiple of each function's
+            # own.
             common = math.lcm(*(int(x.q) for x in parts)), math.gcd(*(int(x.p) for x in parts))
             period = 2 * sympy.pi / unit * sympy.Rational(*common)
             return period if _is_same(hamiltonian, name, period) is True else None

@@ -31,7 +31,7 @@ _ELEMENTARY = "closed form: elementary functions"
 
 
 def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
-    """The flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
+    """Return the flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
 
     def flow(values: Values, p: Fraction, q: Fraction) -> Motion:
         return motions(fmpq(1), [exactly(c) for c in coefficients(values)])(p, q)
@@ -40,22 +40,23 @@ def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
 
 
 def motions(alpha: fmpq, potential: Sequence[fmpq]) -> Callable[[Fraction, Fraction], Motion]:
-    """(p, q) ↦ the solution for H = α p²/2 + V(q) from there, α ≠ 0 and V of degree up to 4."""
-    return partial(_motion, Field.of(alpha, potential))
+    """Return (p, q) ↦ the solution for H = α p²/2 + V(q) from there, α ≠ 0 and V of degree up to
+    4."""
+    return partial(_motion, Field.from_potential(alpha, potential))
 
 
 def _motion(field: "Field", p: Fraction, q: Fraction) -> Motion:
-    curve = Curve.through(field, exactly(p), exactly(q))
+    curve = Curve.from_point(field, exactly(p), exactly(q))
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
-    ends = curve.degree > 2 and not curve.confined
+    ends = curve.degree > 2 and not curve.is_confined
     method = _METHOD if curve.delta else _ELEMENTARY
     return Motion(curve.state, method, curve.blow_up if ends else None, curve.goes)
 
 
 @dataclass(frozen=True)
 class Field:
-    """q'² = a₀ + f(q) with q' = α p: what is the same for all motions, of which each has its a₀.
+    """q'² = a₀ + f(q) with q' = α p: the part common to all motions, each of which has its own a₀.
 
     The invariants of a₀ + f are g₂ = `g2[0]` + `g2[1]` a₀, and g₃ likewise.
     """
@@ -66,9 +67,12 @@ class Field:
     g3: tuple[fmpq, fmpq]
 
     @classmethod
-    def of(cls, alpha: fmpq, potential: Sequence[fmpq]) -> "Field":
+    def from_potential(cls, alpha: fmpq, potential: Sequence[fmpq]) -> "Field":
+        """Return the field for H = α p²/2 + V(q)."""
         f = fmpq_poly([0, *(-2 * alpha * c for c in potential[1:])])
         a1, a2, a3, a4 = (f[k] for k in range(1, 5))
+        # The invariants of a quartic are affine in its constant term, which is the only one that
+        # depends on the initial value.
         g2 = a2**2 / 12 - a3 * a1 / 4, a4
         g3 = a3 * a2 * a1 / 48 - a2**3 / 216 - a4 * a1**2 / 16, a4 * a2 / 6 - a3**2 / 16
         return cls(alpha, f, g2, g3)
@@ -76,7 +80,8 @@ class Field:
 
 @dataclass(slots=True, eq=False)
 class Curve:
-    """y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v, where q = `start` + y and q' = α p."""
+    """The curve y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v, where q = `start` + y and q' =
+    α p."""
 
     alpha: fmpq
     start: fmpq
@@ -85,32 +90,33 @@ class Curve:
     degree: int
     invariants: tuple[fmpq, fmpq]  # g₂ and g₃
     delta: fmpq
-    # ℘ and ℘' at flint's precision: a motion is looked at for many times.
+    # ℘ and ℘' at flint's precision: a motion is evaluated at many times.
     function: Callable[[], Callable[[Real], tuple[arb, arb]]]
 
     @classmethod
-    def through(cls, field: Field, p: fmpq, q: fmpq) -> "Curve":
-        moved, v = field.f(fmpq_poly([q, 1])), field.alpha * p
-        b = v * v, moved[1], moved[2], moved[3], moved[4]
+    def from_point(cls, field: Field, p: fmpq, q: fmpq) -> "Curve":
+        """Return the curve through (p, q)."""
+        shifted, v = field.f(fmpq_poly([q, 1])), field.alpha * p
+        b = v * v, shifted[1], shifted[2], shifted[3], shifted[4]
         # g₂ and g₃ are the same for the b_k as for the coefficients of q, which are shorter.
-        a0 = b[0] - moved[0]
+        a0 = b[0] - shifted[0]
         g2, g3 = (constant + a0 * more for constant, more in (field.g2, field.g3))
         invariants, delta = (g2, g3), g2**3 - 27 * g3**2
         function = AtEachPrecision(partial(_function, invariants, delta))
-        return cls(field.alpha, q, v, b, max(moved.degree(), 0), invariants, delta, function)
+        return cls(field.alpha, q, v, b, max(shifted.degree(), 0), invariants, delta, function)
 
     @property
-    def confined(self) -> bool:
-        """Whether V rises without end on both sides, by its term of degree 4."""
+    def is_confined(self) -> bool:
+        """True if V rises without end on both sides, by its term of degree 4."""
         return bool(self.b[4] < 0)
 
     def state(self, t: arb) -> State:
-        """p and q at time t."""
-        y, slope = self.at(t)
+        """Return p and q at time t."""
+        y, slope = self.evaluate(t)
         return slope / self.alpha, self.start + y
 
-    def at(self, t: arb) -> tuple[arb, arb]:
-        """y and y' at time t."""
+    def evaluate(self, t: arb) -> tuple[arb, arb]:
+        """Return y and y' at time t."""
         if self.degree <= 2:
             return self.linear(t)
         if self.delta:
@@ -122,25 +128,26 @@ class Curve:
         return biermann(self.v, self.b, self.invariants[0], (d + 1 / s**2, -2 * c / s**3))
 
     def linear(self, t: arb) -> tuple[arb, arb]:
-        """The solution of y'' = b₁/2 + b₂ y."""
+        """Return the solution of y'' = b₁/2 + b₂ y."""
         b0, b1, b2, *_ = self.b
         if b2 > 0 and b1**2 == 4 * b0 * b2:
             # On a line through the saddle one exponential is all there is, and the other is noise.
             rate = arb(b2).sqrt() if self.v * b1 > 0 else -arb(b2).sqrt()
-            gone = rate * t
-            return b1 / (2 * b2) * gone.expm1(), self.v * gone.exp()
+            exponent = rate * t
+            return b1 / (2 * b2) * exponent.expm1(), self.v * exponent.exp()
         (c, s), (_, half) = waves(b2, t), waves(b2, t / 2)
         return self.v * s + b1 * half**2, self.v * c + b1 * s / 2
 
     def _between_saddles(self, double: fmpq) -> bool:
-        """Whether A and B both vanish where ℘ tends to, the double root d > 0."""
+        """Return True if A and B both vanish at the limit of ℘, the double root d > 0."""
         b0, b1, b2, b3, b4 = self.b
-        apart = double - b2 / 12
-        vanish = b1 * apart / 2 + b0 * b3 / 4, 2 * apart**2 - b0 * b4 / 2
+        difference = double - b2 / 12
+        vanish = b1 * difference / 2 + b0 * b3 / 4, 2 * difference**2 - b0 * b4 / 2
         return bool(double > 0 and not any(vanish))
 
     def heteroclinic(self, t: arb, double: fmpq) -> tuple[arb, arb]:
-        """A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth κt."""
+        """Return A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth
+        κt."""
         c, s = waves(3 * double, t)
         small, ratio = 1 / s**2, -2 * c / s
         above = self.b[1] / 2 - self.v * ratio
@@ -151,32 +158,35 @@ class Curve:
     # -- where the motion goes --------------------------------------------------------------------
 
     def blow_up(self, sign: int) -> arb | None:
-        """See `verify.hamiltonians.motion.Motion`, of which this and `goes` are; of degree 3 or 4,
-        where it goes to infinity in a finite time."""
+        """Return |t| of the blow-up, see `verify.hamiltonians.motion.Motion`; of degree 3 or 4,
+        where the motion goes to infinity in a finite time."""
         to = self.destination(sign)
         return self.time_to_infinity(sign, to) if to else None
 
     def goes(self) -> str | None:
-        """How it goes to infinity without an end in time."""
+        """Return how the motion goes to infinity without an end in time."""
         to = 0 if self.degree > 2 else self.destination(1)
         return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
 
     def destination(self, sign: int) -> int:
-        """1 or −1 where y goes to ±∞, forwards or backwards in time; 0 where it stays bounded.
+        """Return 1 or −1 where y goes to ±∞, forwards or backwards in time; 0 where it stays
+        bounded.
 
         At a simple root of f the motion turns; a multiple one it never reaches.
         """
-        if self.confined:
+        if self.is_confined:
             return 0
         towards = 1 if (sign * self.v or self.b[1]) > 0 else -1
-        kept = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
+        coefficients = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
         # Mirrored so that the motion goes to the right.
-        f = fmpq_poly([x * towards**k for k, x in enumerate(kept)])
+        f = fmpq_poly([x * towards**k for k, x in enumerate(coefficients)])
         bits = 64
+        # The loop ends: roots are distinct or exactly multiple in flint, so some precision
+        # separates them from 0 and from each other.
         while True:
             with working_precision(bits):
-                found: Any = f.numer().complex_roots()
-            roots = [(r.real, n) for r, n in found if r.imag == 0]
+                root_pairs: Any = f.numer().complex_roots()
+            roots = [(r.real, n) for r, n in root_pairs if r.imag == 0]
             ahead = [(x, n) for x, n in roots if x > 0]
             if len(ahead) == 0 and all(x < 0 for x, _ in roots):
                 return towards
@@ -188,27 +198,30 @@ class Curve:
             bits *= 2
 
     def time_to_infinity(self, sign: int, end: int) -> arb:
-        """|t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
+        """Return |t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
         _, b1, b2, b3, b4 = self.b
         v, root = sign * self.v, end * arb(b4).sqrt()
         slope = -(b3 * v + b1 * root)
+        # The exact comparison: ℘' is 0 there, which balls of any precision could not decide.
         if (b3 * v) ** 2 == b1**2 * b4 and b3 * v * b1 * end <= 0:
             side = 0
         elif slope > 0 or slope < 0:
             side = 1 if slope > 0 else -1
         else:
             return NOT_KNOWN
-        return Weierstrass.of(*self.invariants, self.delta).inverse(b2 / 12 + v * root / 2, side)
+        return Weierstrass.from_invariants(*self.invariants, self.delta).inverse(
+            b2 / 12 + v * root / 2, side
+        )
 
 
 def _function(invariants: tuple[fmpq, fmpq], delta: fmpq) -> Callable[[Real], tuple[arb, arb]]:
-    return Weierstrass.of(*invariants, delta).values
+    return Weierstrass.from_invariants(*invariants, delta).values
 
 
 def biermann(
     v: Real, b: tuple[Real, Real, Real, Real, Real], g2: Real, function: tuple[Real, Real]
 ) -> tuple[arb, arb]:
-    """y and y' from the values of ℘ and ℘'; see the module's formula. ℘'' = 6℘² − g₂/2."""
+    """Return y and y' from the values of ℘ and ℘'; see the module's formula. ℘'' = 6℘² − g₂/2."""
     b0, b1, b2, b3, b4 = b
     w, slope = function
     speed, half = arb(v), arb(b1) / 2

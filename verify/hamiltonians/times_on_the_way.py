@@ -1,7 +1,8 @@
-"""Whether H is smooth at all times of a run, as far as that depends on the time alone.
+"""Smoothness of H at all times of a run, as far as that depends on the time alone.
 
 A step may pass over a pole in t and never see it. So the conditions that have no p and q in them
-are enclosed over the time of the run, halved where that does not tell, down to parts of a step.
+are enclosed over the time of the run, which is halved where the enclosure does not decide, down to
+parts of a step.
 """
 
 from fractions import Fraction
@@ -25,14 +26,14 @@ _PARTS = 64  # of a step
 
 
 def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int) -> None:
-    """InputError, which names the step, where H is not smooth at some time on the way.
+    """Raise InputError, which names the step, where H is not smooth at some time on the way.
 
     >>> opened = Hamiltonian.parse("p**2/2 + q**2/(1 - t)")
     >>> check_times(opened, Fraction(0), Fraction(2), 9)
     Traceback (most recent call last):
     verify.errors.InputError: t0=0: at step 1, t = 0 … 2, H is not smooth; it is where t - 1 ≠ 0
     """
-    step, words = first_fault(hamiltonian, t0, step_size, steps)
+    step, words = find_first_fault(hamiltonian, t0, step_size, steps)
     if words:
         begin = t0 + step * step_size
         between = f"t = {text(begin)} … {text(begin + step_size)}"
@@ -40,17 +41,17 @@ def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, ste
         raise InputError("t0", text(t0), problem)
 
 
-def first_fault(
+def find_first_fault(
     hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int
 ) -> tuple[int, str]:
-    """The first step in whose time H may not be smooth, and the condition that fails.
+    """Return the first step in whose time H may not be smooth, and the condition that fails.
 
     0 and "" where there is none. `step_size` may be negative.
     """
     if not hamiltonian.time_dependent:
         return 0, ""
     domain = hamiltonian.domain
-    for requirement, words in zip(domain.requirements, domain.shown, strict=True):
+    for requirement, words in zip(domain.requirements, domain.requirement_signs, strict=True):
         if {s.name for s in requirement.expression.free_symbols} == {"t"}:
             ring, (x,) = embed([requirement.expression], ("t",))
             search = _Search(ring, x, requirement.relation, t0, step_size)
@@ -61,29 +62,33 @@ def first_fault(
 
 
 class _Search:
-    """Looks for the first step in whose time the condition may fail."""
+    """The search for the first step in whose time the condition may fail."""
 
     def __init__(
         self, ring: Ring, x: Poly, relation: Relation, t0: Fraction, step_size: Fraction
     ) -> None:
         self.ring, self.x, self.relation = ring, x, relation
         self.t0, self.part = t0, step_size / _PARTS
-        self.left = _MOST
+        self.budget = _MOST
 
     def first(self, low: int, high: int) -> int | None:
-        """The first step among these parts of steps; None where the condition holds in all."""
-        if self.left <= 0 or self._holds(low, high):
+        """Return the first step among these parts of steps; None where the condition holds in
+        all."""
+        if self.budget <= 0 or self._holds(low, high):
             return None
         if high - low == 1:
             return low // _PARTS
         middle = (low + high) // 2
-        found = self.first(low, middle)
-        return self.first(middle, high) if found is None else found
+        first_half = self.first(low, middle)
+        return self.first(middle, high) if first_half is None else first_half
 
     def _holds(self, low: int, high: int) -> bool:
-        self.left -= 1
+        """Return True if the condition holds over the whole interval."""
+        self.budget -= 1
         with working_precision(_BITS):
             ends = (rational_ball(self.t0 + n * self.part) for n in (low, high))
+            # The condition is enclosed over the whole interval of time at once, so no pole is
+            # missed.
             over = next(ends).union(next(ends))
-            found: flint.arb | None = enclose_over(self.ring, self.x, {"t": over})
-            return holds(found, self.relation) is True
+            enclosure: flint.arb | None = enclose_over(self.ring, self.x, {"t": over})
+            return holds(enclosure, self.relation) is True

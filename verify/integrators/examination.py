@@ -1,7 +1,7 @@
-"""What is known of a user's step or map at its places: proved, else measured.
+"""Examine a user's step or map at its places: prove what can be proved, and measure the rest.
 
-Where its code lets symbols through its map is proved, and what algebra leaves open is measured;
-else all is, with dual numbers where they go through, or with floats.
+Where its code lets symbols through, the map is proved, and what algebra leaves open is measured;
+else all is measured, with dual numbers where they go through, or with floats.
 """
 
 from collections.abc import Callable
@@ -11,20 +11,20 @@ from functools import partial
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measured import finding_of
 from verify.integrators.measures.order import probe_of
-from verify.integrators.measures.still_clock import measured_mistakes
+from verify.integrators.measures.still_clock import measure_clock_mistakes
 from verify.integrators.measures.structure import Structure
 from verify.integrators.probes.agreement import trace_must_agree
 from verify.integrators.results import Finding
 from verify.integrators.traced import (
     Trace,
-    proved_of_map,
-    proved_step,
+    prove_map,
+    prove_step,
     trace_of,
 )
 from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.trial import Trial
-from verify.integrators.user_code.step import StepError, why, within
-from verify.prose import Prose, joined, prose
+from verify.integrators.user_code.step import StepError, limit_time, why
+from verify.prose import Prose, join_prose, prose
 from verify.verdict import Verdict
 
 _PROOF, _CLOCK_SECONDS = 1 / 3, 10.0  # of the time that is left; seconds
@@ -34,139 +34,154 @@ _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which ar
 
 
 def examine(trial: Trial, provable: bool) -> Finding:
+    """Return the finding on a step or a map. `provable`: whether a proof may be tried."""
     step, notes = trial.step, list[Prose]()
     if step.foreign:
-        return _measured(trial, notes)
+        return _measure(trial, notes)
     try:
-        most = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
-        with within(min(most, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
+        # In many degrees of freedom algebra seldom ends in time, and the time is needed for
+        # measuring.
+        time_limit = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
+        with limit_time(min(time_limit, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
             trace = trace_of(step)
             _must_be_pure(trace)
             if provable:
                 trace_must_agree(step, trace.roots, trial.places)
                 exact = trial.hamiltonian
-                finding = proved_step(trace, exact) if exact else proved_of_map(trace, step.names)
+                finding = prove_step(trace, exact) if exact else prove_map(trace, step.names)
         if not provable:
-            return _measured(trial, notes)
-        finding = _decided(finding, trial, trace)
+            return _measure(trial, notes)
+        finding = _decide(finding, trial, trace)
         order = finding.convergence_order
         return finding.noting(*_clock(trial, lambda h: clock_mistakes(h, trace.roots, order)))
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", why(error)))
-    return _measured(trial, notes)
+    return _measure(trial, notes)
 
 
 def _must_be_pure(trace: Trace) -> None:
-    """StepError where it reaches what is not known to stay the same from call to call."""
+    """Raise StepError where the code reaches something that may change from call to call."""
     impure = trace.tape.outside.texts
     if impure:
-        listed = joined(", ", map(prose, impure[:_LISTED]))
-        raise StepError(prose("what it reaches may change from call to call: ", listed))
+        names = join_prose(", ", map(prose, impure[:_LISTED]))
+        raise StepError(prose("what it reaches may change from call to call: ", names))
 
 
-def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:
-    """What a proof says, where it says it; else with what is measured of that.
+def _decide(finding: Finding, trial: Trial, trace: Trace) -> Finding:
+    """Return the finding of a proof, completed by measurement where the proof leaves something
+    open.
 
     Rounded coefficients stand for others: of a trace that has them no order is proved, and Ω only
-    where it is kept.
+    where it is preserved.
     """
-    rounded, kept = bool(trace.tape.rounded), finding.symplectic
+    is_rounded, symplectic = bool(trace.tape.rounded), finding.symplectic
     of_map = trial.hamiltonian is None
-    open_ = kept is None and finding.verdict is not Verdict.REFUTED
-    volume_open = kept is False and finding.area_preserving is None
-    if of_map and kept:
+    open_ = symplectic is None and finding.verdict is not Verdict.REFUTED
+    volume_open = symplectic is False and finding.area_preserving is None
+    if of_map and symplectic:
         return finding
-    if not (rounded or open_ or volume_open or of_map):
+    if not (is_rounded or open_ or volume_open or of_map):
         return finding
     try:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", why(error)))
-    alone = finding_of(trial, structure, distances)
-    seen = replace(alone, notes=(*finding.notes, *alone.notes))
+    measurement = finding_of(trial, structure, distances)
+    measured_finding = replace(measurement, notes=(*finding.notes, *measurement.notes))
     if of_map:
-        return seen if rounded or open_ else _refuted_map(finding, seen, structure)
-    if rounded:
-        return _but_for_rounding(finding, seen)
+        return (
+            measured_finding
+            if is_rounded or open_
+            else _refuted_map(finding, measured_finding, structure)
+        )
+    if is_rounded:
+        return _but_for_rounding(finding, measured_finding)
     if open_:
-        return _with_series(finding, seen)
+        return _with_series(finding, measured_finding)
     return replace(finding, area_preserving=structure.volume_kept)
 
 
-def _but_for_rounding(finding: Finding, seen: Finding) -> Finding:
-    """What is measured, with what is proved of Ω."""
-    order, _, defect = seen.reason.partition("; ")
+def _but_for_rounding(finding: Finding, measured_finding: Finding) -> Finding:
+    """Combine the measured order with what is proved of Ω."""
+    order, _, defect = measured_finding.reason.partition("; ")
     exactly = finding.convergence_order
-    said = "but for the rounding of its coefficients"
-    if exactly is not None and exactly != seen.convergence_order:
-        said += f" (taken exactly, they make the order {exactly})"
+    clause = "but for the rounding of its coefficients"
+    if exactly is not None and exactly != measured_finding.convergence_order:
+        clause += f" (taken exactly, they make the order {exactly})"
     if not finding.symplectic:
-        return replace(seen, reason=prose(order, f", {said}; ", defect))
-    kept = "det J ≡ 1, proved" if finding.degrees == 1 else "S ≡ 0, proved"
-    verdict = seen.verdict
-    if verdict is Verdict.UNDECIDED and seen.order_decided:
+        return replace(measured_finding, reason=prose(order, f", {clause}; ", defect))
+    statement = "det J ≡ 1, proved" if finding.degrees == 1 else "S ≡ 0, proved"
+    verdict = measured_finding.verdict
+    if verdict is Verdict.UNDECIDED and measured_finding.order_decided:
         verdict = Verdict.MEASURED
     return replace(
-        seen, verdict=verdict, reason=prose(order, f", {said}; ", kept), order=None,
-        symplectic=True, area_preserving=True,
+        measured_finding, verdict=verdict, reason=prose(order, f", {clause}; ", statement),
+        order=None, symplectic=True, area_preserving=True,
     )  # fmt: skip
 
 
-def _with_series(finding: Finding, seen: Finding) -> Finding:
-    """What is measured of Ω, with the order and the series of a proof that leaves it open."""
-    order = finding.convergence_order if finding.order_decided else seen.convergence_order
+def _with_series(finding: Finding, measured_finding: Finding) -> Finding:
+    """Combine what is measured of Ω with the order and the series of a proof that leaves Ω open."""
+    order = (
+        finding.convergence_order if finding.order_decided else measured_finding.convergence_order
+    )
     return replace(
-        seen,
-        reason=prose(seen.reason, " (what algebra says: ", finding.reason, ")"),
+        measured_finding,
+        reason=prose(measured_finding.reason, " (what algebra says: ", finding.reason, ")"),
         convergence_order=order,
-        order_decided=finding.order_decided or seen.order_decided,
+        order_decided=finding.order_decided or measured_finding.order_decided,
         leading=finding.leading,
         area_at_least=finding.area_at_least,
     )
 
 
-def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Finding:
-    """By algebra, and by dual numbers at places where it shows."""
+def _refuted_map(finding: Finding, measured_finding: Finding, structure: Structure) -> Finding:
+    """Refute a map by algebra, and show it by dual numbers at places where it can be seen."""
     volume = finding.area_preserving
     if volume is None:
         volume = structure.volume_kept
-    if seen.symplectic is not False:
-        return seen  # algebra says it is not 0; it is too small for doubles to show
+    if measured_finding.symplectic is not False:
+        return measured_finding  # algebra says it is not 0; it is too small for doubles to show
     where = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
-    kept = f"; det J {where} all the same" if volume else ""
-    entry = seen.entry or finding.entry
-    reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{kept}")
+    volume_text = f"; det J {where} all the same" if volume else ""
+    entry = measured_finding.entry or finding.entry
+    reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{volume_text}")
     return replace(finding, reason=reason, area_preserving=volume, entry=entry,
-                   largest=seen.largest, probe_error=seen.probe_error, against=seen.against,
-                   places=seen.places)  # fmt: skip
+                   largest=measured_finding.largest, probe_error=measured_finding.probe_error,
+                   against=measured_finding.against, places=measured_finding.places)  # fmt: skip
 
 
 def _clock(trial: Trial, mistakes: Callable[[Hamiltonian], list[str]]) -> list[str]:
-    """Which mistake its clock looks like; nothing where that is not seen in time."""
+    """Name the mistake that the step's clock looks like; return nothing where none is seen in
+    time."""
     if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
         return []
     try:
-        with within(_CLOCK_SECONDS, "its clock takes too long"):
+        with limit_time(_CLOCK_SECONDS, "its clock takes too long"):
             return mistakes(trial.hamiltonian)
     except Exception:  # the user's code may raise anything
         return []
 
 
-def _measured(trial: Trial, notes: list[Prose]) -> Finding:
+def _measure(trial: Trial, notes: list[Prose]) -> Finding:
     step = trial.step
-    kept = 0.0 if step.foreign else _KEPT * max(step.left, 0)
+    # Dual numbers are slow: some of the time is held back for floats, and given back before these
+    # begin.
+    reserve = 0.0 if step.foreign else _KEPT * max(step.left, 0)
     for how in step.ways:
-        step.hold_back(kept if how == "duals" else -kept)
+        step.hold_back(reserve if how == "duals" else -reserve)
         try:
             finding = finding_of(trial, *trial.measure(how))
             finding = replace(finding, notes=(*notes, *finding.notes))
-            return finding.noting(*_clock(trial, partial(_still, trial, how, finding)))
+            return finding.noting(*_clock(trial, partial(_find_still_clock, trial, how, finding)))
         except Exception as error:  # as above
             notes.append(prose(f"not measured with {how}: ", why(error)))
     neither = prose("it can be neither traced nor measured")
     return Finding(Verdict.UNDECIDED, neither, "calls", step.degrees).noting(*notes)
 
 
-def _still(trial: Trial, how: str, finding: Finding, hamiltonian: Hamiltonian) -> list[str]:
+def _find_still_clock(
+    trial: Trial, how: str, finding: Finding, hamiltonian: Hamiltonian
+) -> list[str]:
     probe = probe_of(trial.step, how)
-    return measured_mistakes(probe, hamiltonian, trial.places, finding.convergence_order)
+    return measure_clock_mistakes(probe, hamiltonian, trial.places, finding.convergence_order)

@@ -1,4 +1,4 @@
-"""What is said of a user's map that was measured: its verdict, in words, with where it was seen."""
+"""The finding on a user's map that was measured: its verdict, in words, and where it was seen."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from verify.integrators.measures.slopes import ENOUGH
 from verify.integrators.measures.structure import REFUTES, Structure
 from verify.integrators.measures.survey import Request
 from verify.integrators.places.place import SIDE, USER, Place
-from verify.integrators.places.wrapped import periods_told
+from verify.integrators.places.wrapped import describe_periods
 from verify.integrators.results import Claims, Finding
 from verify.integrators.trial import Trial
 from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.user_map import UserMap
-from verify.prose import Number, Prose, joined, prose, read_prose
+from verify.prose import Number, Prose, join_prose, prose, read_prose
 from verify.structures import structure_in
 from verify.verdict import Verdict
 
@@ -32,72 +32,82 @@ class _Order:
 
     order: int | None
     decided: bool
-    said: str
+    text: str
     domain: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 def finding_of(trial: Trial, structure: Structure, distances: Distances | None) -> Finding:
-    """Its order, and whether it keeps Ω, where it was looked at; of a map the latter alone."""
-    step, kept = trial.step, structure.kept(trial.request.within)
-    said = _structure_said(step, structure, kept, trial.request)
-    made = (
-        _of_map(step, structure, kept, said)
+    """Build the finding: the order, and if Ω is preserved at the places; for a map the latter
+    alone."""
+    step, is_kept = trial.step, structure.is_kept(trial.request.within)
+    defect_text = _describe_structure(step, structure, is_kept, trial.request)
+    finding = (
+        _of_map(step, structure, is_kept, defect_text)
         if distances is None
-        else _of_step(trial, structure, distances, kept, said)
+        else _of_step(trial, structure, distances, is_kept, defect_text)
     )
-    return _consistent(made.noting(*map(read_prose, _sides_noted(structure))))
+    return _consistent(finding.noting(*map(read_prose, _note_sides(structure))))
 
 
-def _of_map(step: UserMap, structure: Structure, kept: bool | None, said: str) -> Finding:
-    verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[kept]
-    if kept is False:
-        alone = step.degrees > 1 and structure.volume_kept  # in the plane S is det J − 1
-        volume = "; det J is 1 all the same" if alone else ""
-        entry = step.entry(structure.largest.shown)
-        said = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
-    return _base(step, structure, verdict, said, kept)
+def _of_map(step: UserMap, structure: Structure, is_kept: bool | None, text: str) -> Finding:
+    verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[is_kept]
+    if is_kept is False:
+        # In several degrees of freedom det J = 1 is weaker than JᵀΩJ = Ω. It is said, so that a map
+        # that preserves volume is not taken for worse than it is.
+        only_volume = step.degrees > 1 and structure.volume_kept  # in the plane S is det J − 1
+        volume = "; det J is 1 all the same" if only_volume else ""
+        entry = step.entry(structure.largest.largest_entry)
+        text = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
+    return _base(step, structure, verdict, text, is_kept)
 
 
 def _of_step(
-    trial: Trial, structure: Structure, distances: Distances, kept: bool | None, said: str
+    trial: Trial, structure: Structure, distances: Distances, is_kept: bool | None, text: str
 ) -> Finding:
     step, order = trial.step, _order(distances, structure.sides, trial.claims)
-    verdict, told = Verdict.MEASURED, order.said
+    verdict, reason = Verdict.MEASURED, order.text
+    # A scheme agrees with the flow up to h at least. Below order 1 the map approximates another
+    # flow, or none, however well it preserves Ω.
     if order.order is not None and order.decided and order.order < 1:
-        verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
-    elif kept is None or not order.decided:
+        verdict, reason = Verdict.REFUTED, f"not a scheme for this H: {reason}"
+    elif is_kept is None or not order.decided:
         verdict = Verdict.UNDECIDED
-    finding = _base(step, structure, verdict, f"{told}; {said}", kept)
+    finding = _base(step, structure, verdict, f"{reason}; {text}", is_kept)
     finding = replace(
         finding,
-        order=None if kept else structure.power,
+        # `order` is that of the defect: a map that preserves Ω has none.
+        order=None if is_kept else structure.power,
         convergence_order=order.order,
         order_decided=order.decided,
         domain=(*order.domain, *finding.domain),
     )
-    notes = periods_told(step.names, distances.periods)
-    return finding.noting(*map(read_prose, [*notes, *order.notes, *_unseen_noted(step, distances)]))
+    notes = describe_periods(step.names, distances.periods)
+    return finding.noting(*map(read_prose, [*notes, *order.notes, *_note_unseen(step, distances)]))
 
 
 def _base(
-    step: UserMap, structure: Structure, verdict: Verdict, said: str, kept: bool | None
+    step: UserMap, structure: Structure, verdict: Verdict, text: str, is_kept: bool | None
 ) -> Finding:
     reading = structure.largest
     places = tuple(dict.fromkeys(x.place for x in structure.readings))
     return Finding(
         verdict,
-        read_prose(said),
+        read_prose(text),
         structure.how,
         step.degrees,
-        symplectic=kept,
-        area_preserving=kept if step.degrees == 1 else True if kept else structure.volume_kept,
+        symplectic=is_kept,
+        area_preserving=is_kept
+        if step.degrees == 1
+        else True
+        if is_kept
+        else structure.volume_kept,
         largest=reading.defect,
         probe_error=structure.noise,
         against=reading,
-        entry=step.entry(reading.shown) if kept is False else "",
+        entry=step.entry(reading.largest_entry) if is_kept is False else "",
         domain=(str(where_seen(step, places)),),
-        notes=tuple(map(read_prose, _places_noted(step, structure))),
+        notes=tuple(map(read_prose, _note_places(step, structure))),
         places=places,
     )
 
@@ -105,28 +115,28 @@ def _base(
 # -- the structure --------------------------------------------------------------------------------
 
 
-def _structure_said(
-    step: UserMap, structure: Structure, kept: bool | None, request: Request
+def _describe_structure(
+    step: UserMap, structure: Structure, is_kept: bool | None, request: Request
 ) -> str:
-    """Whether S, or ΔJ in the plane, is 0 as far as can be seen, and what is seen of it."""
+    """Describe if S, or ΔJ in the plane, is 0 as far as can be seen, and its size otherwise."""
     name = structure_in(step.degrees).defect
     largest, noise = structure.largest.defect, structure.noise
     if request.within is not None:
-        allowed = f"`{float(request.within):.1e}` that is allowed"
-        if kept:
-            return f"|{name}| ≤ {_size(largest)} at every place, within the {allowed}"
-        if kept is None:
+        allowed_text = f"`{float(request.within):.1e}` that is allowed"
+        if is_kept:
+            return f"|{name}| ≤ {_size(largest)} at every place, within the {allowed_text}"
+        if is_kept is None:
             return (
                 f"|{name}| is up to {_size(largest)}, the probe's own error `{noise:.1e}`: "
-                f"whether it is within the {allowed} is not seen"
+                f"whether it is within the {allowed_text} is not seen"
             )
-        return f"|{name}| is up to {_size(largest)}, more than the {allowed}"
-    if kept:
+        return f"|{name}| is up to {_size(largest)}, more than the {allowed_text}"
+    if is_kept:
         numbers = _numbers(step) if structure.how == "floats" else "doubles"
-        at = "place and step size" if step.stepped else "place"
-        most = _size(max(largest, noise))
-        return f"|{name}| ≤ {most} at every {at}, within the noise of {numbers}"
-    if kept is None and structure.worst.beyond <= REFUTES:
+        where = "place and step size" if step.takes_step_size else "place"
+        bound = _size(max(largest, noise))
+        return f"|{name}| ≤ {bound} at every {where}, within the noise of {numbers}"
+    if is_kept is None and structure.worst.beyond <= REFUTES:
         if noise > 1e-7:
             return f"{name} is hidden by the probe's own error, `{noise:.1e}`"
         return f"|{name}| ≤ {_size(largest)}, where the noise of its numbers is `{noise:.1e}`"
@@ -155,7 +165,7 @@ def _numbers(step: UserMap, doubles: str = "doubles") -> str:
 def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     places = distances.places
     if all(x.exact for x in places):
-        if max(x.moved for x in places) < _STILL:
+        if max(x.distance for x in places) < _STILL:
             return _Order(None, False, "its steps are too short for an error to show")
         return _Order(None, True, "the map is the exact flow to its last digits")
     resolved = [x for x in places if x.power is not None]
@@ -165,11 +175,15 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     if few and len(resolved) >= 2 and not any(x.place.source == USER for x in loose):
         loose = []
     if not resolved:
-        return _Order(None, False, f"its error follows no power of h{_slopes_said(loose)}")
+        return _Order(None, False, f"its error follows no power of h{_describe_slopes(loose)}")
     usual = Counter(x.power or 0 for x in resolved if x.place.source != SIDE) or Counter(
         x.power or 0 for x in resolved
     )
+    # The order is that of most places; of two powers that are equally frequent the lower one is
+    # taken.
     main = min(power for power, times in usual.items() if times == max(usual.values()))
+    # Places of a lower power may lie on the other side of a comparison in the code. If one
+    # comparison separates them from the others, the order holds on this side only.
     failing = [x for x in resolved if (x.power or 0) < main]
     passing = [x for x in places if x not in failing and x not in loose]
     domain: tuple[str, ...] = ()
@@ -177,72 +191,76 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     if failing:
         branch = sides.separating([x.place for x in passing], [x.place for x in failing])
         if branch is not None and not any(x.place.source == USER for x in failing):
-            here = sides.condition(branch)
-            least = min(x.power or 0 for x in failing) - 1
-            domain = (here,)
-            beyond = f"agrees with the exact flow of this H up to `h^{max(least, 0)}` only"
-            beyond = beyond if least >= 0 else "is no scheme for this H"
-            notes.append(f"the order is that for {here}; beyond it the code does something else, "
-                         f"which {beyond}")  # fmt: skip
+            condition = sides.condition(branch)
+            lowest_power = min(x.power or 0 for x in failing) - 1
+            domain = (condition,)
+            beyond_text = (
+                f"agrees with the exact flow of this H up to `h^{max(lowest_power, 0)}` only"
+            )
+            beyond_text = beyond_text if lowest_power >= 0 else "is no scheme for this H"
+            notes.append(f"the order is that for {condition}; beyond it the code does something "
+                         f"else, which {beyond_text}")  # fmt: skip
             resolved = [x for x in resolved if x not in failing]
     lowest = min(resolved, key=lambda x: x.power or 0)
+    # The error of one step is O(h^(r+1)) for a scheme of order r.
     order = (lowest.power or 0) - 1
     decided = not loose or (claims.order is not None and order < claims.order)
-    said = _order_said(order, lowest)
+    text = _describe_order(order, lowest)
     if not decided:
-        said += _slopes_said(loose)
+        text += _describe_slopes(loose)
     tails = [x.tail for x in resolved if x.tail is not None]
     if tails:
         tail = max(tails, key=lambda x: x.error)
         law = "follows no power" if tail.power is None else f"shrinks as `h^{tail.power}` only"
-        rounded = "the rounding of a coefficient leaves it"  # in its eighth digit, say
-        iterated = "an iteration that stops at a tolerance leaves it"
+        rounding_text = "the rounding of a coefficient leaves it"  # in its eighth digit, say
+        iteration_text = "an iteration that stops at a tolerance leaves it"
         notes.append(
             f"for h below `{tail.h:.1e}`, where its error is `{tail.error:.1e}`, that {law}, as "
-            f"{rounded if tail.power == 1 else iterated}"
+            f"{rounding_text if tail.power == 1 else iteration_text}"
         )
-    return _Order(order, decided, said, domain, tuple(notes))
+    return _Order(order, decided, text, domain, tuple(notes))
 
 
 def _counts(loose: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
-    """Whether a place that has not settled may have a lower order than the others.
+    """Return True if a place that has not settled may have a lower order than the others.
 
     Where a loop ends at a tolerance it tells nothing; beside a single other place it always may,
     unless its slopes show that it does not.
     """
     if len(resolved) < 2 and len(loose.slopes) < ENOUGH:
         return True
-    least = min(x.power or 0 for x in resolved)
-    return loose.may_fall_below(least) and not any(x.tail for x in resolved)
+    lowest_power = min(x.power or 0 for x in resolved)
+    return loose.may_fall_below(lowest_power) and not any(x.tail for x in resolved)
 
 
-def _order_said(order: int, lowest: PlaceOrder) -> str:
+def _describe_order(order: int, lowest: PlaceOrder) -> str:
     run = lowest.run
-    seen = "" if run is None else f", as seen for h = {_step(run.first)} … `{run.last:.1e}`"
+    range_text = "" if run is None else f", as seen for h = {_step(run.first)} … `{run.last:.1e}`"
     if order == -1:
-        return f"its error after one step does not shrink with h{seen}"
+        return f"its error after one step does not shrink with h{range_text}"
     if order == 0:
-        return f"its error after one step is of order h{seen}"
-    return f"the map's order is {order}{seen}"
+        return f"its error after one step is of order h{range_text}"
+    return f"the map's order is {order}{range_text}"
 
 
 def _step(h: float) -> str:
     exact = Fraction(h)
+    # Step sizes are halved from simple ones, so that the first ones are short binary fractions.
     return str(exact) if exact.denominator <= 1024 and exact.numerator <= 1024 else f"`{h:.1e}`"
 
 
-def _slopes_said(loose: Sequence[PlaceOrder]) -> str:
-    """The slopes that have not settled, of one component at one place."""
-    shown = next((x for x in loose if x.slopes), None)
-    if shown is None:
+def _describe_slopes(loose: Sequence[PlaceOrder]) -> str:
+    """Format the slopes that have not settled, of one component at one place."""
+    example = next((x for x in loose if x.slopes), None)
+    if example is None:
         return ""
-    slopes = ", ".join(f"{x:.1f}" for x in shown.slopes[:8])
-    return f" (the slopes of {shown.component}' as h falls: {slopes})"
+    slopes = ", ".join(f"{x:.1f}" for x in example.slopes[:8])
+    return f" (the slopes of {example.component}' as h falls: {slopes})"
 
 
 def _consistent(finding: Finding) -> Finding:
-    """A map that agrees with the flow up to h^r has a defect of O(h^(r+1)): less is not of that
-    order."""
+    """Make a finding UNDECIDED where its area order is too low for its order: a map that agrees
+    with the flow up to h^r has a defect of O(h^(r+1))."""
     area, order = finding.order, finding.convergence_order
     if finding.verdict is Verdict.REFUTED or area is None or order is None or area > order:
         return finding
@@ -255,12 +273,12 @@ def _consistent(finding: Finding) -> Finding:
 
 
 def where_seen(step: UserMap, places: Sequence[Place]) -> Prose:
-    """The places and step sizes that were looked at."""
+    """Describe the places and step sizes that were looked at."""
     n = step.degrees
     ranges = []
     for name, part in (("p", slice(0, n)), ("q", slice(n, 2 * n))):
-        most = max(max(abs(x) for x in place.z[part]) for place in places)
-        ranges.append(f"|{name}| ≤ {_plain(most)}")
+        largest = max(max(abs(x) for x in place.z[part]) for place in places)
+        ranges.append(f"|{name}| ≤ {_plain(largest)}")
     if step.moving:
         times = [place.t for place in places]
         ranges.append(f"{_plain(min(times))} ≤ t ≤ {_plain(max(times))}")
@@ -269,7 +287,7 @@ def where_seen(step: UserMap, places: Sequence[Place]) -> Prose:
     steps = [place.step for place in places if place.step]
     if steps:
         parts.append(f"h ≤ {_plain(max(steps))}")
-    return prose(joined(", ", parts))
+    return prose(join_prose(", ", parts))
 
 
 def _plain(x: Fraction) -> str:
@@ -278,31 +296,31 @@ def _plain(x: Fraction) -> str:
     return Number(f"{float(x):.{_PRECISE}g}")
 
 
-def _places_noted(step: UserMap, structure: Structure) -> list[str]:
+def _note_places(step: UserMap, structure: Structure) -> list[str]:
     places = list(dict.fromkeys(x.place for x in structure.readings))
     kind = "with dual numbers" if structure.how == "duals" else f"in {_numbers(step, 'floats')}"
     notes = [f"measured {kind} at {where_seen(step, places)}, and nowhere else"]
     if structure.blind:
-        each = [
+        blind_places = [
             ", ".join(f"{name} = `{x}`" for name, x in zip(step.names, r.place.z, strict=True))
             + f" (`{r.blur:.1e}`)"
             for r in structure.blind[:4]
         ]
         notes.append(
-            f"left out, as the probe's own error is not small against 1: {'; '.join(each)}"
+            f"left out, as the probe's own error is not small against 1: {'; '.join(blind_places)}"
         )
     if structure.lost:
         notes.append(f"at {len(structure.lost)} calls it returned no state: {structure.lost[0]}")
     return notes
 
 
-def _sides_noted(structure: Structure) -> list[str]:
+def _note_sides(structure: Structure) -> list[str]:
     far = list(structure.sides.far)
-    beyond = [x.place for x in structure.readings if x.place.source == SIDE]
+    on_sides = [x.place for x in structure.readings if x.place.source == SIDE]
     notes = []
-    if beyond:
+    if on_sides:
         notes.append(
-            f"{len(set(beyond))} of them lie on sides of comparisons that the others do not reach"
+            f"{len(set(on_sides))} of them lie on sides of comparisons that the others do not reach"
         )
     if far:
         notes.append(
@@ -311,7 +329,7 @@ def _sides_noted(structure: Structure) -> list[str]:
     return notes
 
 
-def _unseen_noted(step: UserMap, distances: Distances) -> list[str]:
+def _note_unseen(step: UserMap, distances: Distances) -> list[str]:
     if distances.how != "floats":
         return []
     unseen = max(x.unseen for x in distances.places)

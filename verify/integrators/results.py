@@ -1,4 +1,4 @@
-"""What is known of a user's step or map, and what is claimed of it."""
+"""The finding on a user's step or map, and the claims that it is judged by."""
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -16,10 +16,10 @@ MOST_CLAIMED = 12
 
 @dataclass(frozen=True)
 class Claims:
-    """What is asked for; None and False ask for nothing.
+    """The claims that are checked; None and False claim nothing.
 
-    `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`:
-    det J ≡ 1. `symplectic`: the same in the plane, and more in several degrees of freedom.
+    `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`: det J
+    ≡ 1. `symplectic`: the same in the plane, and more in several degrees of freedom.
     """
 
     order: int | None = None
@@ -33,8 +33,8 @@ NOTHING = Claims()
 
 @dataclass(frozen=True)
 class Counterexample:
-    """At the state z, by names, with step h: what `quantity` is there, and what it would have to
-    be. `t`: where H depends on it; `h`: None of a map."""
+    """The value of `quantity` at the state z, by names, with step h, and the value that it would
+    have to have. `t`: where H depends on it; `h`: None of a map."""
 
     z: dict[str, Fraction]
     h: Fraction | None
@@ -45,11 +45,11 @@ class Counterexample:
 
     @property
     def place(self) -> str:
-        """Where it is, as text."""
-        named = [f"{name} = {x}" for name, x in self.z.items()]
-        named += [f"t = {self.t}"] if self.t is not None else []
-        named += [f"h = {self.h}"] if self.h is not None else []
-        return ", ".join(named)
+        """The place, as text."""
+        parts = [f"{name} = {x}" for name, x in self.z.items()]
+        parts += [f"t = {self.t}"] if self.t is not None else []
+        parts += [f"h = {self.h}"] if self.h is not None else []
+        return ", ".join(parts)
 
     def __str__(self) -> str:
         return f"at {self.place}: {self.quantity} is {self.found}, expected {self.expected}"
@@ -97,47 +97,47 @@ class Finding:
 
     @property
     def scheme(self) -> bool:
-        """Whether it is shown to agree with the exact flow up to h, at least."""
+        """True if it is shown to agree with the exact flow up to h, at least."""
         if self.convergence_order is None:
             return self.order_decided
         return self.convergence_order >= 1 and (self.order_decided or self.how == "proof")
 
     def noting(self, *notes: str) -> "Finding":
-        """The same with further notes."""
+        """Return the same finding with further notes."""
         return replace(self, notes=(*self.notes, *map(prose, notes)))
 
 
-Judged = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what is known
+JudgedClaim = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what is known
 
 
-def agreement_told(power: int | None) -> str:
-    """How far the map and the flow agree, where a higher order is claimed."""
+def describe_agreement(power: int | None) -> str:
+    """Describe how far the map and the flow agree, where a higher order is claimed."""
     if power is not None and power < 0:
         return "the map's distance from the exact flow does not vanish as h → 0"
     return f"the map agrees with the exact flow up to `h^{power}` only"
 
 
-def judged(claims: Claims, finding: Finding) -> list[Judged]:
-    """Each claim; None where it is not decided."""
-    made: list[tuple[str, bool | None, str]] = []
+def judge_claims(claims: Claims, finding: Finding) -> list[JudgedClaim]:
+    """Judge each claim; None where it is not decided."""
+    rows: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
         if finding.order_decided:
             holds = finding.convergence_order is None or finding.convergence_order >= claims.order
-        made.append((f"order {claims.order}", holds, agreement_told(finding.convergence_order)))
-    defect = _defect_told(finding)
+        rows.append((f"order {claims.order}", holds, describe_agreement(finding.convergence_order)))
+    defect = _describe_defect(finding)
     if claims.symplectic and finding.degrees > 1:
-        made.append(("that it is symplectic", finding.symplectic, defect))
+        rows.append(("that it is symplectic", finding.symplectic, defect))
     elif claims.symplectic or claims.area_preserving:
-        made.append(("det J ≡ 1", finding.area_preserving, defect))
+        rows.append(("det J ≡ 1", finding.area_preserving, defect))
     if claims.area_preserving and finding.degrees > 1:
-        made.append(("det J ≡ 1", finding.area_preserving, _volume_told(finding)))
+        rows.append(("det J ≡ 1", finding.area_preserving, _describe_volume(finding)))
     if claims.area_order is not None:
-        made.append(_area_order(claims.area_order, finding, defect))
-    return [(read_prose(claim), holds, read_prose(known)) for claim, holds, known in made]
+        rows.append(_area_order(claims.area_order, finding, defect))
+    return [(read_prose(claim), holds, read_prose(evidence)) for claim, holds, evidence in rows]
 
 
-def _defect_told(finding: Finding) -> str:
+def _describe_defect(finding: Finding) -> str:
     name = structure_in(finding.degrees).defect
     if finding.order is not None:
         return f"{name} has order {finding.order}"
@@ -154,26 +154,29 @@ def _volume_power(finding: Finding) -> int | None:
     return finding.proof.volume_order if finding.proof else None
 
 
-def _volume_told(finding: Finding) -> str:
+def _describe_volume(finding: Finding) -> str:
     power = _volume_power(finding)
     return f"det J − 1 has order {power}" if power else "det J is not 1"
 
 
 def _area_order(claimed: int, finding: Finding, defect: str) -> tuple[str, bool | None, str]:
-    shown = finding.area_at_least is not None and claimed <= finding.area_at_least
-    holds = True if finding.area_preserving or shown else None
+    is_bounded = finding.area_at_least is not None and claimed <= finding.area_at_least
+    # A defect that vanishes is O(h^r) for every r; a lower bound of its power shows no more than
+    # that power.
+    holds = True if finding.area_preserving or is_bounded else None
     power = _volume_power(finding)
     if power is not None:
         holds = power >= claimed
     return (
         f"ΔJ = O(`h^{claimed}`)",
         holds,
-        defect if finding.degrees == 1 else _volume_told(finding),
+        defect if finding.degrees == 1 else _describe_volume(finding),
     )
 
 
 def potential_of_finding(finding: Finding) -> Potential:
-    """Whether the leading coefficient of ΔJ telescopes, as far as it is proved; in the plane."""
+    """Return the decision if the leading coefficient of ΔJ telescopes, as far as it is proved; in
+    the plane."""
     if finding.proof is not None:
         return potential_of(finding.proof)
     if finding.area_preserving and finding.how == "proof":

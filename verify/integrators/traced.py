@@ -1,4 +1,4 @@
-"""From a user's map, called with symbols, to what is proved of it."""
+"""Proofs about a user's map that is called with symbols."""
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -9,17 +9,22 @@ import sympy
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.limits import checked
-from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
+from verify.algebra.limits import check_expression
+from verify.algebra.requirement import (
+    Requirement,
+    requirements_of_divisor,
+    requirements_of_function,
+    requirements_of_power,
+)
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
 from verify.functions import by_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.step_map import traced_map
-from verify.integrators.tracing.trace import Node, Tape, written
-from verify.integrators.user_code.step import StepError, lifted
+from verify.integrators.tracing.trace import Node, Tape, write_expressions
+from verify.integrators.user_code.step import StepError, lift_numbers
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
@@ -42,40 +47,43 @@ class Trace:
 
 
 def trace_of(step: UserMap) -> Trace:
-    """Calls it with symbols. Raises what the user's code raises of them, UntraceableError and
+    """Call the step with symbols. Raises what the user's code raises of them, UntraceableError and
     StepError."""
     tape = Tape()
     symbols = [tape.symbol(name) for name in step.names]
+    # Where H does not depend on time, t is the number 0, so that a clock that the code computes
+    # folds away.
     clock = tape.symbol("t") if step.moving else tape.rational(Fraction(0))
     size = tape.symbol("h")
-    after = step.call(copied(step.function, tape), symbols, size, clock, tape.rational)
+    result = step.call(copy_function(step.function, tape), symbols, size, clock, tape.rational)
     tape.check()
-    return Trace(tape, tuple(x.node for x in lifted(symbols[0], after)))
+    return Trace(tape, tuple(x.node for x in lift_numbers(symbols[0], result)))
 
 
 def _notes(tape: Tape) -> list[Prose]:
-    """What the floats in a user's code were read as, and what else was taken for granted."""
+    """Return notes on how the floats in a user's code were read, and on other assumptions."""
     notes = [prose("h > 0 is taken for granted")] if tape.positive else []
     if tape.readings:
-        shown = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
-        told = f"floats are read as the exact numbers that they are written for: {shown}"
-        notes.append(read_prose(told))
+        pairs = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
+        sentence = f"floats are read as the exact numbers that they are written for: {pairs}"
+        notes.append(read_prose(sentence))
     if tape.rounded:
-        shown = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
-        notes.append(read_prose(f"floats taken by their exact binary values: {shown}"))
+        pairs = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
+        notes.append(read_prose(f"floats taken by their exact binary values: {pairs}"))
     return notes
 
 
 # -- a step for an H ------------------------------------------------------------------------------
 
 
-def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
-    """By the prover for one H. Raises InputError where it has no series and no closed form."""
+def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
+    """Prove the step by the prover for one H. Raises InputError where it has no series and no
+    closed form."""
     traced = traced_map(hamiltonian, trace.roots)
     proof = prove(traced.step_map)
-    said, more = "traced with symbols", dict[str, Any]()
-    if proof.planar:  # of which alone closed forms and a bound of the order are told
-        said, power = f"{said}; the map {traced.how}", proof.first.power
+    text, more = "traced with symbols", dict[str, Any]()
+    if proof.planar:  # closed forms and a bound of the order are reported in the plane alone
+        text, power = f"{text}; the map {traced.how}", proof.first.power
         more = {"area_at_least": power or MOST_ORDERS + 1, "delta_j": proof.step_map.delta_j_text}
     return Finding(
         proof.verdict,
@@ -90,7 +98,7 @@ def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         convergence_order=proof.convergence_order,
         order_decided=proof.convergence_decided,
         domain=(proof.domain & domain_of(trace.tape)).texts,
-        notes=(prose(said), *_notes(trace.tape)),
+        notes=(prose(text), *_notes(trace.tape)),
         entry=proof.entry,
         **more,
     )
@@ -99,9 +107,9 @@ def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
 # -- a map without an H ---------------------------------------------------------------------------
 
 
-def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
-    """Whether S vanishes, decided by exact algebra. Raises StepError where it is too long."""
-    ring, closed = _closed(trace, names)
+def prove_map(trace: Trace, names: tuple[str, ...]) -> Finding:
+    """Decide by exact algebra if S vanishes. Raises StepError where the map is too long."""
+    ring, closed = _embed_closed_form(trace, names)
     form = closed_form.defect_of(ring, names, closed)
     decision, place = form.decide()
     where = domain_of(trace.tape)
@@ -110,8 +118,8 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
         domain=where.texts, notes=(prose("traced with symbols"), *_notes(trace.tape)),
     )  # fmt: skip
     if decision.zero is True:
-        said = prose("S is the zero form: the map is symplectic")
-        reason = prose(said, ", where ", where.prose) if where else said
+        text = prose("S is the zero form: the map is symplectic")
+        reason = prose(text, ", where ", where.prose) if where else text
         return replace(
             base, verdict=Verdict.PROVED, reason=reason, symplectic=True, area_preserving=True
         )
@@ -124,36 +132,37 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
         verdict=Verdict.REFUTED,
         symplectic=False,
         area_preserving=volume,
-        entry=form.called(place),
+        entry=form.entry_name(place),
     )
 
 
-def _closed(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
-    """The map as elements of a ring."""
-    exact = written(trace.roots, _MOST_OF_MAP)
+def _embed_closed_form(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
+    """Return the map as elements of a ring."""
+    exact = write_expressions(trace.roots, _MOST_OF_MAP)
     if exact is None:
         raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
-    return embed([checked(x, "map", "its closed form") for x in exact], names, _MOST_TERMS)
+    return embed([check_expression(x, "map", "its closed form") for x in exact], names, _MOST_TERMS)
 
 
 # -- where it is defined --------------------------------------------------------------------------
 
 
 def domain_of(tape: Tape) -> Domain:
-    """What all operations on the tape ask for, those that cancelled in the end, too."""
-    found, words = list[Requirement](), list[str]()
+    """Collect the requirements of all operations on the tape, also of those that cancel in the
+    end."""
+    requirements, words = list[Requirement](), list[str]()
     if tape.positive:
-        found.append(Requirement(symbol("h"), ">"))
+        requirements.append(Requirement(symbol("h"), ">"))
     for node in tape.nodes:
         operand = node.inputs[-1] if node.inputs else None
         if operand is None or not _asks(node):
             continue
-        inside = written([operand], _MOST_INSIDE)
+        inside = write_expressions([operand], _MOST_INSIDE)
         if inside is None:
             words.append(_NOT_WRITTEN)
         else:
-            found += _asked(node, inside[0])
-    return Domain.of(found, *words) if found or words else EVERYWHERE
+            requirements += _requirements_of(node, inside[0])
+    return Domain.from_requirements(requirements, *words) if requirements or words else EVERYWHERE
 
 
 def _asks(node: Node) -> bool:
@@ -162,14 +171,14 @@ def _asks(node: Node) -> bool:
     return power or node.operation == "divide" or bool(function and function.domain)
 
 
-def _asked(node: Node, operand: sympy.Expr) -> list[Requirement]:
-    """Of a smooth map: no root is taken of 0."""
+def _requirements_of(node: Node, operand: sympy.Expr) -> list[Requirement]:
+    """Return the requirements of a node of a smooth map: no root is taken of 0."""
     match node.operation:
         case "divide":
-            return of_divisor(operand)
+            return requirements_of_divisor(operand)
         case "power" | "sqrt":
             exponent = sympy.Rational(node.value or Fraction(1, 2))
-            asked = of_power(operand, exponent)
-            return [Requirement(r.expression, ">") if exponent.q > 1 else r for r in asked]
+            requirements = requirements_of_power(operand, exponent)
+            return [Requirement(r.expression, ">") if exponent.q > 1 else r for r in requirements]
         case name:
-            return of_function(name, operand)
+            return requirements_of_function(name, operand)

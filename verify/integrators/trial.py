@@ -1,4 +1,4 @@
-"""A user's step or map with all that is asked of it, and what has been measured of it."""
+"""A user's step or map with its claims and places, and what has been measured of it."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -15,7 +15,7 @@ from verify.integrators.probes.duals import DualProbe
 from verify.integrators.results import NOTHING, Claims
 from verify.integrators.user_code.user_map import UserMap
 
-Measured = tuple[Structure, Distances | None]  # no distances of a map, which is for no H
+Measurement = tuple[Structure, Distances | None]  # no distances of a map, which is for no H
 
 
 @dataclass
@@ -27,13 +27,15 @@ class Trial:
     places: list[Place]
     claims: Claims = NOTHING
     request: Request = NOWHERE
-    _last: Measured | None = field(default=None, init=False, repr=False)
+    _last: Measurement | None = field(default=None, init=False, repr=False)
 
-    def measure(self, how: str, ladder: Sequence[Fraction] = ()) -> Measured:
-        """What is measured by dual numbers or by floats. Raises StepError, and what the user's code
-        raises."""
+    def measure(self, how: str, ladder: Sequence[Fraction] = ()) -> Measurement:
+        """Measure the structure and the distances, by dual numbers or by floats. Raises StepError,
+        and what the user's code raises."""
         probe = probe_of(self.step, how)
         if isinstance(probe, DualProbe):
+            # Dual numbers may take another branch than floats do: what they measure would then be
+            # of another map.
             must_agree(probe, self.places)
         structure, distances = structure_of(self.step, probe, self.places), None
         if self.hamiltonian is not None:
@@ -43,9 +45,9 @@ class Trial:
         return self._last
 
     @property
-    def evidence(self) -> Measured | None:
-        """Where a claim may be seen to fail: what was measured last, or is now; None where that
-        cannot be."""
+    def evidence(self) -> Measurement | None:
+        """The measurement in which a claim may be seen to fail: the last one, or a new one; None
+        where none succeeds."""
         for how in self.step.ways:
             if self._last is None:
                 with suppress(Exception):  # the user's code may raise anything

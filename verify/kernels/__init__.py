@@ -1,1 +1,1 @@
-"""Step map → program → loop → N steps; and the rounding of a step, counted."""
+"""Kernels: step map → program → loop → N steps, and bounds on the rounding of one step."""

@@ -1,4 +1,4 @@
-"""One kernel's loop in chunks, what is noted on the way, and its checkpoints."""
+"""The loop of one kernel in chunks, the notes it takes on the way, and its checkpoints."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -33,11 +33,12 @@ Note = Mapping[str, Fraction]
 
 @dataclass(frozen=True)
 class Reached:
-    """Where a run is after some chunks and their notes, which is all that a checkpoint keeps.
+    """The point that a run has reached after some chunks, with its notes: all that a checkpoint
+    keeps.
 
     `trail` has p, q and the observables at points on the way and at the last step done, as the
     exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
-    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are asked for. `state`: all
+    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are requested. `state`: all
     that is carried; `seen`: extremes since the last note.
     """
 
@@ -51,7 +52,7 @@ class Reached:
 
 
 class _Now(NamedTuple):
-    """`Reached` while the loop goes on."""
+    """`Reached` while the loop is running."""
 
     done: int
     seconds: float
@@ -63,13 +64,15 @@ class _Now(NamedTuple):
 
 
 @cache
-def _kept() -> TypeAdapter[Reached]:
+def _checkpoint_adapter() -> TypeAdapter[Reached]:
     return TypeAdapter(Reached)
 
 
+# Raising the step count never brings an orbit back into range, so the property is monotonic and
+# bisection finds the last good count in log₂(count) calls.
 def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) -> Course[int]:
-    """The greatest number of steps below `count` that stays in range, by bisection; where one does
-    not, there are no states when it is advanced by so many."""
+    """Return the greatest number of steps below `count` that stays in range, by bisection.
+    `advance(n)` returns no states where one of n steps leaves the range."""
     good, bad = 0, count
     while bad - good > 1:
         middle = (good + bad) // 2
@@ -81,7 +84,7 @@ def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) ->
 
 
 class ChunkedLoop:
-    """Does a run with one kernel from its start, or from where a checkpoint was kept."""
+    """A run with one kernel, from its start or from the last checkpoint."""
 
     def __init__(
         self,
@@ -93,74 +96,82 @@ class ChunkedLoop:
     ) -> None:
         self.run, self.kernel, self.arithmetic, self.shift = run, kernel, arithmetic, shift
         number = arithmetic.number
+        # The order is that of the kernel's signature: h, parameters, scales, limits, clock.
         self.fixed: list[Number] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
         if kernel.timed:
             self.fixed += [number(x) for x in clock_inputs(arithmetic, run.start).values()]
+        # Where H is periodic in t, the clock is reset to the first period before every chunk, as a
+        # fixed-point t would leave its format.
         self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
-        self._at = {name: k for k, name in enumerate(kernel.state_names)}
-        self._extreme = [name for name in _EXTREMES if name in self._at]
-        asked = sorted(run.observables & observables.by_name().keys())
-        self._observables = {name: observables.by_name()[name] for name in asked}
-        self._noted = (*kernel.coordinates, *asked)
+        self._position = {name: k for k, name in enumerate(kernel.state_names)}
+        self._extreme = [name for name in _EXTREMES if name in self._position]
+        observable_names = sorted(run.observables & observables.by_name().keys())
+        self._observables = {name: observables.by_name()[name] for name in observable_names}
+        self._note_names = (*kernel.coordinates, *observable_names)
         self._form = [
             name
             for name in kernel.state_names
             if f"d{name}" in kernel.outputs and name.startswith("w_")
         ]
-        noted = tangent_map.names_of(kernel.coordinates)
-        known = (*(name for name in noted if name in self._at), "done")
-        self._tangent = known if "growth" in self._at else ()
+        tangent_names = tangent_map.names_of(kernel.coordinates)
+        carried_names = (*(name for name in tangent_names if name in self._position), "done")
+        self._tangent = carried_names if "growth" in self._position else ()
         self._tangent += tuple(self._form) if ENTRIES in run.observables else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = run.section
+        # The label identifies the run: a checkpoint with another one is ignored, since its numbers
+        # would have other bits.
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
-        kept = run.keeper.load(self._label)
-        begun = Reached() if kept is None else self._restored(kept)
-        self.done, self.seconds = begun.done, begun.seconds
-        notes = Notes(begun.trail), Notes(begun.tangents), Notes(begun.series)
-        self._now = _Now(begun.done, begun.seconds, begun.state, begun.seen, *notes)
+        checkpoint = run.keeper.load(self._label)
+        resumed = Reached() if checkpoint is None else self._restore(checkpoint)
+        self.done, self.seconds = resumed.done, resumed.seconds
+        notes = Notes(resumed.trail), Notes(resumed.tangents), Notes(resumed.series)
+        self._now = _Now(resumed.done, resumed.seconds, resumed.state, resumed.seen, *notes)
 
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
         if self.kernel.timed:
             start = start | self._clock_after(0)
         state: list[Number] = []
-        carried = (*self.kernel.coordinates, *self.kernel.start)
-        for kind, first in zip(self.kernel.kinds, carried, strict=True):
+        start_names = (*self.kernel.coordinates, *self.kernel.start)
+        for kind, first in zip(self.kernel.kinds, start_names, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
             state.append(nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
 
-    def _clock_after(self, done: int) -> dict[str, Fraction]:
-        """What the kernel's clock starts with after so many steps."""
-        t = self.run.start["t"] + done * self.run.start["h"]
+    def _clock_after(self, steps: int) -> dict[str, Fraction]:
+        """Return the values with which the kernel's clock starts after so many steps."""
+        t = self.run.start["t"] + steps * self.run.start["h"]
         t = self.turns.time(t, self.arithmetic) if self.turns else t
         return {"t": t} | first_rest(self.arithmetic, t)
 
-    def _turned_back(self) -> State:
-        """The state with whole periods of H taken off t."""
+    def _state_in_first_period(self) -> State:
+        """Return the state with whole periods of H taken off t."""
         state, clock = list(self.state), self._clock_after(self.done)
-        for at, first in enumerate(self.kernel.start, start=len(self.kernel.coordinates)):
+        for index, first in enumerate(self.kernel.start, start=len(self.kernel.coordinates)):
             if isinstance(first, str) and first in clock:
-                state[at] = self.arithmetic.number(clock[first])
+                state[index] = self.arithmetic.number(clock[first])
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
 
-    def to_end(self, goes_on: Callable[[int], bool] = lambda _: True) -> Course[bool]:
-        """Steps to the end; ends early where a number left the arithmetic's range, with `done` the
-        steps that stayed in it. `goes_on` is told the steps done after every chunk, and says
-        whether to go on: False where it said no."""
+    def run_to_end(self, goes_on: Callable[[int], bool] = lambda _: True) -> Course[bool]:
+        """Step to the end, or until a number leaves the arithmetic's range; `done` is then the
+        number of steps that stayed in it.
+
+        `goes_on` is called with the steps done after every chunk. Return False where it said no.
+        """
         run = self.run
         self.arithmetic.expect(self.kernel.function, run.steps - self.done)
+        # A call with 0 steps compiles the kernel, and is not timed.
         yield from self._advance(0)  # compiles: `seconds` is the stepping alone
         while self.done < run.steps:
-            every, stops = self._ahead()
+            every, stops = self._next_stops()
             begun = clock()
             states = yield from self._advance(every, stops)
             self.seconds += clock() - begun
@@ -171,113 +182,127 @@ class ChunkedLoop:
                     return False
                 if run.keeper.due(self._label):
                     self.keep()
+            # A number left the range in the next `every` steps: bisection finds the last step that
+            # did not.
             if len(states) < stops:
                 self.done += yield from last_good(every, self._advance)
                 return True
         return True
 
-    def _ahead(self) -> tuple[int, int]:
-        """So many steps to the next stop, and so many stops: to a note or to some, or on the way to
-        the next where that is far."""
-        left, chunk = self.section - self.done % self.section, self.arithmetic.chunk
+    def _next_stops(self) -> tuple[int, int]:
+        """Return the number of steps to the next stop, and the number of stops: to a note or to
+        several, or part of the way to a note that is far."""
+        to_note, chunk = self.section - self.done % self.section, self.arithmetic.chunk
         chunk = min(chunk, self.turns.steps) if self.turns else chunk
-        rest = self.run.steps - self.done
+        remaining = self.run.steps - self.done
         # The first note is made by itself, since a run may be asked there whether to go on.
-        if self.done and left == self.section and 2 * self.section <= min(chunk, rest):
-            return self.section, min(chunk, rest) // self.section
-        return min(chunk, left, rest), 1
+        if self.done and to_note == self.section and 2 * self.section <= min(chunk, remaining):
+            return self.section, min(chunk, remaining) // self.section
+        return min(chunk, to_note, remaining), 1
 
     def _advance(self, every: int, stops: int = 1) -> Course[list[State]]:
-        """The states at the next stops; fewer where a number left the arithmetic's range."""
+        """Return the states at the next stops; fewer where a number left the arithmetic's range."""
         kernel = self.kernel.function
-        state = self._turned_back() if self.turns else self.state
-        beyond = self.run.steps - self.done - every * stops
-        found = yield from self.arithmetic.states(kernel, every, stops, self.fixed, state, beyond)
-        return list(takewhile(self._finite, found))
+        state = self._state_in_first_period() if self.turns else self.state
+        remaining = self.run.steps - self.done - every * stops
+        states = yield from self.arithmetic.states(
+            kernel, every, stops, self.fixed, state, remaining
+        )
+        return list(takewhile(self._finite, states))
 
     def _finite(self, state: State) -> bool:
+        """Return True if all doubles of the state are finite."""
         return all(map(math.isfinite, map(state.__getitem__, self._doubles)))
 
-    # -- what is noted ------------------------------------------------------------------------
+    # -- notes --------------------------------------------------------------------------------
 
     @property
-    def reached(self) -> Reached:
-        """All that was taken up so far."""
+    def current(self) -> Reached:
+        """All that has been noted so far."""
         now = self._now
-        noted = tuple(now.trail), tuple(now.tangents), tuple(now.series)
-        return Reached(now.done, now.seconds, now.state, now.seen, *noted)
+        notes = tuple(now.trail), tuple(now.tangents), tuple(now.series)
+        return Reached(now.done, now.seconds, now.state, now.seen, *notes)
 
     def _note(self) -> None:
-        """Takes up the state. It is taken up whole: an interruption may come amid this."""
+        """Note the state. All notes are replaced at once, since an interruption may come at any
+        moment."""
         before, state, done = self._now, self.state, self.done
+        # The new tuple is built completely before it is assigned to `_now`: a KeyboardInterrupt in
+        # between leaves the old, consistent notes.
         seen = self._extremes(state) if self._extreme else {}
         trail, tangents, series = before.trail, before.tangents, before.series
         if done % self.section == 0 or done == self.run.steps:
             if self._tangent:
-                carried = LazyNote(self._tangent, self._of_tangent, state, done)
-                tangents = tangents.and_then(carried)
+                note = LazyNote(self._tangent, self._tangent_value, state, done)
+                tangents = tangents.and_then(note)
             if seen:
                 series = series.and_then(self._point(len(trail) * self.section + 1, seen))
                 seen = {}
-            trail = trail.and_then(LazyNote(self._noted, self._final, state, done))
+            trail = trail.and_then(LazyNote(self._note_names, self._exact_value, state, done))
         self._now = _Now(done, self.seconds, state, seen, trail, tangents, series)
 
     def _extremes(self, state: State) -> dict[str, Fraction]:
-        """Those since the last note."""
-        radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self._now.seen)
+        """Return the extremes of ΔJ and Λ since the last note."""
+        radius, extremes = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self._now.seen)
         for name in self._extreme:
-            x, low = state[self._at[name]], name.endswith("low")
+            x, low = state[self._position[name]], name.endswith("low")
+            # A ball counts with its outer end, so that the extremes enclose the true ones.
             end = self._exact(x) - radius(x) if low else self._exact(x) + radius(x)
-            found[name] = (min if low else max)(end, found.get(name, end))
-        return found
+            extremes[name] = (min if low else max)(end, extremes.get(name, end))
+        return extremes
 
-    def _of_tangent(self, name: str, state: State, done: int) -> Fraction:
+    def _tangent_value(self, name: str, state: State, done: int) -> Fraction:
+        """Return one number of the tangent map's notes, as the exact rational that it is."""
         if name in self._form:
-            return self._unscaled(1, self._total(name, state, self._exact))
-        return Fraction(done) if name == "done" else self._exact(state[self._at[name]])
+            return self._unscale(1, self._total(name, state, self._exact))
+        return Fraction(done) if name == "done" else self._exact(state[self._position[name]])
 
-    def _final(self, name: str, state: State, done: int) -> Fraction:
-        """p, q or an observable after the steps done, as the exact rational that it is."""
-        value = self._observed(name, state, done, self._exact)
+    def _exact_value(self, name: str, state: State, done: int) -> Fraction:
+        """Return p, q or an observable after the steps done, as the exact rational that it is."""
+        value = self._observe(name, state, done, self._exact)
         return value - self._observables[name].begins if name in self._observables else value
 
-    def _observed(
-        self, name: str, state: State, done: int, of: Callable[[Number], Fraction]
+    def _observe(
+        self, name: str, state: State, done: int, convert: Callable[[Number], Fraction]
     ) -> Fraction:
-        """The same of what is carried, or of its radii, with what it began with."""
+        """Return the same from the carried numbers, or from their radii, with the value it began
+        with."""
         if name not in self._observables:
-            return self._total(name, state, of)
+            return self._total(name, state, convert)
         each = self._observables[name]
         carried = self._form if each.carried == "w_" else [each.carried]
-        totals = (self._total(entry, state, of) for entry in carried)
-        return each.read([self._unscaled(each.shift, total) for total in totals], done)
+        # W has several accumulators, all others one; each carries 2^(s·shift) times its value.
+        totals = (self._total(entry, state, convert) for entry in carried)
+        return each.read([self._unscale(each.shift, total) for total in totals], done)
 
-    def _total(self, carried: str, state: State, of: Callable[[Number], Fraction]) -> Fraction:
-        """What is carried under a name, with what a compensated kernel carries beside it."""
-        total = of(state[self._at[carried]])
-        if (rest := f"{carried}_rest") in self._at:
-            total += of(state[self._at[rest]])
+    def _total(self, name: str, state: State, convert: Callable[[Number], Fraction]) -> Fraction:
+        """Return the carried number of that name, plus the remainder that a compensated kernel
+        carries with it."""
+        total = convert(state[self._position[name]])
+        if (rest := f"{name}_rest") in self._position:
+            total += convert(state[self._position[rest]])
         return total
 
     def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
-    def _unscaled(self, times: int, value: Fraction) -> Fraction:
+    def _unscale(self, times: int, value: Fraction) -> Fraction:
         scale = self.shift * times
         return value / (1 << scale) if scale else value
 
     def radii(self) -> dict[str, Fraction]:
-        """How far the last values may be from the true ones, where numbers are enclosures."""
+        """Return how far the last values may be from the true ones, where numbers are
+        enclosures."""
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
             return {}
         state, done = self.state, self.done
-        return {n: self._observed(n, state, done, radius) for n in self._noted}
+        return {n: self._observe(n, state, done, radius) for n in self._note_names}
 
     def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
             ends = (seen[f"{name}_{end}"] for end in ("low", "high"))
-            low, high = (self._unscaled(1, x) for x in ends)
+            low, high = (self._unscale(1, x) for x in ends)
             return decimal(low, 7), decimal(high, 7)
 
         return SeriesPoint(first=first, last=self.done, delta_j=pair("dj"), lam=pair("lam"))
@@ -285,22 +310,25 @@ class ChunkedLoop:
     # -- checkpoints --------------------------------------------------------------------------
 
     def keep(self) -> None:
-        """Writes a checkpoint: all that is needed to go on with the same bits."""
+        """Write a checkpoint: all that is needed to go on with the same bits."""
         # A ball's radius is not kept; such runs are short.
         if self.arithmetic.radius is None and self._now.done:
-            self.run.keeper.save(self._label, _kept().dump_python(self._whole(), mode="json"))
+            self.run.keeper.save(
+                self._label, _checkpoint_adapter().dump_python(self._evaluate_notes(), mode="json")
+            )
 
-    def _whole(self) -> Reached:
-        """What is reached, with all its numbers made."""
-        own = self.reached
-        state = tuple(self._exact(x) for x in own.state)
-        trail, tangents = tuple(map(dict, own.trail)), tuple(map(dict, own.tangents))
-        return replace(own, state=state, trail=trail, tangents=tangents)
+    def _evaluate_notes(self) -> Reached:
+        """Return the notes with all their numbers evaluated."""
+        reached = self.current
+        state = tuple(self._exact(x) for x in reached.state)
+        trail, tangents = tuple(map(dict, reached.trail)), tuple(map(dict, reached.tangents))
+        return replace(reached, state=state, trail=trail, tangents=tangents)
 
-    def _restored(self, kept: Mapping[str, Any]) -> Reached:
-        found = _kept().validate_python(kept)
+    def _restore(self, checkpoint: Mapping[str, Any]) -> Reached:
+        """Read a checkpoint, and set the state from it."""
+        reached = _checkpoint_adapter().validate_python(checkpoint)
         self.state = tuple(
             float(x) if kind == "float" else self.arithmetic.number(x)
-            for kind, x in zip(self.kernel.kinds, found.state, strict=True)
+            for kind, x in zip(self.kernel.kinds, reached.state, strict=True)
         )
-        return found
+        return reached

@@ -1,10 +1,11 @@
-"""Step map + observables → a loop over N steps in one arithmetic, with nothing not asked for.
+"""Step map + observables → a loop over N steps in one arithmetic, with nothing that was not
+requested.
 
-What the loop does with a step's values is in `verify.kernels.statements`. Where H depends on time,
-step k is made at t = t₀ + k h (`verify.kernels.clock`).
+The statements of the loop that use a step's values are written in `verify.kernels.statements`.
+Where H depends on time, step k is made at t = t₀ + k h (`verify.kernels.clock`).
 
 Where an arithmetic's numbers have an absolute precision (fixed point), the loop ends where p, q, Λ,
-Π det J or a function's value leaves the limits that are given with the parameters.
+Π det J or a function's value leaves the limits that are passed with the parameters.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +19,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_of
 from verify.kernels.statements import TANGENT, Statements, is_scaled, needs_of
 from verify.kernels.step import newton
-from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
+from verify.kernels.step.computation import Computation, Observed, computation_of, step_map_of
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.step.lowering import Lowering
 from verify.schemes.maps.step_map import StepMap
@@ -30,7 +31,7 @@ _OF_MATRIX = "reach_m"  # where M is carried
 
 @dataclass(frozen=True, eq=False)
 class Kernel(Computation):
-    """What is computed, in an arithmetic.
+    """A computation in one arithmetic, compiled.
 
     `function(steps, h, *parameters, *scales, *limits, *clock, *state)` → (steps done, *state).
 
@@ -60,7 +61,8 @@ def kernel_for(
     observables: frozenset[str],
     compensated: bool = False,
 ) -> Kernel:
-    """The kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled once."""
+    """Return the kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled
+    once."""
     step_map = step_map_of(hamiltonian, scheme)
     return Writer(step_map, arithmetic, observables, compensated).kernel()
 
@@ -78,46 +80,50 @@ class Writer:
     ) -> None:
         self.arithmetic = arithmetic
         self.scaled = scaled and arithmetic.absolute and is_scaled(observables)
-        asked = Observed(
+        request = Observed(
             pipelined=arithmetic.pipelined,
             scaled=self.scaled,
             tangent=TANGENT in observables,
             needs=frozenset(needs_of(observables)),
         )
-        self.made: Computation = computed(step_map, asked)
-        self.coordinates = self.made.coordinates
-        self.program, self.tangent = self.made.program, self.made.tangent
+        self.computation: Computation = computation_of(step_map, request)
+        self.coordinates = self.computation.coordinates
+        self.program, self.tangent = self.computation.program, self.computation.tangent
         self.lowering = Lowering(
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
-        self.statements = Statements(self.made, self.lowering, arithmetic, observables, compensated)
+        self.statements = Statements(
+            self.computation, self.lowering, arithmetic, observables, compensated
+        )
         self.state = self.statements.state
-        self.clock = clock_of(arithmetic) if self.made.timed else None
+        self.clock = clock_of(arithmetic) if self.computation.timed else None
+        # The clock is carried behind the state, so that p and q keep their places.
         for name, start in self.clock.carried if self.clock else ():
             self.statements.carry(name, start)
 
-    # -- what is computed ---------------------------------------------------------------------
+    # -- the computation ----------------------------------------------------------------------
 
     def kernel(self) -> Kernel:
-        """The kernel, compiled. UnsupportedError where the arithmetic lacks what it needs."""
-        lines = self.statements.written()
-        matrix = (_OF_MATRIX,) * bool(self.made.matrix)
+        """Compile the kernel. UnsupportedError where the arithmetic lacks something that it
+        needs."""
+        lines = self.statements.all_lines()
+        matrix = (_OF_MATRIX,) * bool(self.computation.matrix)
         limits = (*LIMITS, *matrix) if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
         clock = self.clock.arguments if self.clock else ()
-        needed = self.made.roots
-        self.check(needed)
-        source = self.assemble(needed, lines, (*scales, *limits, *clock))
+        roots = self.computation.roots
+        self.check(roots)
+        source = self.assemble(roots, lines, (*scales, *limits, *clock))
         scope = {
             **self.arithmetic.functions,
-            **self.lowering.named_constants(self.arithmetic.number, needed),
+            **self.lowering.named_constants(self.arithmetic.number, roots),
             **newton.constants(self.arithmetic.bits, self.arithmetic.number),
             **self.constants_of_tangent(),
             **(self.clock.constants(self.arithmetic) if self.clock else {}),
         }
         names, kinds, start = zip(*self.state, strict=True)
         return Kernel(
-            **vars(self.made),
+            **vars(self.computation),
             function=self.arithmetic.compile(source, "kernel", scope),
             scales=scales,
             limits=limits,
@@ -129,43 +135,50 @@ class Writer:
             names=scope,
         )
 
-    def check(self, needed: Sequence[int]) -> None:
-        """Raises UnsupportedError where the arithmetic lacks a function, or solves no equations."""
-        for function in sorted(self.lowering.called(needed)):
+    def check(self, roots: Sequence[int]) -> None:
+        """Raise UnsupportedError where the arithmetic lacks a function, or solves no equations."""
+        for function in sorted(self.lowering.function_names(roots)):
             if function not in self.arithmetic.functions:
                 raise UnsupportedError(f"{self.arithmetic.name} has no {function}")
-        rounded = not self.arithmetic.absolute and self.arithmetic.radius is None
-        if self.lowering.solves(needed) and not rounded:
+        # Newton's method needs numbers of a relative precision that are no enclosures: it is
+        # written neither for fixed point nor for balls.
+        rounds = not self.arithmetic.absolute and self.arithmetic.radius is None
+        if self.lowering.solves(roots) and not rounds:
             raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
     def constants_of_tangent(self) -> dict[str, Number]:
-        """The constants of the tangent map's lines, as doubles by their names."""
-        made = self.tangent
-        return made.lowering.named_constants(nearest_double, made.change) if made else {}
+        """Return the constants of the tangent map's lines, as doubles by their names."""
+        tangent = self.tangent
+        return tangent.lowering.named_constants(nearest_double, tangent.change) if tangent else {}
 
     # -- how it is written --------------------------------------------------------------------
 
     def assemble(
-        self, needed: Sequence[int], statements: list[str], more_arguments: Sequence[str]
+        self, roots: Sequence[int], statements: list[str], more_arguments: Sequence[str]
     ) -> str:
-        """The kernel's source for `needed` operations; more arguments follow H's parameters."""
-        static, dynamic = self.lowering.lines(needed)
+        """Return the kernel's source for the operations of these roots; more arguments follow H's
+        parameters."""
+        # Static lines do not depend on the state: they stand before the loop, and cost nothing per
+        # step.
+        static, dynamic = self.lowering.lines(roots)
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)
             static, dynamic = static + more[0], dynamic + more[1]
         if self.clock:
             dynamic, statements = [self.clock.now, *dynamic], [*statements, *self.clock.later]
         names = ", ".join(name for name, _, _ in self.state)
-        parameters = [f"x{k}" for k in range(len(self.made.parameters))]
-        given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
-        annotated = [f"{name}: '{kind}'" for name, kind, _ in self.state]
-        arguments = ", ".join(["steps: 'int'", "h", *parameters, *given, *annotated])
-        guard = self.guard(needed)
+        parameters = [f"x{k}" for k in range(len(self.computation.parameters))]
+        extra_arguments = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
+        state_arguments = [f"{name}: '{kind}'" for name, kind, _ in self.state]
+        arguments = ", ".join(
+            ["steps: 'int'", "h", *parameters, *extra_arguments, *state_arguments]
+        )
+        guard = self.guard(roots)
         return "\n".join(
             [
                 f"def kernel({arguments}):",
                 *(f"    {line}" for line in static),
-                "    for k in range(steps):",  # what is before it is the same for every k
+                "    for k in range(steps):",  # the lines before it are the same for every k
                 *(f"        {line}" for line in [*dynamic, *statements]),
                 *([f"        if not ({guard}): return k, {names}"] if guard else []),
                 f"    return steps, {names}",
@@ -173,17 +186,21 @@ class Writer:
             ]
         )
 
-    def guard(self, needed: Sequence[int]) -> str:
-        """What holds as long as the orbit is in range; empty where nothing is to be looked at."""
+    def guard(self, roots: Sequence[int]) -> str:
+        """Return the condition that holds as long as the orbit is in range; empty where nothing is
+        checked."""
         if not self.arithmetic.absolute:
             template = self.arithmetic.guard
             inside = (template.format(x=x) for x in self.coordinates) if template else ()
             return " and ".join(inside)
-        looked_at = {name: f"reach_{name[0]}" for name in self.coordinates}
+        limit_of = {name: f"reach_{name[0]}" for name in self.coordinates}
         products = [name for name, _, _ in self.state if name in ("part", "plain")]
-        looked_at |= dict.fromkeys(products, "reach_part")
-        looked_at |= dict.fromkeys(self.made.matrix, _OF_MATRIX)
-        for index in self.lowering.live(needed):
+        limit_of |= dict.fromkeys(products, "reach_part")
+        limit_of |= dict.fromkeys(self.computation.matrix, _OF_MATRIX)
+        # Sums and products cannot overflow while p, q and function values are within their limits:
+        # `verify.kernels.stepping.limits` has chosen these so. Only unbounded functions are
+        # checked.
+        for index in self.lowering.live(roots):
             if may_leave_range(self.program.ops[index]):
-                looked_at[self.lowering.name(index)] = "reach_value"
-        return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in looked_at.items())])
+                limit_of[self.lowering.name(index)] = "reach_value"
+        return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in limit_of.items())])

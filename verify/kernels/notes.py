@@ -1,4 +1,4 @@
-"""What is noted on the way of a run: numbers by their names, and one note after another."""
+"""Notes on the way of a run: numbers by their names, and one note after another."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -8,10 +8,10 @@ T = TypeVar("T")
 
 
 class LazyNote(Mapping[str, Fraction]):
-    """The numbers of a state after so many steps, each made where it is first looked at: of most
-    notes few are."""
+    """The numbers of a state after so many steps, each computed when it is first read: most notes
+    are hardly read."""
 
-    __slots__ = ("_done", "_made", "_make", "_names", "_state")
+    __slots__ = ("_cache", "_make", "_names", "_state", "_steps_done")
 
     def __init__(
         self,
@@ -20,18 +20,18 @@ class LazyNote(Mapping[str, Fraction]):
         state: Sequence[Any],
         done: int,
     ) -> None:
-        """`make`: a name's number, of the state and the steps done."""
-        self._names, self._make, self._state, self._done = names, make, state, done
-        self._made: dict[str, Fraction] | None = None
+        """`make`: computes the number of that name from the state and the steps done."""
+        self._names, self._make, self._state, self._steps_done = names, make, state, done
+        self._cache: dict[str, Fraction] | None = None
 
     def __getitem__(self, name: str) -> Fraction:
-        if self._made is None:
-            self._made = {}
-        if name not in self._made:
+        if self._cache is None:
+            self._cache = {}
+        if name not in self._cache:
             if name not in self._names:
                 raise KeyError(name)
-            self._made[name] = self._make(name, self._state, self._done)
-        return self._made[name]
+            self._cache[name] = self._make(name, self._state, self._steps_done)
+        return self._cache[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -41,12 +41,13 @@ class LazyNote(Mapping[str, Fraction]):
 
     @property
     def state(self) -> Sequence[Any]:
-        """What they are made of, as the arithmetic has it."""
+        """The state that the numbers are computed from, as the arithmetic has it."""
         return self._state
 
 
 class Notes(Sequence[T]):
-    """Some notes, which stay as they are: one more makes others, that share what lies before it."""
+    """An immutable sequence of notes; adding one makes another sequence, which shares the older
+    notes."""
 
     __slots__ = ("_count", "_items")
 
@@ -64,10 +65,11 @@ class Notes(Sequence[T]):
         return iter(self._items[: self._count])
 
     def and_then(self, item: T) -> "Notes[T]":
-        """These and one more."""
-        # Somebody else's, or what was left by an interruption, may lie behind these.
+        """Return these and one more."""
+        # Notes of another branch, or of an interrupted call, may lie behind these.
         shared = self._items if len(self._items) == self._count else self._items[: self._count]
         shared.append(item)
+        # The list is shared and only `_count` differs, so that adding a note takes constant time.
         after: Notes[T] = Notes()
         after._items, after._count = shared, self._count + 1
         return after

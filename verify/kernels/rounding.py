@@ -1,4 +1,4 @@
-"""What rounding does to a program's values, counted operation by operation over a box of states.
+"""Rounding errors of a program's values, bounded operation by operation over a box of states.
 
 Every value gets an interval that holds it for all states in the box, and a bound on the error of
 its computed value there. The rules are those of forward error analysis, without linearisation:
@@ -24,24 +24,24 @@ PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digi
 
 @dataclass(frozen=True)
 class Rounded:
-    """An interval that holds the exact value, and a bound on the computed one's error."""
+    """An interval that holds the exact value, and a bound on the error of the computed one."""
 
     interval: Ball
     error: Ball
 
     @cached_property
     def size(self) -> Ball:
-        """An upper bound of |exact value|."""
+        """An upper bound on |exact value|."""
         return self.interval.abs_upper()
 
     @property
     def magnitude(self) -> Ball:
-        """An upper bound of |exact value| and |computed value|."""
+        """An upper bound on |exact value| and |computed value|."""
         return self.size + self.error
 
     @property
-    def widened(self) -> Ball:
-        """An interval that holds the computed value."""
+    def computed_interval(self) -> Ball:
+        """An interval that holds the computed value, not only the exact one."""
         return self.interval + self.error * flint.arb(0, 1)
 
 
@@ -49,17 +49,17 @@ Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude
 
 
 def rounding_of(arithmetic: Arithmetic) -> Rounding:
-    """The error of one operation of the arithmetic, which must be known."""
+    """Return the rounding error of one operation of the arithmetic, which must be known."""
     rounding = arithmetic.rounding
     assert rounding is not None, arithmetic.name  # noqa: S101 - the caller's condition
 
-    def own(op: Op, size: Ball) -> Ball:
+    def rounding_error(op: Op, size: Ball) -> Ball:
         if op.kind == "const":
-            found = arithmetic.exact(arithmetic.number(op.value))
-            return flint.arb(abs(_fmpq(found) - _fmpq(op.value)))
+            exact_constant = arithmetic.exact(arithmetic.number(op.value))
+            return flint.arb(abs(_fmpq(exact_constant) - _fmpq(op.value)))
         return rounding(*_function(op), size)
 
-    return own
+    return rounding_error
 
 
 _UNIT, _LEAST = flint.arb(2) ** -52, flint.arb(2) ** -1000
@@ -67,7 +67,7 @@ FLOAT: Rounding = lambda op, size: size * _UNIT + _LEAST  # noqa: E731
 
 
 def _fmpq(x: Fraction) -> flint.fmpq:
-    """flint's rational, whose differences take a tenth of the time."""
+    """Return flint's rational, whose differences take a tenth of the time."""
     return flint.fmpq(x.numerator, x.denominator)
 
 
@@ -78,35 +78,41 @@ def analyse(
     rounding: Rounding,
     limit: Ball | None = None,
 ) -> dict[int, Rounded] | None:
-    """Each live operation's value over the inputs' intervals; None where one may be undefined.
+    """Return each live operation's value over the inputs' intervals; None where one may be
+    undefined.
 
     `limit`, for inputs without an error: where a function may leave a range, its values are taken
     to be within ±limit, since the kernel's guard ends the loop otherwise.
     """
-    found: dict[int, Rounded] = {}
+    values: dict[int, Rounded] = {}
     for index in live:
         op = program.ops[index]
         if op.kind == "input":
-            found[index] = inputs[op.name]
+            values[index] = inputs[op.name]
             continue
         if op.kind == "loop":  # how far Newton's method is from the solution is not counted
             return None
-        interval, error = _value(op, [found[a] for a in op.args])
-        if limit is not None and _function(op)[0] in BALLS and not _within(interval, limit):
+        interval, error = _value(op, [values[a] for a in op.args])
+        # The kernel's guard ends the loop where such a value leaves ±limit, so larger ones need not
+        # be followed.
+        if limit is not None and _function(op)[0] in BALLS and not _is_within(interval, limit):
             interval = limit * flint.arb(0, 1)
         if not (interval.is_finite() and error.is_finite()):
             return None
-        own = rounding(op, interval.abs_upper() + error)
-        found[index] = Rounded(interval, (error + own).abs_upper())
-    return found
+        # The operation rounds its computed result, which is at most |interval| + error in size.
+        rounding_error = rounding(op, interval.abs_upper() + error)
+        values[index] = Rounded(interval, (error + rounding_error).abs_upper())
+    return values
 
 
-def _within(interval: Ball, limit: Ball) -> bool:
+def _is_within(interval: Ball, limit: Ball) -> bool:
+    """Return True if the interval lies in (−limit, limit)."""
     return bool(interval.is_finite() and abs(interval) < limit)
 
 
 def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
-    """The interval of the exact result, and the error that the arguments' errors make."""
+    """Return the interval of the exact result, and the error caused by the errors of the
+    arguments."""
     zero = flint.arb(0)
     match op.kind:
         case "const":
@@ -121,6 +127,7 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
             return total, x.error + y.error
         case "mul":
             x, y = args
+            # |x̂ŷ − xy| ≤ |x||ŷ − y| + |y||x̂ − x| + |x̂ − x||ŷ − y|.
             error = x.size * y.error + y.size * x.error + x.error * y.error
             if op.args[0] == op.args[1]:
                 return square(x.interval), error
@@ -130,20 +137,23 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
     value = BALLS[kind](x.interval, degree)
     if x.error.is_zero():  # of no matter then is a slope without a bound
         return value, zero
-    return value, _slope(kind, degree, x.widened).abs_upper() * x.error
+    # By the mean value theorem, with the slope over an interval that holds x and x̂.
+    return value, _slope(kind, degree, x.computed_interval).abs_upper() * x.error
 
 
 def _function(op: Op) -> tuple[str, int]:
-    """The kind of a function among `BALLS`, and a root's degree."""
+    """Return the kind of a function among `BALLS`, and a root's degree."""
     if op.kind == "call":
         return op.function.name, 1
     return op.kind, op.degree if op.kind == "root" else 1
 
 
 def _slope(kind: str, degree: int, x: Ball) -> Ball:
-    """A ball that holds the slopes of a function at x, or what they nowhere exceed."""
+    """Return a ball that holds the slopes of a function at x, or a bound on them."""
     if kind == "inverse":
         return square(1 / x)
+    # The slope of x^(1/n) is x^(1/n)/(n x), which a ball around 0 makes infinite: then None is
+    # returned.
     if kind == "root":
         return x.root(degree) / (degree * x)
     function = in_rings()[kind]

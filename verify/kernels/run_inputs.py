@@ -1,4 +1,4 @@
-"""What is run in a kernel, apart from the arithmetic that it is run in.
+"""The inputs of a run in a kernel, apart from the arithmetic.
 
 Whole periods of H(p, q, t) are taken off t where it is too large for a fixed-point format.
 
@@ -16,7 +16,7 @@ from typing import Self
 
 import flint
 
-from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
+from verify.arithmetic.arb import Ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
@@ -28,7 +28,7 @@ from verify.kernels.step.computation import step_map_of
 from verify.late import sympy
 
 _LARGE = 2**12  # of t, and of the angle that it makes: in the format are numbers below 2^15
-_SMALL = 16  # no period is looked for
+_SMALL = 16  # times up to which no period is needed
 _PERIODS = 256  # that t goes on before some are taken off again
 _SPARE = 24  # bits that t − m P has beyond those of the format
 _ABOVE_PI = Fraction(22, 7)
@@ -38,8 +38,8 @@ Times = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True)
 class Turns:
-    """P = `factor` π^`power`. From one `time` on a loop goes `steps` steps at most, all of them
-    made between `times`."""
+    """The period P = `factor` π^`power`. From one `time` on a loop goes `steps` steps at most, all
+    of them made between `times`."""
 
     factor: Fraction
     power: int
@@ -47,16 +47,18 @@ class Turns:
     times: Times
 
     def time(self, t: Fraction, arithmetic: Arithmetic) -> Fraction:
-        """t − m P, between −P and P."""
+        """Return t − m P, between −P and P."""
         size = max(abs(t), self.factor, 1 / self.factor).__ceil__().bit_length()
+        # m may have `size` bits and multiplies the rounding of P, hence the extra bits.
         with working_precision(arithmetic.bits + _SPARE + 3 * size):
             period: Ball = rational_ball(self.factor) * flint.arb.pi() ** self.power
-            whole = round(middle_and_radius(rational_ball(t) / period)[0])
-            return middle_and_radius(rational_ball(t) - whole * period)[0]
+            whole = round(midpoint_and_radius(rational_ball(t) / period)[0])
+            return midpoint_and_radius(rational_ball(t) - whole * period)[0]
 
 
 def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | None:
-    """None where the times are small enough, or H is not known to have a period in t."""
+    """Return the period to take off; None where the times are small enough, or H is not known to
+    have a period in t."""
     latest = max(map(abs, times))
     period = period_in(hamiltonian, "t") if latest > _SMALL else None
     if period is None:
@@ -65,6 +67,7 @@ def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | Non
     number = period / sympy.pi**power
     factor = Fraction(int(number.p), int(number.q))
     above = factor * _ABOVE_PI**power
+    # The angle 2π t/P stays below 2^12 too where t/P is below 2^12/8, as 2π < 8.
     if latest < _LARGE and latest / factor < _LARGE / 8:
         return None
     steps = max(1, (_PERIODS * factor / h).__floor__())
@@ -75,17 +78,18 @@ SECTIONS = 16  # notes of a run, where nothing is said
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
-    """H with its parameters as the kernel's arguments, where the scheme takes it so.
+    """Return H with its parameters as the kernel's arguments, where the scheme accepts it so.
 
     A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
     a = 1; then the values are put in.
     """
     generic = hamiltonian.with_symbols()
-    return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
+    return generic if _accepts(generic, scheme) else Hamiltonian(hamiltonian.exact)
 
 
 @lru_cache(maxsize=256)
-def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
+def _accepts(hamiltonian: Hamiltonian, scheme: str) -> bool:
+    """Return True if the scheme has a map of this Hamiltonian."""
     try:
         step_map_of(hamiltonian, scheme)
     except InputError:
@@ -94,12 +98,12 @@ def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
 
 
 class RunInputs:
-    """H, a scheme, where it starts, so many steps, and what is asked of them.
+    """H, a scheme, a starting point, a number of steps, and the observables requested of them.
 
     `start` has p, q, the step size h, and the time t where H depends on it.
 
     The state is noted `points` times on the way where a series is kept, else `sections` times.
-    `shares_kernel`: so many other runs are done with the same kernel that it repays being compiled.
+    `shares_kernel`: so many other runs use the same kernel that compiling it pays.
     """
 
     def __init__(
@@ -115,7 +119,7 @@ class RunInputs:
         shares_kernel: bool = False,
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
-        self._given = hamiltonian
+        self._hamiltonian_of_user = hamiltonian
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
         self.sections = points or sections
@@ -123,37 +127,39 @@ class RunInputs:
 
     @property
     def section(self) -> int:
-        """Steps between two notes."""
+        """The number of steps between two notes."""
         return -(-self.steps // self.sections)
 
     @property
     def implicit(self) -> bool:
-        """Whether a step solves equations; there is no certificate of such runs."""
+        """True if a step solves equations; there is no certificate of such runs."""
         return step_map_of(self.hamiltonian, self.scheme).implicit
 
-    def observing(self, observables: frozenset[str]) -> Self:
-        """The same run with other observables, and without a series."""
+    def with_observables(self, observables: frozenset[str]) -> Self:
+        """Return the same run with other observables, and without a series."""
         other = copy(self)
         other.observables, other.points = observables, 0
         other.sections = SECTIONS
         return other
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
-        """h, the parameters and the scales by the names that the kernel's source has for them."""
+        """Return h, the parameters and the scales by their names in the kernel's source."""
+        # κ = 2^s h^r is computed exactly here and rounded once, as ΔJ/h^r is what the program
+        # evaluates.
         h = self.start["h"]
-        named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
+        parameters = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
         scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
-        return {"h": h, **named, **(scales if kernel.scales else {})}
+        return {"h": h, **parameters, **(scales if kernel.scales else {})}
 
     def turns(self, arithmetic: Arithmetic) -> Turns | None:
-        """What is taken off t in this arithmetic, if anything is."""
+        """Return the periods that are taken off t in this arithmetic; None where none are."""
         if not (arithmetic.absolute and self.hamiltonian.time_dependent):
             return None
-        return turns_of(self._given, self._all_times(), self.start["h"])
+        return turns_of(self._hamiltonian_of_user, self._all_times(), self.start["h"])
 
     def times(self, arithmetic: Arithmetic) -> Times | None:
-        """The first and the last time at which a step is made in this arithmetic; None where H does
-        not depend on it."""
+        """Return the first and the last time at which a step is made in this arithmetic; None where
+        H does not depend on time."""
         if not self.hamiltonian.time_dependent:
             return None
         turns = self.turns(arithmetic)

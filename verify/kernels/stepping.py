@@ -1,12 +1,13 @@
-"""Stepping: a run of N steps, in chunks, in whatever arithmetic it is given.
+"""Stepping: a run of N steps, in chunks, in any arithmetic.
 
-How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
+It also finds how far an orbit may go in a fixed-point format: limits within which nothing can
+overflow.
 
 Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
-functions' values taken to stay below reach_value. A large box of rounded sides for which all of
+functions' values assumed to stay below reach_value. A large box of rounded sides for which all of
 them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
-or a function's value its limit. So an overflow is not looked for at every operation, and cannot
-happen.
+or a function's value its limit. So no operation has to check for overflow: there
+can be none.
 """
 
 from bisect import bisect_left, bisect_right
@@ -29,7 +30,7 @@ from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.notes import LazyNote
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
 from verify.kernels.run_inputs import RunInputs, Times
-from verify.lockstep import Course, alone
+from verify.lockstep import Course, run_alone
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
 _MATRIX_LIMITS = tuple(Fraction(2) ** n for n in (12, 10, 8, 6, 4, 3, 2))
@@ -43,8 +44,8 @@ _ASCENDING = _SIDES[::-1]
 
 
 class Limits(NamedTuple):
-    """What all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and M's entries where it
-    is carried, stay below; see `kernel.LIMITS`."""
+    """Bounds on all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and M's entries
+    where it is carried; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -59,22 +60,24 @@ def limits(
     start: Mapping[str, Fraction],
     times: Times | None = None,
 ) -> Limits | None:
-    """The kernel's limits for these h and parameters, by the names that its source has for them.
+    """Return the kernel's limits for these h and parameters, by the names that its source has for
+    them.
 
     `times`: the first and the last, where H depends on time. None where no box that holds the start
     is safe.
     """
     sizes = {name: abs(start[name]) for name in kernel.coordinates}
-    own = [max(x for name, x in sizes.items() if name[0] == kind) for kind in PLANE]
-    roomy = [[room * max(own)] * 2 for room in (16, 2)]
-    boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, own))
+    largest = [max(x for name, x in sizes.items() if name[0] == kind) for kind in PLANE]
+    # First boxes with room to move in all directions, then one that only just holds the start.
+    roomy = [[room * max(largest)] * 2 for room in (16, 2)]
+    boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, largest))
     return _largest(kernel, tuple(inputs.items()), times, boxes)
 
 
 def _side(size: Fraction) -> Fraction | None:
-    """The least side beyond a size."""
-    at = bisect_right(_ASCENDING, size)
-    return _ASCENDING[at] if at < len(_ASCENDING) else None
+    """Return the least side greater than a size."""
+    index = bisect_right(_ASCENDING, size)
+    return _ASCENDING[index] if index < len(_ASCENDING) else None
 
 
 # Of a grid's starts most lie in the same few boxes.
@@ -85,16 +88,16 @@ def _largest(
     times: Times | None,
     boxes: tuple[tuple[Fraction | None, Fraction | None], ...],
 ) -> Limits | None:
-    """The limits of the first of the boxes that is safe, with the greatest limit of values, grown
-    as far as can be."""
+    """Return the limits of the first safe box, with the greatest limit of values, grown as far as
+    possible."""
 
-    def grown(p: Fraction, q: Fraction, value: Fraction, matrix: Fraction) -> Limits:
-        """A box that is safe, grown: first to all sides."""
+    def grow(p: Fraction, q: Fraction, value: Fraction, matrix: Fraction) -> Limits:
+        """Grow a safe box: first to all sides."""
         room = partial(_room, kernel, inputs, times, matrix)
 
         def widest(box: Callable[[Fraction], tuple[Fraction, Fraction]]) -> Fraction:
-            """The greatest side whose box is safe, by bisection, as what holds an unsafe box is
-            unsafe. With the least side it is the box that was safe before."""
+            """Return the greatest side whose box is safe, by bisection: a box that contains an
+            unsafe box is unsafe. With the least side it is the box that was safe before."""
             return _SIDES[bisect_left(_SIDES, True, key=lambda r: room(*box(r), value) is not None)]
 
         side = widest(lambda r: (max(p, r), max(q, r)))
@@ -108,9 +111,11 @@ def _largest(
 
     matrices = _MATRIX_LIMITS if kernel.matrix else (Fraction(1),)
     with working_precision(PRECISION):
+        # The order of the product decides the preference: roomy boxes first, then large limits of
+        # values.
         for (p, q), value, matrix in product(boxes, _VALUE_LIMITS, matrices):
             if p and q and _room(kernel, inputs, times, matrix, p, q, value) is not None:
-                return grown(p, q, value, matrix)
+                return grow(p, q, value, matrix)
     return None
 
 
@@ -124,33 +129,34 @@ def _room(
     q: Fraction,
     value: Fraction,
 ) -> Fraction | None:
-    """How large Λ may become; None where an operation may leave the format in this box, M's entries
-    staying below `matrix`.
+    """Return how large Λ may become; None where an operation may leave the format in this box, with
+    M's entries below `matrix`.
 
     Boxes have few sides, so that the runs of a grid ask for the same ones.
     """
-    given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
-    around = flint.arb(0, 1)
-    own = {name: p if name[0] == "p" else q for name in kernel.coordinates}
-    own |= dict.fromkeys(kernel.matrix, matrix)
-    given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in own.items()}
+    inputs_ = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
+    unit_ball = flint.arb(0, 1)
+    sides = {name: p if name[0] == "p" else q for name in kernel.coordinates}
+    sides |= dict.fromkeys(kernel.matrix, matrix)
+    inputs_ |= {n: Rounded(rational_ball(r) * unit_ball, flint.arb(0)) for n, r in sides.items()}
     if times:
         first, last = map(rational_ball, times)
-        given["t"] = Rounded(first.union(last), flint.arb(0))
+        inputs_["t"] = Rounded(first.union(last), flint.arb(0))
     program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)
-    found = analyse(program, live, given, lambda *_: flint.arb(0), rational_ball(value))
-    if found is None:
+    values = analyse(program, live, inputs_, lambda *_: flint.arb(0), rational_ball(value))
+    if values is None:
         return None
-    sizes = [x.magnitude for x in (*found.values(), *([given["t"]] if times else []))]
-    size = {name: found[index].magnitude for name, index in kernel.outputs.items()}
-    sizes += [rational_ball(r) + size[f"d{name}"] for name, r in own.items()]
+    sizes = [x.magnitude for x in (*values.values(), *([inputs_["t"]] if times else []))]
+    size = {name: values[index].magnitude for name, index in kernel.outputs.items()}
+    sizes += [rational_ball(r) + size[f"d{name}"] for name, r in sides.items()]
+    # ΔJ² is added to the sum for the MSE, so it must fit in the format too.
     sizes.append(size["dj"] * size["dj"])
     top = rational_ball(_TOP)
     return _part_limit(size) if all(x < top for x in sizes) else None
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    """Return the power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
     Λ + D (1 + Λ) and the next product stay below 2^15."""
     determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
@@ -161,11 +167,11 @@ def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
 
 @dataclass(frozen=True)
 class Outcome(Reached):
-    """Where a run has ended, by a `kernel`.
+    """The end of a run, by a `kernel`.
 
     `radii`: how far from the last values the true ones may be, where numbers are enclosures.
-    `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run ended early,
-    where that is the number format's doing.
+    `shift`: ΔJ was carried as 2^shift ΔJ. `reason` says why the run ended early, where the number
+    format is the cause.
     """
 
     kernel: Kernel | None = None
@@ -175,18 +181,18 @@ class Outcome(Reached):
 
     @property
     def values(self) -> Mapping[str, Fraction]:
-        """What is carried, after the last step that was done."""
+        """The carried numbers after the last step that was done."""
         return self.trail[-1]
 
     @property
     def states(self) -> list[State]:
-        """What was carried at the points of the trail, as the arithmetic has it; the coordinates
-        come first. Of a run that was taken up again, what it has done itself."""
+        """The states at the points of the trail, as the arithmetic has them; the coordinates come
+        first. A run that was resumed has only those of its own part."""
         return [note.state for note in self.trail if isinstance(note, LazyNote)]
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Those of what is carried that are the state."""
+        """The names of the coordinates among the carried numbers."""
         return self.kernel.coordinates if self.kernel else ()
 
 
@@ -198,17 +204,24 @@ class KernelRun(RunInputs):
     """A run that can be done in any arithmetic."""
 
     def fits(self, arithmetic: Arithmetic) -> bool:
-        """Whether a step from the start stays in the arithmetic's range, where that is limited.
+        """Return True if a step from the start stays in the arithmetic's range, where that is
+        limited.
 
         Raises UnsupportedError where that lacks a function.
         """
-        made = (self.hamiltonian, self.scheme, arithmetic, self.observables | {"tangent"}, False)
-        kernel = kernel_for(*made)
+        kernel_key = (
+            self.hamiltonian,
+            self.scheme,
+            arithmetic,
+            self.observables | {"tangent"},
+            False,
+        )
+        kernel = kernel_for(*kernel_key)
         return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
-    def run(self, arithmetic: Arithmetic, **asked: Any) -> Outcome:
-        """The same as `run_in_turn`, alone."""
-        return alone(self.run_in_turn(arithmetic, **asked))
+    def run(self, arithmetic: Arithmetic, **options: Any) -> Outcome:
+        """Run alone: the same as `run_in_turn`."""
+        return run_alone(self.run_in_turn(arithmetic, **options))
 
     def run_in_turn(
         self,
@@ -219,70 +232,73 @@ class KernelRun(RunInputs):
         progress: Progress | None = None,
         enough: Callable[[Outcome], bool] | None = None,
     ) -> Course[Outcome]:
-        """All steps in this arithmetic; the series only where the kernel collects extremes.
+        """Make all steps in this arithmetic; the series only where the kernel collects extremes.
 
-        `tangent` carries the tangent map along. `enough` is asked at the first checkpoint whether
-        to go on; where it says no the run ends there. A fixed-point run that cannot stay within its
-        limits ends early.
+        `tangent` carries the tangent map along. `enough` is called at the first checkpoint and
+        decides whether to go on; where it says no the run ends there. A fixed-point run that cannot
+        stay within its limits ends early.
         """
         observables = self.observables if not compensated else self.observables - {"extremes"}
         observables |= {"tangent"} if tangent else frozenset()
-        made = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
-        kernel = kernel_for(*made)
+        kernel_key = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
+        kernel = kernel_for(*kernel_key)
         if not arithmetic.absolute:
             loop = ChunkedLoop(self, kernel, arithmetic, (), 0)
             return (yield from _outcome(loop, progress, enough))
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
-        for shift, found in self.formats(kernel, arithmetic):
-            loop = ChunkedLoop(self, kernel, arithmetic, found[: len(kernel.limits)], shift)
+        # Each format with a smaller scaling of ΔJ allows a larger box; the run starts again in the
+        # next one where the orbit left the last.
+        for shift, bounds in self.formats(kernel, arithmetic):
+            loop = ChunkedLoop(self, kernel, arithmetic, bounds[: len(kernel.limits)], shift)
             outcome = yield from _outcome(loop, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
-                f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
-                f"|q| < {text(found.q)}, or a value was too large for {arithmetic.name}"
+                f"at step {outcome.done + 1} the orbit left |p| < {text(bounds.p)}, "
+                f"|q| < {text(bounds.q)}, or a value was too large for {arithmetic.name}"
             )
             outcome = replace(outcome, reason=reason)
         return outcome
 
     def formats(self, kernel: Kernel, arithmetic: Arithmetic) -> Iterator[tuple[int, Limits]]:
-        """Scalings s of ΔJ with the limits that they have, the finest first.
+        """Yield scalings s of ΔJ with their limits, the finest first.
 
         With a smaller s, 2^s ΔJ is smaller and the orbit may go farther.
         """
+        # ΔJ = O(h^r), so 2^s h^r of about 1 uses the whole format, if the orbit leaves room for it.
         h_power = self.start["h"] ** kernel.power
         finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
         last, times = None, self.times(arithmetic)
         for shift in range(finest, -1, -_FEWER_BITS):
-            found = limits(kernel, self.inputs(kernel, shift), self.start, times)
-            if found is not None and found != last:
-                last = found
-                yield shift, found
+            bounds = limits(kernel, self.inputs(kernel, shift), self.start, times)
+            if bounds is not None and bounds != last:
+                last = bounds
+                yield shift, bounds
 
 
 def _outcome(
     loop: ChunkedLoop, progress: Progress | None, enough: Callable[[Outcome], bool] | None
 ) -> Course[Outcome]:
-    """The loop to its end; a checkpoint is written where it is interrupted."""
+    """Run the loop to its end; a checkpoint is written where it is interrupted."""
 
     def outcome() -> Outcome:
-        reached = vars(loop.reached) | {"done": loop.done, "seconds": loop.seconds}
-        return Outcome(**reached, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
+        fields = vars(loop.current) | {"done": loop.done, "seconds": loop.seconds}
+        return Outcome(**fields, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
 
-    asked = False
+    was_asked = False
 
     def goes_on(done: int) -> bool:
-        nonlocal asked
+        nonlocal was_asked
         if progress and done:
             progress(done)
-        if enough and not asked and loop.done >= loop.section:
-            asked = True
+        if enough and not was_asked and loop.done >= loop.section:
+            was_asked = True
             return enough(outcome())
         return True
 
     try:
-        # A run that goes on from beyond its first checkpoint is asked about that one as well.
-        if goes_on(0) and (yield from loop.to_end(goes_on)):
+        # A run resumed beyond its first checkpoint must pass the same question.
+        if goes_on(0) and (yield from loop.run_to_end(goes_on)):
             return outcome()
     except KeyboardInterrupt:
         loop.keep()

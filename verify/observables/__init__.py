@@ -1,7 +1,7 @@
-"""What a run may be asked for beside its last state: `kinds/` has one observable a file.
+"""The observables of a run besides its last state: `kinds/` has one observable a file.
 
-A file of `kinds/` defines `OBSERVABLE`, all that is asked of that observable anywhere: of a
-kernel, of a proof, of a certificate, in scenes and on pages.
+A file of `kinds/` defines `OBSERVABLE`, all that any other room needs of that observable: for a
+kernel, a proof, a certificate, in scenes and on pages.
 """
 
 from collections.abc import Container
@@ -15,11 +15,11 @@ _FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path_
 
 @cache
 def by_name() -> dict[str, Observable]:
-    """All observables by their names, in the order in which they are shown."""
+    """Return all observables by their names, in the order in which they are shown."""
     every = [_FILES.module(name).OBSERVABLE for name in _FILES.names]
     return {each.name: each for each in sorted(every, key=lambda each: each.order)}
 
 
-def among(asked: Container[str]) -> list[Observable]:
-    """Those whose names are asked for, in the same order."""
-    return [each for name, each in by_name().items() if name in asked]
+def select(names: Container[str]) -> list[Observable]:
+    """Return the observables whose names are requested, in the same order."""
+    return [each for name, each in by_name().items() if name in names]

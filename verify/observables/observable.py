@@ -1,7 +1,7 @@
-"""An observable of a run: all that is asked of it anywhere, in one object.
+"""An observable of a run: all that other rooms need of it, in one object.
 
-What it does to the loop of a kernel, to the certificate of a run, and to a map, is written with
-what these offer, which is told by the protocols here: nothing is imported that steps.
+Its effect on the loop of a kernel, on the certificate of a run, and on a map is written against the
+protocols below: nothing that steps is imported.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -15,39 +15,39 @@ Need: TypeAlias = Literal["delta_j", "determinant", "symplectic", "carried", "en
 
 
 class Loop(Protocol):
-    """What writes the loop of a kernel: see `verify.kernels.statements`."""
+    """The writer of a kernel's loop: see `verify.kernels.statements`."""
 
     @property
     def value(self) -> Mapping[str, str]:
-        """The names of what a step gives: `dj`, `det`, `de`, the increments of M and of W."""
+        """The names of a step's values: `dj`, `det`, `de`, the increments of M and of W."""
 
     @property
     def entries(self) -> Sequence[str]:
         """The names of the entries of S."""
 
     def carry(self, name: str, start: int, kind: str = "wide") -> None:
-        """Adds to what is carried from step to step: its name and the value it begins with."""
+        """Add a number that is carried from step to step: its name and the value it begins with."""
 
     def sum_up(self, name: str, increment: str) -> list[str]:
-        """The statements of a sum that begins with 0."""
+        """Return the statements of a sum that begins with 0."""
 
     def accumulate(self, name: str, increment: str) -> list[str]:
-        """The statements that add to what is carried."""
+        """Return the statements that add to a carried number."""
 
     def product(self) -> list[str]:
-        """Those of Λ, once."""
+        """Return the statements of Λ, once."""
 
     def largest(self, name: str, term: str, kind: str = "wide") -> list[str]:
-        """Those that keep the greatest |term|."""
+        """Return the statements that keep the greatest |term|."""
 
 
 class Certificate(Protocol):
-    """What is known of a run when its errors are bounded: see `verify.runs.a_posteriori`.
+    """The bounds on a run when its errors are certified: see `verify.runs.a_posteriori`.
 
     `error`: a bound of ‖e_k‖ for all k. `steps`: how many there are. `scale`: 2^−s. `rounded`: the
-    rounding of one step. `slope`, `size`: bounds of the gradient of 2^s ΔJ and of itself; `moved`:
-    of the sum of its errors. `total(name)`: a value as it was computed. `adding`: the rounding of a
-    term and of its addition to a sum of squares.
+    rounding of one step. `slope`, `size`: bounds of the gradient of 2^s ΔJ and of itself;
+    `sum_of_shifts`: of the sum of its errors. `total(name)`: a value as it was computed. `adding`:
+    the rounding of a term and of its addition to a sum of squares.
     """
 
     error: Ball
@@ -60,7 +60,7 @@ class Certificate(Protocol):
     @property
     def size(self) -> Ball: ...
     @property
-    def moved(self) -> Ball: ...
+    def sum_of_shifts(self) -> Ball: ...
 
     def total(self, name: str) -> Ball: ...
     def adding(self, total: Ball, term: Ball) -> Ball: ...
@@ -71,7 +71,7 @@ class Certificate(Protocol):
 
 
 class Map(Protocol):
-    """What a proof knows of a one-step map."""
+    """The properties of a one-step map that a proof decides."""
 
     @property
     def preserves_area(self) -> bool: ...
@@ -79,32 +79,32 @@ class Map(Protocol):
     def conserves_energy(self) -> bool: ...
 
 
-def of_defect(step: Map) -> bool:
-    """Whether all vanishes that is made of S, or of ΔJ, alone."""
+def has_no_defect(step: Map) -> bool:
+    """Return True if every quantity made of S, or of ΔJ, alone vanishes."""
     return step.preserves_area
 
 
 def never(_: Map) -> bool:
-    """Of what is looked at for its rounding: a proof says nothing of it."""
+    """Return False: of a quantity computed for its rounding a proof says nothing."""
     return False
 
 
 @dataclass(frozen=True)
 class Observable:
-    """`name`: in scenes, of Python's arguments, in JSON; `label` and `tex`: how it is shown.
+    """An observable: `name` in scenes, in Python's arguments, in JSON; `label` and `tex` on pages.
 
-    - `order`: where it is shown among the others. `usual`: its place among those that are computed
-      where nothing is asked for; None where it is not.
-    - `needs`: what of a step it is made of. `lines`: its statements in a loop.
-    - `carried`: the accumulator that it is read from, or what the names of several begin with;
-      `shift`: so many times 2^s it carries there; `begins`: with what, which is taken off again.
-      `read`: its value, from what was carried after so many steps.
-    - `vanishes`: whether it is 0 after every step of a map, by a proof.
+    - `order`: its place among the others. `usual`: its place among those that are computed
+      by default; None where it is not.
+    - `needs`: the quantity of a step that it is made of. `lines`: its statements in a loop.
+    - `carried`: the accumulator that it is read from, or the prefix of the names of several;
+      `shift`: so many times 2^s it carries there; `begins`: its start value, which is subtracted.
+      `read`: its value, from the carried numbers after so many steps.
+    - `vanishes`: True if it is 0 after every step of a map, by a proof.
     - `constant`: its value where ΔJ is the same number at every step, if that is known then.
     - `bound`: of its error, by a certificate, if there is one; None: it has none.
     - `growth`: the power of N by which that bound grows where the tangent map grows linearly.
-    - `most_degrees`: of freedom, 1 for what is of the plane alone; a step's operations bound it.
-      `in_plane`: what is the same in the plane, and is asked for there in its place.
+    - `most_degrees`: of freedom, 1 for the plane alone; a step's operations bound it.
+      `in_plane`: the observable that is the same in the plane, and is used there in its place.
       `timed`: whether there is one of an H that depends on t.
     - `heading`: over a column of a page; `plotted`: at an axis; `short`: on a terminal. Where one
       is empty it is `label`.
@@ -121,7 +121,7 @@ class Observable:
     shift: int = 0
     begins: int = 0
     read: Callable[[Sequence[Fraction], int], Fraction] = lambda totals, steps: totals[0]
-    vanishes: Callable[[Map], bool] = of_defect
+    vanishes: Callable[[Map], bool] = has_no_defect
     constant: Callable[[Ball, int], Ball | None] | None = None
     bound: Callable[[Certificate], Ball | None] | None = None
     growth: int = 3
@@ -133,10 +133,10 @@ class Observable:
     short: str = ""
 
     def fits(self, degrees: int) -> bool:
-        """Whether it is carried in so many degrees of freedom."""
+        """Return True if it is available in so many degrees of freedom."""
         return self.most_degrees is None or degrees <= self.most_degrees
 
     @property
-    def signed(self) -> bool:
-        """Whether it may be negative: its absolute value is plotted then."""
+    def is_signed(self) -> bool:
+        """True if it may be negative: its absolute value is plotted then."""
         return bool(self.plotted)

@@ -1,8 +1,8 @@
-"""What a referee asks first, answered from the report's own data: a line or two each.
+"""A referee's first questions, answered from the report's own data in a line or two each.
 
-Is what is said of every H right; does the scheme preserve area; do the printed tables stand; and
-which scheme has the smaller error at equal run time. A question that the report has no data for is
-not asked.
+Are the statements on every H right; does the scheme preserve area; do the printed tables stand; and
+which scheme has the smaller error at equal run time? A question for which the report has no data is
+left out.
 """
 
 from collections import Counter
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.text.typography import listed
+from verify.pages.text.typography import join_and
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
@@ -19,10 +19,15 @@ from verify.scenes.results.statement import Outcome
 from verify.verdict import Verdict
 
 _QUESTIONS = {"ΔJ": "Is area preserved?", "S": "Is the symplectic form preserved?"}
-_LEAST = 2  # answers; of one alone the tiles say as much, but for the formula of a few ΔJ
-_FEW = 3  # schemes, and systems
-_MOST_LINKS = 12
-_LONGEST = 100  # characters of a leading coefficient that is shown here; the proof shows any
+# A single answer repeats the tiles, unless it has the formula of a few ΔJ.
+_MIN_ANSWERS = 2
+# Up to so many schemes and systems are few.
+_FEW_ITEMS = 3
+_MAX_LINKS = 12
+# Characters of a leading coefficient that is shown here; the proof shows any.
+_MAX_LEADING_LENGTH = (
+    100  # characters of a leading coefficient that is shown here; the proof shows any
+)
 # Of one statement, and of several; those that are refuted stand last, before their links.
 _OUTCOMES = {
     Outcome.HOLDS: ("holds as meant", "hold as meant"),
@@ -35,7 +40,7 @@ _OUTCOMES = {
 class Line(NamedTuple):
     """A line that ends with links: names of claims with their anchors."""
 
-    said: Prose
+    sentence: Prose
     links: tuple[tuple[str, str], ...] = ()
 
 
@@ -47,19 +52,31 @@ class Answer:
     lines: tuple[Line, ...]
 
 
-def answers(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
-    """The questions that are answered; of many proofs alone the page below says more."""
-    area = list(_area(report))
-    found = [*_causes(report, claims), *_theory(claims), *area, *_tables(claims), *_use(report)]
-    few = len(report.scenes) <= _FEW and all(len(each.lines) <= _FEW for each in area)
-    return tuple(found) if len(found) >= _LEAST or (area and few) else ()
+def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
+    """Return the questions with their answers; none where the page below says more."""
+    area = list(_answer_structure(report))
+    entries = [
+        *_answer_causes(report, claims),
+        *_answer_theory(claims),
+        *area,
+        *_answer_tables(claims),
+        *_answer_equal_cost(report),
+    ]
+    few = len(report.scenes) <= _FEW_ITEMS and all(len(each.lines) <= _FEW_ITEMS for each in area)
+    return tuple(entries) if len(entries) >= _MIN_ANSWERS or (area and few) else ()
 
 
-def _causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answer]:
-    """What explains several statements, each with links to them."""
+def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """Yield the causes that explain several statements, each with links to these."""
     lines = []
     for cause in report.causes:
-        first = [c for c in claims if c.of and c.of.id in cause.explains and not c.again]
+        first = [
+            c
+            for c in claims
+            if c.statement and c.statement.id in cause.explains and not c.is_later_reading
+        ]
+        # Several readings share a name; the dictionary, built in reverse, keeps the first one's
+        # anchor.
         names = {c.name: c.anchor for c in reversed(first)}  # of one name the first
         links = tuple((c.name, names[c.name]) for c in first if names[c.name] == c.anchor)
         lines.append(Line(cause.says, links))
@@ -67,71 +84,78 @@ def _causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answer]:
         yield Answer("What is wrong, and why?", tuple(lines))
 
 
-def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
-    """Of the statements none of whose readings speaks of one H."""
-    of_one = {c.of.id for c in claims if c.of and c.result.scene}
-    general = [c for c in claims if c.of and not c.again and c.of.id not in of_one]
+def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """Yield the outcomes of the statements none of whose readings speaks of a single H."""
+    specific = {c.statement.id for c in claims if c.statement and c.result.scene}
+    general = [
+        c
+        for c in claims
+        if c.statement and not c.is_later_reading and c.statement.id not in specific
+    ]
     if not general:
         return
-    counts = Counter(c.of.outcome for c in general if c.of)
-    told = [f"{n} {words[n != 1]}" for o, words in _OUTCOMES.items() if (n := counts[o])]
-    refuted = [c for c in general if c.of and c.of.outcome is Outcome.REFUTED]
-    told += [] if refuted else ["none is refuted in every reading"]
-    end = ":" if 0 < len(refuted) <= _MOST_LINKS else "."
+    counts = Counter(c.statement.outcome for c in general if c.statement)
+    clauses = [f"{n} {words[n != 1]}" for o, words in _OUTCOMES.items() if (n := counts[o])]
+    refuted = [c for c in general if c.statement and c.statement.outcome is Outcome.REFUTED]
+    clauses += [] if refuted else ["none is refuted in every reading"]
+    # Links follow a colon; a long list of them would hide the sentence.
+    end = ":" if 0 < len(refuted) <= _MAX_LINKS else "."
     links = tuple((c.name, c.anchor) for c in refuted) if end == ":" else ()
-    line = f"Of {len(general)} statements on every H, {listed(told)}{end}"
+    line = f"Of {len(general)} statements on every H, {join_and(clauses)}{end}"
     yield Answer("Is the theory right?", (Line(Prose(line), links),))
 
 
-def _area(report: Report) -> Iterator[Answer]:
-    """One line a scheme; of what does not preserve area the leading term, for each H."""
-    for what, question in _QUESTIONS.items():
+def _answer_structure(report: Report) -> Iterator[Answer]:
+    """Yield a line for each scheme, with the leading term for each H that is not preserved."""
+    for structure, question in _QUESTIONS.items():
+        # By scheme, not by scene, so that each scheme has one line however many H it is proved for.
         by_scheme: dict[str, list[tuple[str, ProofResult]]] = {}
         for scene in report.scenes:
             for proof in scene.proofs:
-                if proof.what == what:
-                    named = scene.title or scene.name, proof
-                    by_scheme.setdefault(proof.scheme, []).append(named)
-        lines = tuple(Line(_line_of(scheme, found)) for scheme, found in by_scheme.items())
+                if proof.what == structure:
+                    titled_proof = scene.title or scene.name, proof
+                    by_scheme.setdefault(proof.scheme, []).append(titled_proof)
+        lines = tuple(Line(_line_of_scheme(scheme, proofs)) for scheme, proofs in by_scheme.items())
         if lines:
             yield Answer(question, lines)
 
 
-def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
-    kept = "det J ≡ 1" if found[0][1].form is None else "S ≡ 0"
-    if all(proof.keeps for _, proof in found):
-        return Prose(f"{scheme}: yes, {kept} is proved")
+def _line_of_scheme(scheme: str, proofs: Sequence[tuple[str, ProofResult]]) -> Prose:
+    identity = "det J ≡ 1" if proofs[0][1].form is None else "S ≡ 0"
+    if all(proof.keeps for _, proof in proofs):
+        return Prose(f"{scheme}: yes, {identity} is proved")
     parts: list[Prose] = []
-    for title, proof in found:
-        of = f" ({title})" if len(found) > 1 else ""
+    for title, proof in proofs:
+        where = f" ({title})" if len(proofs) > 1 else ""
         if proof.keeps:
-            parts.append(prose(f"{kept}{of}"))
+            parts.append(prose(f"{identity}{where}"))
         elif proof.order is None:
-            parts.append(prose(f"not decided{of}"))
+            parts.append(prose(f"not decided{where}"))
         else:
-            parts.append(prose(*_size(proof, proof.order), of))
-    no = "no; " if any(proof.order is not None for _, proof in found) else ""
-    shown: list[str | Prose] = [f"{scheme}: {no}"]
+            parts.append(prose(*_describe_defect(proof, proof.order), where))
+    negation = "no; " if any(proof.order is not None for _, proof in proofs) else ""
+    sentence_parts: list[str | Prose] = [f"{scheme}: {negation}"]
     for k, part in enumerate(parts):
-        shown += ["; " if k else "", part]
-    return prose(*shown)
+        sentence_parts += ["; " if k else "", part]
+    return prose(*sentence_parts)
 
 
-def _size(proof: ProofResult, power: int) -> list[str | Prose]:
-    """ΔJ with its leading term, where that is short; or that it is of this order."""
-    leading = proof.shown.leading or proof.leading
-    if proof.form is None and leading and len(leading) <= _LONGEST:
-        rest = Formula(f"h**{power + 1}")
-        return ["ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(", rest, ")"]
+def _describe_defect(proof: ProofResult, power: int) -> list[str | Prose]:
+    """Return ΔJ with its leading term where that is short, else its order alone."""
+    leading = proof.readable.leading or proof.leading
+    if proof.form is None and leading and len(leading) <= _MAX_LEADING_LENGTH:
+        remainder = Formula(f"h**{power + 1}")
+        return ["ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(", remainder, ")"]
     what = "ΔJ" if proof.form is None else "S"
     return [f"{what} = O(", Formula(f"h**{power}"), "), no smaller"]
 
 
-def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
-    """How much of each printed table is refuted, as its evidence begins."""
+def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """Yield how much of each printed table is refuted, as the beginning of its evidence has it."""
     by_share: dict[str, list[ClaimView]] = {}
     for claim in claims:
-        if claim.is_table and claim.result.standing != "ours" and not claim.again:
+        if claim.is_table and claim.result.standing != "ours" and not claim.is_later_reading:
+            # The evidence of a table begins with the share that is refuted, up to a colon.
             share = str(claim.result.evidence).partition(":")[0]
             refuted = claim.result.verdict is Verdict.REFUTED
             by_share.setdefault(share if refuted else claim.result.verdict.lower(), []).append(
@@ -147,13 +171,13 @@ def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
         yield Answer("Do the printed tables stand?", tuple(lines))
 
 
-def _use(report: Report) -> Iterator[Answer]:
-    """What is measured at equal run time of what was proved not to preserve area, and of others."""
+def _answer_equal_cost(report: Report) -> Iterator[Answer]:
+    """Yield the comparisons at equal run time with schemes that do not preserve area."""
     lines = []
     for scene in report.scenes:
-        judged = {proof.scheme for proof in scene.proofs if not proof.area_preserving}
+        not_preserving = {proof.scheme for proof in scene.proofs if not proof.area_preserving}
         for each in scene.work_precision.comparisons if scene.work_precision else ():
-            if each.error is not None and {each.one, each.other} & judged:
+            if each.error is not None and {each.one, each.other} & not_preserving:
                 name = scene.title or scene.name
                 lines.append(Line(prose(f"{name}: ", _first_sentence(each.sentence))))
     if lines:
@@ -163,6 +187,7 @@ def _use(report: Report) -> Iterator[Answer]:
 def _first_sentence(text: Prose) -> Prose:
     parts: list[str] = []
     for part in text.parts:
+        # Formulas and numbers are subclasses of str; only plain text can end a sentence.
         if type(part) is str and ". " in part:
             return Prose(*parts, part.partition(". ")[0] + ".")
         parts.append(part)

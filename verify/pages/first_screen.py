@@ -1,27 +1,27 @@
-"""The first screen: the finding in a sentence, counts as tiles, and the most telling picture.
+"""The first screen of a page: the finding in a sentence, counts as tiles, the most telling picture.
 
-A tile says what it says by its sign and its word; the colour only helps.
+A tile is understood by its sign and its word; the colour only helps.
 """
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.answers import Answer, answers
+from verify.pages.answers import Answer, answer_questions
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
 from verify.pages.sections.claim_view import COLOURS, ClaimView
 from verify.pages.sections.scene.stability import MEANINGS
-from verify.pages.sections.section import Place, Shown, Tile, walk
+from verify.pages.sections.section import Place, Tile, VisibleSection, walk
 from verify.pages.sections.section import sections as found_sections
 from verify.pages.text.signs import SIGNS
-from verify.pages.text.typography import listed, superscript, whole
+from verify.pages.text.typography import join_and, superscript, whole
 from verify.pages.text.words import counts_of
-from verify.pages.wrong import Wrong, wrong_of
+from verify.pages.wrong import Wrong, find_mistakes
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
-from verify.scenes.results.statement import Outcome, counted
+from verify.scenes.results.statement import Outcome, describe_counts
 from verify.verdict import Verdict
 
 # A judged run's sign, and the verdict whose colour it has.
@@ -49,21 +49,25 @@ _OUTCOMES = {
         "?", "undecided", "no reading is shown to hold, and not all are refuted",
     ),
 }  # fmt: skip
-_FEW = 4  # proofs that are told one by one
+# Up to so many proofs have a sentence and a tile each; more of them are counted.
+_FEW_PROOFS = 4
 
 
 @dataclass(frozen=True)
 class Refutation:
-    """The most telling one; `same_row`: other refuted tables that print the very same row."""
+    """The most telling refutation; `same_row_claims` are other tables that print the same row."""
 
     claim: ClaimView
-    same_row: tuple[ClaimView, ...]
+    same_row_claims: tuple[ClaimView, ...]
 
 
 @dataclass(frozen=True)
 class FirstScreen:
-    """`wrong`: by library, in place of a refutation. `plot` stands here and nowhere else on the
-    page; `place`: what it is of."""
+    """The content of the first screen.
+
+    `wrong`: the mistakes by library, in place of a refutation. `plot` stands here and nowhere else
+    on the page; `place` is the section that it belongs to.
+    """
 
     finding: str
     tiles: tuple[Tile, ...]
@@ -75,41 +79,46 @@ class FirstScreen:
 
 
 def first_screen(
-    report: Report, claims: Sequence[ClaimView], sections: Sequence[Shown]
+    report: Report, claims: Sequence[ClaimView], sections: Sequence[VisibleSection]
 ) -> FirstScreen:
-    """What the page opens with; `sections`: those from which its picture may be."""
-    refutation = _refutation(claims)
+    """Return the first screen; its picture is taken from a refuted table or from `sections`."""
+    refutation = _select_refutation(claims)
     plot, place = (refutation.claim.plot if refutation else None), None
     if plot is None:
-        plot, place = _picture(sections)
-    said, tiles = _of_a_section(report)
-    own = tuple(_tiles(report)) or tuple(tiles)
-    told = finding(report, refutation) or said
-    wrong = wrong_of(claims)
+        plot, place = _select_picture(sections)
+    sentence, tiles = _finding_of_sections(report)
+    all_tiles = tuple(_build_tiles(report)) or tuple(tiles)
+    main_finding = finding(report, refutation) or sentence
+    wrong = find_mistakes(claims)
     telling = None if wrong else refutation
-    return FirstScreen(told, own, answers(report, claims), telling, plot, place, wrong)
+    return FirstScreen(
+        main_finding, all_tiles, answer_questions(report, claims), telling, plot, place, wrong
+    )
 
 
-def _of_a_section(report: Report) -> tuple[str, Sequence[Tile]]:
-    """What is told where there is neither claim nor proof."""
-    said = (section.speaks(report) for _, section in found_sections(of_page.FILES))
-    return next(filter(None, said), ("The report holds no claim and no proof.", ()))
+def _finding_of_sections(report: Report) -> tuple[str, Sequence[Tile]]:
+    """Return the sentence and tiles of a section, for a report without claims and proofs."""
+    findings = (section.speaks(report) for _, section in found_sections(of_page.FILES))
+    return next(filter(None, findings), ("The report holds no claim and no proof.", ()))
 
 
 # -- the finding in one sentence ------------------------------------------------------------------
 
 
 def finding(report: Report, refutation: Refutation | None = None) -> str:
-    """What the claims say, or else the proofs and the judged runs; "" where there are none."""
+    """Return a summary of the claims, or of the proofs and judged runs; "" without any."""
     if report.statements:
-        said = counted(report.statements, report.claims)
-        of_numbers = _worst(refutation).removeprefix("; ")
-        return f"{said}." + (f" {of_numbers[:1].upper()}{of_numbers[1:]}." if of_numbers else "")
+        statement_counts = describe_counts(report.statements, report.claims)
+        table_finding = _describe_refuted_table(refutation).removeprefix("; ")
+        return f"{statement_counts}." + (
+            f" {table_finding[:1].upper()}{table_finding[1:]}." if table_finding else ""
+        )
     if report.claims:
-        return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(refutation)}."
-    proofs, judged = _proofs(report), _stability_tiles(report)
-    sentences = [_finding_of_runs(judged)] if judged else []
-    if proofs and (len(proofs) <= _FEW or not judged):
+        claims = _finding_of_claims([c.verdict for c in report.claims])
+        return f"{claims}{_describe_refuted_table(refutation)}."
+    proofs, judged_runs = _proofs(report), _stability_tiles(report)
+    sentences = [_finding_of_runs(judged_runs)] if judged_runs else []
+    if proofs and (len(proofs) <= _FEW_PROOFS or not judged_runs):
         sentences = [_finding_of_proofs(proofs), *sentences]
     return " ".join(sentences)
 
@@ -123,18 +132,18 @@ def _stability_tiles(report: Report) -> list[StabilityResult]:
 
 
 def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
-    counted = Counter(verdicts)
-    words = [(counted[v], v.lower()) for v in Verdict if counted[v]]
+    counts = Counter(verdicts)
+    words = [(counts[v], v.lower()) for v in Verdict if counts[v]]
     if len(words) == 1:
         count, word = words[0]
         return f"The one claim is {word}" if count == 1 else f"All {count} claims are {word}"
     (count, word), *rest = words
     first = f"{count} {'is' if count == 1 else 'are'} {word}"
-    return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}"
+    return f"Of {len(verdicts)} claims, {join_and([first, *(f'{n} {w}' for n, w in rest)])}"
 
 
-def _worst(refutation: Refutation | None) -> str:
-    """How much of the refuted table is wrong, as its evidence begins."""
+def _describe_refuted_table(refutation: Refutation | None) -> str:
+    """Return how much of the refuted table is wrong, as the beginning of its evidence has it."""
     if refutation is None or not refutation.claim.is_table:
         return ""
     share = refutation.claim.result.evidence.partition(":")[0]
@@ -142,10 +151,10 @@ def _worst(refutation: Refutation | None) -> str:
 
 
 def _finding_of_proofs(proofs: Sequence[ProofResult]) -> str:
-    if len(proofs) <= _FEW:
+    if len(proofs) <= _FEW_PROOFS:
         return "; ".join(_finding_of_proof(p) for p in proofs) + "."
-    shown = listed(f"{n} {text}" for _, n, text in _proof_counts(proofs))
-    return f"{len(proofs)} step maps were examined: {shown}."
+    summary = join_and(f"{n} {text}" for _, n, text in _proof_counts(proofs))
+    return f"{len(proofs)} step maps were examined: {summary}."
 
 
 def _proof_counts(proofs: Sequence[ProofResult]) -> list[tuple[Verdict, int, str]]:
@@ -165,29 +174,29 @@ def _finding_of_proof(proof: ProofResult) -> str:
         exactly = "preserves area exactly (det J ≡ 1)" if proof.form is None else "is symplectic"
         return f"{proof.scheme} {exactly}"
     if proof.order is not None:
-        return f"{proof.what} of {proof.scheme} is of order {_h(proof.order)}"
+        return f"{proof.what} of {proof.scheme} is of order {_power_of_h(proof.order)}"
     return f"the order of {proof.what} of {proof.scheme} is undecided"
 
 
-def _finding_of_runs(judged: Sequence[StabilityResult]) -> str:
-    counted = Counter(run.kind for run in judged)
-    return f"Of {whole(len(judged))} judged runs: {counts_of(counted)}."
+def _finding_of_runs(judged_runs: Sequence[StabilityResult]) -> str:
+    counts = Counter(run.kind for run in judged_runs)
+    return f"Of {whole(len(judged_runs))} judged runs: {counts_of(counts)}."
 
 
-def _h(power: int) -> str:
+def _power_of_h(power: int) -> str:
     return f"h{superscript(power)}"
 
 
 # -- tiles ----------------------------------------------------------------------------------------
 
 
-def _tiles(report: Report) -> list[Tile]:
+def _build_tiles(report: Report) -> list[Tile]:
     if report.statements:
-        found = Counter(statement.outcome for statement in report.statements)
+        counts = Counter(statement.outcome for statement in report.statements)
         return [
-            Tile(COLOURS[o], sign, whole(found[o]), word, meaning, found[o])
+            Tile(COLOURS[o], sign, whole(counts[o]), word, meaning, counts[o])
             for o, (sign, word, meaning) in _OUTCOMES.items()
-            if found[o]
+            if counts[o]
         ]
     if report.claims:
         verdicts = Counter(c.verdict for c in report.claims)
@@ -196,19 +205,20 @@ def _tiles(report: Report) -> list[Tile]:
             for v, (sign, meaning) in SIGNS.items()
             if verdicts[v]
         ]
-    proofs, judged = _proofs(report), _stability_tiles(report)
-    if judged and len(proofs) > _FEW:
-        return _tiles_of_runs(judged)
-    if len(proofs) > _FEW:
+    proofs, judged_runs = _proofs(report), _stability_tiles(report)
+    # The tiles of many proofs would hide the judged runs.
+    if judged_runs and len(proofs) > _FEW_PROOFS:
+        return _tiles_of_runs(judged_runs)
+    if len(proofs) > _FEW_PROOFS:
         return [
             Tile(v, SIGNS[v][0], whole(n), text, weight=n) for v, n, text in _proof_counts(proofs)
         ]
     return [_tile_of_proof(proof) for proof in proofs]
 
 
-def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
+def _tiles_of_runs(judged_runs: Sequence[StabilityResult]) -> list[Tile]:
     tiles = []
-    for kind, count in Counter(run.kind for run in judged).items():
+    for kind, count in Counter(run.kind for run in judged_runs).items():
         sign, verdict = _RUN_SIGNS[kind]
         tiles.append(Tile(verdict, sign, whole(count), kind, MEANINGS[kind], count))
     return sorted(tiles, key=lambda tile: KINDS.index(tile.word))
@@ -216,40 +226,43 @@ def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
 
 def _tile_of_proof(proof: ProofResult) -> Tile:
     verdict, sign = proof.verdict, SIGNS[proof.verdict][0]
-    what, kept = proof.what, "area" if proof.form is None else "the symplectic form"
+    what, structure = proof.what, "area" if proof.form is None else "the symplectic form"
     if proof.keeps:
-        return Tile(verdict, sign, f"{what} ≡ 0", proof.scheme, f"preserves {kept} exactly")
+        return Tile(verdict, sign, f"{what} ≡ 0", proof.scheme, f"preserves {structure} exactly")
     if proof.order is not None:
-        meaning = f"proved: changes {kept} at this order in every step"
-        return Tile(Verdict.REFUTED, "≠", f"{what} ∼ {_h(proof.order)}", proof.scheme, meaning)
+        meaning = f"proved: changes {structure} at this order in every step"
+        return Tile(
+            Verdict.REFUTED, "≠", f"{what} ∼ {_power_of_h(proof.order)}", proof.scheme, meaning
+        )
     return Tile(verdict, sign, what, proof.scheme, "its order is undecided")
 
 
 # -- the most telling picture ---------------------------------------------------------------------
 
 
-def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
-    """A refuted table if there is one, since it sets numbers against numbers; else the first.
+def _select_refutation(claims: Sequence[ClaimView]) -> Refutation | None:
+    """Return a refuted table if there is one, since it compares numbers; else the first refutation.
 
-    Of a statement that holds in some reading none is told.
+    A refuted reading of a statement that holds in another reading is not taken.
     """
     refuted = [
         c
         for c in claims
         if c.result.verdict is Verdict.REFUTED
-        and (c.of.outcome is Outcome.REFUTED if c.of else c.result.standing != "ours")
+        and (c.statement.outcome is Outcome.REFUTED if c.statement else c.result.standing != "ours")
     ]
     if not refuted:
         return None
     tables = [c for c in refuted if c.is_table]
     claim = next(iter(tables), refuted[0])
-    others = (c for c in tables if c is not claim and not c.again)
-    same = [c for c in others if c.printed == claim.printed]
+    # One row may be printed by several tables; the refutation then concerns all of them.
+    others = (c for c in tables if c is not claim and not c.is_later_reading)
+    same = [c for c in others if c.printed_row == claim.printed_row]
     return Refutation(claim, tuple(same))
 
 
-def _picture(sections: Sequence[Shown]) -> tuple[Plot | None, Place | None]:
-    """The most telling first: what a step size costs in area, then where schemes are stable."""
-    found = (picture for each in walk(sections) for picture in each.pictures)
-    _, plot, place = min(found, key=lambda each: each[0], default=((), None, None))
+def _select_picture(sections: Sequence[VisibleSection]) -> tuple[Plot | None, Place | None]:
+    """Return the picture of the least rank: the cost in area comes first, then stability."""
+    pictures = (picture for each in walk(sections) for picture in each.pictures)
+    _, plot, place = min(pictures, key=lambda each: each[0], default=((), None, None))
     return plot, place

@@ -1,8 +1,7 @@
-"""A Report → one self-contained page, and the same results as JSON beside it.
+"""A report as one self-contained page, with the same results as JSON beside it.
 
-What the templates are set with, for the page and for the Markdown that is made of them.
-
-Report → what the page's templates show. Nothing is computed anew.
+This module makes the view of a report that the templates show, for the page and for the Markdown
+that is made from it. Nothing is computed anew.
 """
 
 import base64
@@ -24,43 +23,43 @@ from verify.pages.sections import page as of_page
 from verify.pages.sections import scene as of_scene
 from verify.pages.sections import scheme_plots
 from verify.pages.sections.claim_view import Anchors, ClaimGroup, ClaimView, groups
-from verify.pages.sections.given import Given, SceneView
-from verify.pages.sections.section import Place, Shown, shown, terms, walk
+from verify.pages.sections.page_contents import PageContents, SceneView
+from verify.pages.sections.section import Place, VisibleSection, select_sections, terms, walk
 from verify.pages.text import mathml, notation, prose, typography, words
 from verify.pages.text.signs import SIGNS
-from verify.pages.text.typography import listed, whole
+from verify.pages.text.typography import join_and, whole
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report, SceneResult
 
 
 @dataclass(frozen=True)
-class PageView(Given):
-    """The first screen, and after it the sections of the page with the terms that they need."""
+class PageView(PageContents):
+    """The page's view: the first screen, the sections after it, and the terms that they need."""
 
     first: FirstScreen
-    sections: tuple[Shown, ...]
+    sections: tuple[VisibleSection, ...]
     terms: Mapping[str, Markup]
 
     def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
-        """Those with a claim on this scene."""
+        """Return the groups of claims that have a claim on this scene."""
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
 
-    def kept_at(self, plot: Plot) -> Place | None:
-        """The one place where it stands, if there is a section that keeps it."""
-        return next((place for kept, place in self._kept if kept is plot), None)
+    def keeping_place(self, plot: Plot) -> Place | None:
+        """Return the only place where the plot stands, or None where no section keeps it."""
+        return next((place for kept_plot, place in self._kept_plots if kept_plot is plot), None)
 
     @cached_property
-    def _kept(self) -> Sequence[tuple[Plot, Place]]:
+    def _kept_plots(self) -> Sequence[tuple[Plot, Place]]:
         return [each for s in walk(self.sections) for each in s.section.keeps(s.view)]
 
 
 def page_view(report: Report) -> PageView:
-    """All of it; pictures are drawn here."""
-    own = _given(report)
-    sections = shown(of_page.FILES, Place("", ""), own)
+    """Return the view of the report; pictures are drawn here."""
+    contents = _contents_of(report)
+    sections = select_sections(of_page.FILES, Place("", ""), contents)
     return PageView(
-        **vars(own),
-        first=first_screen(report, own.claims, sections),
+        **vars(contents),
+        first=first_screen(report, contents.claims, sections),
         sections=sections,
         terms=words.ALWAYS | terms(sections),
     )
@@ -69,102 +68,122 @@ def page_view(report: Report) -> PageView:
 # -- claims and scenes with their places -----------------------------------------------------------
 
 
-def _given(report: Report) -> Given:
-    """The report's claims and scenes, as all sections of the page speak of them."""
+def _contents_of(report: Report) -> PageContents:
+    """Return the report's claims and scenes with their places, which all sections share."""
     anchors = Anchors()
-    own = [anchors.take("system", scene.name) for scene in report.scenes]
-    claims = _claims(report, own, anchors)
-    scenes = tuple(_scene(scene, at) for scene, at in zip(report.scenes, own, strict=True))
-    return Given(report, anchors, claims, tuple(groups(claims, anchors)), scenes)
+    scene_anchors = [anchors.take("system", scene.name) for scene in report.scenes]
+    claims = _build_claim_views(report, scene_anchors, anchors)
+    scenes = tuple(
+        _build_scene_view(scene, anchor)
+        for scene, anchor in zip(report.scenes, scene_anchors, strict=True)
+    )
+    return PageContents(report, anchors, claims, tuple(groups(claims, anchors)), scenes)
 
 
-def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[ClaimView, ...]:
-    scenes = {s.name: (anchor, s.title) for s, anchor in zip(report.scenes, own, strict=True)}
-    statements = {reading: each for each in report.statements for reading in each.readings}
-    found: list[ClaimView] = []
+def _build_claim_views(
+    report: Report, scene_anchors: Sequence[str], anchors: Anchors
+) -> tuple[ClaimView, ...]:
+    scenes = {
+        s.name: (anchor, s.title) for s, anchor in zip(report.scenes, scene_anchors, strict=True)
+    }
+    statements = {
+        reading: statement_result
+        for statement_result in report.statements
+        for reading in statement_result.readings
+    }
+    views: list[ClaimView] = []
     for result in _most_favourable_first(report.claims):
-        anchor, of = anchors.take("claim", result.id), statements.get(result.id)
-        again = of is not None and bool(found) and found[-1].of is of
+        anchor, statement = anchors.take("claim", result.id), statements.get(result.id)
+        is_later_reading = (
+            statement is not None and bool(views) and views[-1].statement is statement
+        )
         scene = scenes.get(result.scene, ("", ""))
-        claim = ClaimView(result, anchor, *scene, of=of, again=again)
+        claim = ClaimView(
+            result, anchor, *scene, statement=statement, is_later_reading=is_later_reading
+        )
         if claim.is_table:
             claim = replace(claim, plot=scheme_plots.table(claim, name=f"table-of-{anchor}"))
-        found.append(claim)
-    return tuple(found)
+        views.append(claim)
+    return tuple(views)
 
 
 def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
-    """The readings of a statement where its first one stands, those that hold before the others."""
-    first: dict[str, int] = {}
+    """Return the claims with the readings of a statement together, those that hold first."""
+    # The sort key: the place of the statement's first reading, then verdict, standing and own
+    # place.
+    first_places: dict[str, int] = {}
     ranks = []
     for place, claim in enumerate(claims):
-        at = first.setdefault(claim.statement_id, place) if claim.statement_id else place
-        ranks.append((at, not claim.verdict.holds, claim.standing != "fair", place))
+        first_place = (
+            first_places.setdefault(claim.statement_id, place) if claim.statement_id else place
+        )
+        ranks.append((first_place, not claim.verdict.holds, claim.standing != "fair", place))
     return [claims[rank[-1]] for rank in sorted(ranks)]
 
 
-def _scene(scene: SceneResult, anchor: str) -> SceneView:
+def _build_scene_view(scene: SceneResult, anchor: str) -> SceneView:
     names = mathml.free_names(scene.hamiltonian)
-    known = {*coordinates_of(names), *scene.parameters, "t"}
+    decided_names = {*coordinates_of(names), *scene.parameters, "t"}
     return SceneView(
         result=scene,
         anchor=anchor,
-        symbols=tuple(n for n in names if n not in known),
-        floors=_floors(scene),
-        sections=shown(of_scene.FILES, Place(anchor, scene.title), scene, anchor),
+        symbols=tuple(n for n in names if n not in decided_names),
+        rounding_note=_describe_floors(scene),
+        sections=select_sections(of_scene.FILES, Place(anchor, scene.title), scene, anchor),
     )
 
 
-def _floors(scene: SceneResult) -> str:
-    """Which step sizes do not divide the time, with the N that is taken instead."""
+def _describe_floors(scene: SceneResult) -> str:
+    """Return a sentence on the step sizes that do not divide the time, with their N; else ""."""
     if scene.time is None:
         return ""
     time = Fraction(scene.time)
-    rest = {
+    steps_by_size = {
         r.step_size: r.steps
         for r in (*scene.runs, *scene.series)
+        # Runs with their own number of steps are not concerned.
         if time // Fraction(r.step_size) == r.steps and r.steps * Fraction(r.step_size) != time
     }
-    if not rest:
+    if not steps_by_size:
         return ""
-    shown = listed(f"h = {h} gives N = {whole(n)}" for h, n in rest.items())
-    return f"Where T/h is not a whole number, N is T/h rounded down: {shown}."
+    listing = join_and(f"h = {h} gives N = {whole(n)}" for h, n in steps_by_size.items())
+    return f"Where T/h is not a whole number, N is T/h rounded down: {listing}."
 
 
 TEMPLATES = Path(__file__).parent / "templates"
 _FILTERS = (
-    prose.prose, prose.quoted, prose.sentence, prose.cell, notation.notation, mathml.name,
-    mathml.formula, mathml.plain, typography.exact, typography.number,
-    typography.whole, typography.listed, typography.every, typography.power_of_h,
+    prose.prose, prose.prose_with_backticks, prose.sentence, prose.cell, notation.notation,
+    mathml.name, mathml.formula, mathml.plain, typography.exact, typography.number,
+    typography.whole, typography.join_and, typography.every, typography.power_of_h,
     typography.start, typography.step,
 )  # fmt: skip
 
 
-def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Environment:
-    """`drawn`: a picture as the format has it."""
-    made = Environment(
+def environment(render_plot: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Environment:
+    """Return the templates' environment; `render_plot` sets a picture as the format needs it."""
+    templates = Environment(
         loader=FileSystemLoader(TEMPLATES, encoding="utf-8"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters.update({each.__name__: each for each in _FILTERS})
-    own = {
+    templates.filters.update({each.__name__: each for each in _FILTERS})
+    equations = {
         "equation": lambda left, text: mathml.equation(mathml.NAMED[left], text),
         "hamiltonian": mathml.hamiltonian,
         "jacobian": partial(mathml.matrix, mathml.NAMED["J"]),
         "order_equation": mathml.order_equation,
     }
-    made.globals.update(own, signs=SIGNS, drawn=drawn)
-    return made
+    templates.globals.update(equations, signs=SIGNS, render_plot=render_plot)
+    return templates
 
 
 PAGE, DATA = "index.html", "results.json"
 
 
 def write(report: Report, folder: Path, *, full: bool = False) -> Path:
-    """Write `index.html` and `results.json` into the folder; the path of the page."""
+    """Write `index.html` and `results.json` into the folder and return the path of the page."""
     page = folder / PAGE
     content = render(report, full=full)
     write_atomically(folder / DATA, report.model_dump_json(indent=1))
@@ -173,7 +192,7 @@ def write(report: Report, folder: Path, *, full: bool = False) -> Path:
 
 
 def render(report: Report, *, full: bool = False) -> str:
-    """The whole page as text; `full`: with all that it folds open, on paper too."""
+    """Return the page as text; with `full`, all its folded parts are open, for paper."""
     # The page's policy names its one script by its digest: no other may run.
     script = (TEMPLATES / "page.js").read_text(encoding="utf-8")
     template = _environment().get_template("page.html")

@@ -1,6 +1,6 @@
-"""What does not hold, by the library that claims it: of a report whose refutations have a severity.
+"""The refuted claims by library, for a report whose refutations have a severity.
 
-First what matters; the last digits of tables are counted alone.
+Grave mistakes come first; tables that are wrong in their last digits only are counted.
 """
 
 from collections import Counter
@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from verify.pages.sections.claim_view import ClaimView
 from verify.verdict import Verdict
 
-_DIGITS = "digits"  # how a severity begins that is counted alone
-_NAMED = 6  # methods of a kind that are named
+# Severities that begin so are about the last digits of tables; they are counted, not named.
+_DIGITS = "digits"
+# At most so many methods are named for each kind of mistake; the others are counted.
+_MAX_NAMED = 6
 
 
 @dataclass(frozen=True)
@@ -19,13 +21,13 @@ class Mistake:
     """One kind of mistake in one library: some of the claims, and how many more there are."""
 
     severity: str
-    named: tuple[ClaimView, ...]
-    more: int
+    claims: tuple[ClaimView, ...]
+    more_count: int
 
 
 @dataclass(frozen=True)
 class WrongLibrary:
-    """`name`: as its section is called."""
+    """The mistakes of one library; `name` is the title of its section."""
 
     name: str
     mistakes: tuple[Mistake, ...]
@@ -33,24 +35,28 @@ class WrongLibrary:
 
 @dataclass(frozen=True)
 class Wrong:
-    """`digits`: tables of which last digits alone are wrong, by library; `right`: libraries of
-    which nothing is refuted."""
+    """The mistakes of all libraries.
+
+    `digits`: by library, the number of tables whose last digits alone are wrong; `faultless`: the
+    libraries without a refuted claim.
+    """
 
     libraries: tuple[WrongLibrary, ...]
     digits: tuple[tuple[str, int], ...]
-    right: tuple[str, ...]
+    faultless: tuple[str, ...]
 
 
-def wrong_of(claims: Sequence[ClaimView]) -> Wrong | None:
-    """None where no refuted claim has a severity."""
+def find_mistakes(claims: Sequence[ClaimView]) -> Wrong | None:
+    """Return the mistakes by library, or None where no refuted claim has a severity."""
     refuted = [c for c in claims if c.result.verdict is Verdict.REFUTED and c.result.severity]
     if not refuted:
         return None
     grave = [c for c in refuted if not c.result.severity.startswith(_DIGITS)]
     sections = dict.fromkeys(c.result.section for c in grave)
+    # The order of the sections is that of the claims, since dictionaries keep their order.
     slight = Counter(_name(c.result.section) for c in refuted if c not in grave)
     touched = {c.result.section for c in refuted}
-    every = dict.fromkeys(c.result.section for c in claims)
+    all_sections = dict.fromkeys(c.result.section for c in claims)
     return Wrong(
         tuple(
             WrongLibrary(
@@ -59,7 +65,7 @@ def wrong_of(claims: Sequence[ClaimView]) -> Wrong | None:
             for section in sections
         ),
         tuple(slight.items()),
-        tuple(_name(section) for section in every if section not in touched),
+        tuple(_name(section) for section in all_sections if section not in touched),
     )
 
 
@@ -68,9 +74,12 @@ def _name(section: str) -> str:
 
 
 def _mistakes(claims: Sequence[ClaimView]) -> tuple[Mistake, ...]:
-    found = []
+    mistakes = []
     for severity in dict.fromkeys(c.result.severity for c in claims):
+        # Of several claims with one source and severity the first is named.
         first = {c.result.source: c for c in reversed(claims) if c.result.severity == severity}
-        own = [c for c in claims if c is first.get(c.result.source)]
-        found.append(Mistake(severity, tuple(own[:_NAMED]), max(len(own) - _NAMED, 0)))
-    return tuple(found)
+        sources = [c for c in claims if c is first.get(c.result.source)]
+        mistakes.append(
+            Mistake(severity, tuple(sources[:_MAX_NAMED]), max(len(sources) - _MAX_NAMED, 0))
+        )
+    return tuple(mistakes)

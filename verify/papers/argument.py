@@ -1,8 +1,8 @@
-"""A theorem of a paper with its verdict, its proof in numbered steps, and what a machine checked.
+"""Theorems of papers, each with its verdict, its proof in numbered steps, and its checks.
 
 A step is marked with what checked it in full: exact algebra or enclosures of this run, which are
-rows of the argument's table, or theorems of the shipped theory for Rocq. What is only tried on
-examples, or stands on paper alone, counts as not checked by machine.
+rows of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried
+on examples, or stands on paper alone, counts as not checked by machine.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,52 +11,54 @@ from functools import partial
 from itertools import groupby
 
 from verify.papers.checks.check import Check
-from verify.proof.assistant.stated import Shipped
-from verify.prose import Formula, Prose, count, joined, prose, read_prose
-from verify.scenes.frozen import Said, WithProse
+from verify.proof.assistant.stated import ShippedTheorem
+from verify.prose import Formula, Prose, count, join_prose, prose, read_prose
+from verify.scenes.frozen import ProseText, WithProse
 from verify.scenes.results.claim import StepResult
 from verify.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of an argument: `by` what it was checked by machine in full, none for one that a
-    reader has to follow; `tried`: examples of it that were computed."""
+    """One step of an argument.
+
+    `by`: the checks that verify it in full by machine, none if a reader has to follow it; `tried`:
+    examples of it that were computed.
+    """
 
     text: str
-    by: tuple[Check | Shipped, ...] = ()
+    by: tuple[Check | ShippedTheorem, ...] = ()
     tried: tuple[Check, ...] = ()
 
 
-def step(text: str, *by: Check | Shipped, tried: Sequence[Check] = ()) -> Step:
-    """The step with this text, as `read_prose` takes it, checked by these."""
+def step(text: str, *by: Check | ShippedTheorem, tried: Sequence[Check] = ()) -> Step:
+    """Build the step with this text, in the syntax of `read_prose`, and its checks."""
     return Step(text, by, tuple(tried))
 
 
 class Argument(WithProse):
-    """A verdict on what a claim states, and the argument for it.
+    """A verdict on a claim's statement, and the argument for it.
 
-    `evidence` is one line; `given` what the steps speak of, `remark` what follows the proof and
-    needs none; `proof` all of it in one paragraph that can be quoted; `details` a table, whose
-    first row is its head: the facts that were computed. `checked_by`: how many steps a machine
-    checked.
+    `evidence` is one line; `given`: the setting and notation of the steps; `remark`: a comment
+    after the proof; `proof`: all of it in one paragraph that can be quoted; `details`: a table of
+    the computed facts, whose first row is its head. `checked_by`: how many steps a machine checked.
     """
 
     verdict: Verdict
-    evidence: Said
-    given: Said
+    evidence: ProseText
+    given: ProseText
     steps: tuple[StepResult, ...]
-    remark: Said
-    details: tuple[tuple[Said, ...], ...]
-    checked_by: tuple[Said, ...]
+    remark: ProseText
+    details: tuple[tuple[ProseText, ...], ...]
+    checked_by: tuple[ProseText, ...]
 
     @property
     def proof(self) -> Prose:
-        """The whole argument as a paragraph; empty where it shows nothing."""
+        """The whole argument as a paragraph; empty if it shows nothing."""
         if not self.steps:
             return Prose()
         texts = [self.given, *(each.text for each in self.steps)]
-        return joined(" ", [*filter(None, texts), "∎", *filter(None, [self.remark])])
+        return join_prose(" ", [*filter(None, texts), "∎", *filter(None, [self.remark])])
 
 
 HEAD = ("what the argument rests on", "value", "checked")
@@ -67,30 +69,34 @@ def _argument(
     evidence: str,
     steps: Iterable[Step],
     *,
-    given: str = "",
+    setting: str = "",
     remark: str = "",
 ) -> Argument:
-    """The argument, where every check holds; else it shows nothing, and is UNDECIDED.
+    """Build the argument if every check holds; otherwise it shows nothing, and is UNDECIDED.
 
     A wrong counterexample refutes nothing, and a proof with a wrong step proves nothing. All texts
-    are written as `read_prose` takes them, with formulas quoted. What is checked are the checks
-    that the steps name, in their order.
+    are in the syntax of `read_prose`, with formulas quoted. The checks are those that the steps
+    name, in their order.
     """
     steps = tuple(steps)
+    # Equal checks of several steps are one row of the table.
     checks = checks_of(steps)
-    rows = [(c.what, c.shown, "holds" if c.holds else "does not hold") for c in checks]
-    failed = [c for c in checks if not c.holds]
-    if failed or not checks:
+    rows = [(c.what, c.value, "holds" if c.holds else "does not hold") for c in checks]
+    failures = [c for c in checks if not c.holds]
+    # An argument without any check would be prose alone, which this toolkit does not vouch for.
+    if failures or not checks:
         verdict, steps = Verdict.UNDECIDED, ()
-        evidence = f"the argument fails at: {failed[0].what}" if failed else "nothing was checked"
+        evidence = (
+            f"the argument fails at: {failures[0].what}" if failures else "nothing was checked"
+        )
     return Argument(
         verdict=verdict,
         evidence=read_prose(evidence),
-        given=_read(given),
+        given=_read(setting),
         steps=tuple(_result(each, checks) for each in steps),
         remark=_read(remark),
         details=tuple(tuple(map(read_prose, row)) for row in (HEAD, *rows)),
-        checked_by=(_counted(steps),) if steps else (),
+        checked_by=(_count_steps(steps),) if steps else (),
     )
 
 
@@ -99,44 +105,49 @@ refutation = partial(_argument, Verdict.REFUTED)
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:
-    """All that the steps rest on or were tried by, each once."""
-    found = [c for each in steps for c in (*each.by, *each.tried) if isinstance(c, Check)]
-    return list(dict.fromkeys(found))
+    """Return all checks that the steps rest on or were tried by, each once."""
+    checks = [c for each in steps for c in (*each.by, *each.tried) if isinstance(c, Check)]
+    return list(dict.fromkeys(checks))
 
 
 # -- marks ----------------------------------------------------------------------------------------
 
 
-def _result(found: Step, checks: Sequence[Check]) -> StepResult:
-    own = [x for x in found.by if isinstance(x, Check)]
-    theorems = [Formula(str(x)) for x in found.by if isinstance(x, Shipped)]
-    rocq = [prose("Rocq, ", joined(", ", theorems))] if theorems else []
+def _result(argument_step: Step, checks: Sequence[Check]) -> StepResult:
+    checks_of_step = [x for x in argument_step.by if isinstance(x, Check)]
+    theorems = [Formula(str(x)) for x in argument_step.by if isinstance(x, ShippedTheorem)]
+    rocq = [prose("Rocq, ", join_prose(", ", theorems))] if theorems else []
     return StepResult(
-        text=_read(found.text),
-        checked_by=(*_rows(own, checks), *rocq),
-        tried=tuple(_rows(found.tried, checks)),
+        text=_read(argument_step.text),
+        checked_by=(*_rows(checks_of_step, checks), *rocq),
+        tried=tuple(_rows(argument_step.tried, checks)),
     )
 
 
-def _rows(own: Sequence[Check], checks: Sequence[Check]) -> list[Prose]:
-    """How these are known, and in which rows of the table they stand."""
+def _rows(chosen: Sequence[Check], checks: Sequence[Check]) -> list[Prose]:
+    """Describe how these checks were made, and in which rows of the table they stand."""
     rows: dict[str, list[int]] = {}
     for number, check in enumerate(checks, start=1):
-        if check in own:
+        if check in chosen:
             rows.setdefault(check.how, []).append(number)
-    return [prose(f"{how}, {_named(numbers)}") for how, numbers in rows.items()]
+    return [prose(f"{how}, {_format_rows(numbers)}") for how, numbers in rows.items()]
 
 
-def _named(numbers: Sequence[int]) -> str:
-    """`row 3`, or `rows 1–4 and 7`."""
+def _format_rows(numbers: Sequence[int]) -> str:
+    """Format row numbers as `row 3`, or `rows 1–4 and 7`."""
     parts: list[str] = []
+    # Numbers that follow each other have the same difference to their index.
     for _, run in groupby(enumerate(numbers), key=lambda each: each[1] - each[0]):
-        found = [n for _, n in run]
-        parts.append(f"{found[0]}" if len(found) == 1 else f"{found[0]}–{found[-1]}")
+        numbers_in_run = [n for _, n in run]
+        parts.append(
+            f"{numbers_in_run[0]}"
+            if len(numbers_in_run) == 1
+            else f"{numbers_in_run[0]}–{numbers_in_run[-1]}"
+        )
     return f"row{'s' if len(numbers) > 1 else ''} {' and '.join(parts)}"
 
 
-def _counted(steps: Sequence[Step]) -> Prose:
+def _count_steps(steps: Sequence[Step]) -> Prose:
     checked = sum(1 for each in steps if each.by)
     how = "all checked by machine"
     if checked < len(steps):

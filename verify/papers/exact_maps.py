@@ -1,4 +1,4 @@
-"""Step maps at rational points, in Fractions: points, Jacobians, and the areas along an orbit."""
+"""Step maps at rational points, in Fractions: images, Jacobians, and ΔJ along an orbit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.by_formulas import step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
 
 
@@ -20,13 +20,13 @@ class Point:
     q: Fraction
 
     def __str__(self) -> str:
-        """With its numbers quoted, as `read_prose` takes them."""
+        """Format the point with quoted numbers, in the syntax of `read_prose`."""
         return f"(`{text(self.p)}`, `{text(self.q)}`)"
 
 
 @dataclass(frozen=True)
 class Areas:
-    """ΔJ along an orbit of N steps, with the three numbers that the criteria speak of."""
+    """ΔJ along an orbit of N steps, with the three numbers that the criteria are about."""
 
     delta_j: tuple[Fraction, ...]
 
@@ -43,48 +43,54 @@ class Areas:
         return prod((1 + x for x in self.delta_j), start=Fraction(1)) - 1
 
 
-def squared(one: Point, other: Point) -> Fraction:
-    """The square of their distance."""
+def squared_distance(one: Point, other: Point) -> Fraction:
+    """Return the square of the distance of two points."""
     return (one.p - other.p) ** 2 + (one.q - other.q) ** 2
 
 
 def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
-    """The expression at a rational point; ValueError where its value is not rational."""
-    put = {P: point.p, Q: point.q, H_STEP: h}
-    found = expression.subs({s: sympy.Rational(v.numerator, v.denominator) for s, v in put.items()})
-    if not found.is_Rational:
-        raise ValueError(f"{found} is not rational")
-    return Fraction(int(found.p), int(found.q))
+    """Evaluate the expression at a rational point; ValueError if its value is not rational."""
+    substitution = {P: point.p, Q: point.q, H_STEP: h}
+    # sympy's Rational and not a float: one rounded digit would spoil an exact counterexample.
+    number = expression.subs(
+        {s: sympy.Rational(v.numerator, v.denominator) for s, v in substitution.items()}
+    )
+    if not number.is_Rational:
+        raise ValueError(f"{number} is not rational")
+    return Fraction(int(number.p), int(number.q))
 
 
 def next_point(step: StepMap, point: Point, h: Fraction) -> Point:
     return Point(value(step.p_next, point, h), value(step.q_next, point, h))
 
 
-def run_of(step: StepMap, start: Sequence[sympy.Expr], steps: int) -> tuple[sympy.Expr, ...]:
-    """p and q after so many steps, as expressions."""
-    found = tuple(start)
+def run_symbolically(
+    step: StepMap, start: Sequence[sympy.Expr], steps: int
+) -> tuple[sympy.Expr, ...]:
+    """Return p and q after so many steps, as expressions."""
+    state = tuple(start)
     for _ in range(steps):
-        put = dict(zip((P, Q), found, strict=True))
-        found = tuple(x.subs(put, simultaneous=True) for x in (step.p_next, step.q_next))
-    return found
+        substitution = dict(zip((P, Q), state, strict=True))
+        state = tuple(x.subs(substitution, simultaneous=True) for x in (step.p_next, step.q_next))
+    return state
 
 
 def jacobian(step: StepMap, point: Point, h: Fraction) -> tuple[Fraction, ...]:
-    """∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
+    """Return ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
     return tuple(value(x, point, h) for x in step.jacobian)
 
 
 def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
-    """ΔJ_k at z_k, k = 0 … steps − 1, exactly."""
-    found, point, delta_j = [], start, step.delta_j
+    """Return ΔJ_k at z_k, k = 0 … steps − 1, exactly."""
+    values, point, delta_j = [], start, step.delta_j
     for _ in range(steps):
-        found.append(value(delta_j, point, h))
+        # ΔJ_k belongs to the point before the step: J is taken at z_k.
+        values.append(value(delta_j, point, h))
         point = next_point(step, point, h)
-    return Areas(tuple(found))
+    return Areas(tuple(values))
 
 
-def map_from_formulas(p_next: str, q_next: str) -> StepMap:
-    """A map by formulas in p, q and h; the H that it is made with says nothing of it."""
+def map_from_texts(p_next: str, q_next: str) -> StepMap:
+    """Build a map from formulas in p, q and h; the H that `StepMap` requires has no meaning."""
     formulas = {"p_next": p_next, "q_next": q_next}
-    return map_by_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), formulas)
+    return step_map_from_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), formulas)

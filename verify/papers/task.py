@@ -1,4 +1,4 @@
-"""The task of a theorem's argument: what it rests on is computed."""
+"""The task that computes the checks of a theorem's argument."""
 
 from typing import Literal
 
@@ -19,11 +19,12 @@ class TheoremTask(Task):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps it is worth."""
+        """The estimated cost in float64 steps."""
         return _COST
 
     def compute(self, keeper: Keeper) -> Argument:
-        """The argument, with a verdict."""
+        """Compute the argument, with its verdict."""
+        # Imported here, so that planning the task does not load the papers' libraries.
         from verify.papers import check_theorem
 
         return check_theorem(self.name)

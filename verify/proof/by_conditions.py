@@ -12,29 +12,31 @@ from verify.schemes.conditions.condition import ByConditions, Condition, NearbyO
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
-_MORE = 2  # orders beyond the claimed one that are looked at
+_MORE = 2  # orders examined beyond the claimed one
 
 
 def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -> EveryProof:
-    """The order of the map and whether det J ≡ 1, for every H that the scheme takes.
+    """Prove the order of the map, and det J ≡ 1, for every H that the scheme takes.
 
-    `conditions` of the result has those up to the claimed order, and those on area. REFUTED where
-    one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
-    det J is not; `order` (of ΔJ) is always None.
+    `conditions` of the result are those up to the claimed order and those on area. The verdict is
+    REFUTED where one of the former fails, and the reason names the first that does; UNDECIDED where
+    one of them, or det J, is not decided. `order` (of ΔJ) is always None.
     """
     least = max(scheme.order, least)
     agreed, wrong = agreed_order(every_h, least)
     near = nearby_order(every_h, least)
-    asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
+    claimed = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
+    # The conditions on area suffice for det J ≡ 1 and are not necessary: a failing one proves
+    # nothing.
     area = every_h.area_conditions()
-    verdict, reason = _verdict(scheme, asked, area)
-    said = prose(f"order {agreed}, {_count(every_h, agreed)}")
+    verdict, reason = _verdict(scheme, claimed, area)
+    summary = prose(f"order {agreed}, {_count(every_h, agreed)}")
     if near is None or near.order <= agreed:
         near = None
     else:  # the digits of the coefficients leave residues: of a splitting, whose det J ≡ 1
-        said = told_nearby(near)
+        summary = describe_nearby(near)
         verdict = near.verdict if agreed < scheme.order else Verdict.PROVED
-        reason = prose("det J ≡ 1, and ", said)
+        reason = prose("det J ≡ 1, and ", summary)
         agreed, wrong = near.order, near.wrong
         if agreed < scheme.order:
             verdict, reason = _verdict(scheme, [wrong] if wrong else [], area)
@@ -46,27 +48,30 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
         area_preserving=(bool(area) and all(condition.holds for condition in area)) or None,
         convergence_order=agreed,
         convergence_decided=wrong is not None and wrong.holds is False,
-        checked=(said, *_no_further(wrong)),
-        conditions=(*asked, *area),
+        checked=(summary, *_no_further(wrong)),
+        conditions=(*claimed, *area),
         nearby=near,
     )
 
 
 def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
-    """Of exact coefficients near printed ones, as far as `agreed_order`; None where none is."""
+    """Return the order of exact coefficients near the printed ones, or None where there are none.
+
+    It is looked for as far as `agreed_order` looks.
+    """
     nearby: Callable[[int], NearbyOrder | None] | None = getattr(every_h, "nearby", None)
     if nearby is None or not isinstance(every_h, ByConditions):
         return None
     return nearby(min(least + _MORE, every_h.most_order))
 
 
-def told_nearby(near: NearbyOrder) -> Prose:
-    """Of which coefficients the order is, and what the digits leave."""
+def describe_nearby(near: NearbyOrder) -> Prose:
+    """Say which coefficients have that order, and what the printed digits leave."""
     return prose(f"order {near.order} of exact coefficients near the printed ones: ", near.said)
 
 
 def agreed_order(every_h: ByConditions, least: int) -> tuple[int, Condition | None]:
-    """The order of the map, as far as two beyond `least`, and the condition that ends it."""
+    """Return the order of the map, at most two beyond `least`, and the condition that ends it."""
     most = min(least + _MORE, every_h.most_order)
     for order in range(1, most + 1):
         here = [c for c in every_h.order_conditions(order) if c.order == order]
@@ -81,28 +86,32 @@ def _no_further(wrong: Condition | None) -> tuple[Prose, ...]:
         return ()
     word = "does not hold" if wrong.holds is False else "is not decided"
     power = Formula(f"h^{wrong.order}")
-    return (prose("no further: of ", power, ", ", shown(wrong), f" {word}"),)
+    return (prose("no further: of ", power, ", ", format_condition(wrong), f" {word}"),)
 
 
 def _count(every_h: ByConditions, order: int) -> str:
-    found = every_h.order_conditions(order) if order else ()
-    return f"{count(len(found), 'condition')} on the coefficients"
+    conditions = every_h.order_conditions(order) if order else ()
+    return f"{count(len(conditions), 'condition')} on the coefficients"
 
 
 def _verdict(
-    scheme: Scheme, asked: Sequence[Condition], area: Sequence[Condition]
+    scheme: Scheme, claimed: Sequence[Condition], area: Sequence[Condition]
 ) -> tuple[Verdict, Prose]:
-    wrong = first_wrong(asked)
+    wrong = first_wrong(claimed)
     if wrong is not None and wrong.holds is False:
-        claimed, power = f"{scheme.name} claims order {scheme.order}", Formula(f"h^{wrong.order}")
-        return Verdict.REFUTED, prose(claimed, "; of ", power, ", ", shown(wrong), " does not hold")
+        claim, power = f"{scheme.name} claims order {scheme.order}", Formula(f"h^{wrong.order}")
+        return Verdict.REFUTED, prose(
+            claim, "; of ", power, ", ", format_condition(wrong), " does not hold"
+        )
     if wrong is not None:
-        return Verdict.UNDECIDED, prose("whether ", shown(wrong), " holds is not decided")
+        return Verdict.UNDECIDED, prose(
+            "whether ", format_condition(wrong), " holds is not decided"
+        )
     of_area = first_wrong(area)
     if of_area is not None:
         return Verdict.UNDECIDED, prose(
             f"order {scheme.order} is proved; of what suffices for det J ≡ 1, ",
-            shown(of_area),
+            format_condition(of_area),
             " does not hold, and by that alone det J is not decided",
         )
     return Verdict.PROVED, prose(
@@ -111,13 +120,14 @@ def _verdict(
 
 
 def first_wrong(conditions: Sequence[Condition]) -> Condition | None:
-    """The failing one of the lowest order; else, of those not decided, the one of the lowest."""
+    """Return the failing condition of the lowest order, else the undecided one of the lowest."""
+    # A failing condition goes before an undecided one of lower order: it alone refutes.
     ordered = sorted(conditions, key=lambda c: c.order)
     failing = (c for c in ordered if c.holds is False)
     return next(failing, next((c for c in ordered if c.holds is None), None))
 
 
-def shown(condition: Condition) -> Prose:
-    """The condition with its residue."""
+def format_condition(condition: Condition) -> Prose:
+    """Format the condition with its residue."""
     residue = Number(condition.residue)
     return prose(Formula(condition.name), " (residue ", residue, ")")

@@ -1,4 +1,4 @@
-"""What is proved of a map for one H, held against what is claimed of it."""
+"""The comparison of what is proved of a map for one H with what its scheme claims."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,10 +12,11 @@ from verify.verdict import Verdict
 
 @dataclass(frozen=True)
 class Convergence:
-    """p', q' agree with the exact flow up to h^order, shown by algebra; None: in all looked at.
+    """The power of h up to which p' and q' agree with the exact flow, shown by algebra.
 
+    `order` is None where all coefficients looked at agree, and −1 where they differ at h⁰.
     `decided`: the next coefficient is shown to differ (or there is none), for the parameters in
-    `exact_for`. −1: they differ at h⁰.
+    `exact_for`.
     """
 
     order: int | None
@@ -27,69 +28,75 @@ class Convergence:
 
 
 @dataclass(frozen=True)
-class Claimed:
-    """What is claimed of a map: its order, and whether it is symplectic; "" of a map without a
-    name."""
+class SchemeClaims:
+    """The claims about a map: its order, and that it is symplectic.
+
+    `name` is empty for a map that is no named scheme.
+    """
 
     name: str = ""
     order: int = 1
     symplectic: bool = False
 
     @classmethod
-    def of(cls, scheme: Scheme) -> "Claimed":
-        """What the scheme claims; its name is quoted where it is a user's formulas."""
+    def from_scheme(cls, scheme: Scheme) -> "SchemeClaims":
+        """Return the claims of a scheme; a name that is a user's formulas is quoted."""
         name = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
         return cls(name, scheme.order, scheme.area_preserving)
 
 
-def held_to(
-    claimed: Claimed,
+def judge_claims(
+    claimed: SchemeClaims,
     convergence: Convergence,
     defect: tuple[int | None, bool | None],
     most: int,
     structure: Structure,
 ) -> tuple[Verdict, Prose]:
-    """The verdict, and the reason for it.
+    """Return the verdict on the claims, and the reason for it.
 
-    `defect`: the power of h in its first coefficient that is not shown to vanish, up to h^`most`,
-    and whether it is zero.
+    `defect`: the power of h in the first coefficient of the defect that is not shown to vanish,
+    up to h^`most`, and whether the defect is zero.
     """
-    verdict, said = _missed(claimed, convergence) or _of_defect(claimed, *defect, most, structure)
-    return verdict, read_prose(said)
+    verdict, reason = _judge_order(claimed, convergence) or _judge_defect(
+        claimed, *defect, most, structure
+    )
+    return verdict, read_prose(reason)
 
 
-def _missed(claimed: Claimed, convergence: Convergence) -> tuple[Verdict, str] | None:
-    """Where the map is not shown to have the order that is claimed."""
+def _judge_order(claimed: SchemeClaims, convergence: Convergence) -> tuple[Verdict, str] | None:
+    """Return the verdict on the order, or None where the map has the order that is claimed."""
     if not convergence.misses(claimed.order):
         return None
-    known = f"agrees with the exact flow up to `h^{convergence.order}`"
+    agreement = f"agrees with the exact flow up to `h^{convergence.order}`"
     if convergence.order == -1:
-        known = "agrees with the exact flow not even at h = 0"
+        agreement = "agrees with the exact flow not even at h = 0"
     if not convergence.decided:
-        return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
+        return Verdict.UNDECIDED, f"the map {agreement}; whether further is not decided"
     if claimed.name:
         claims = f"{claimed.name} claims order {claimed.order}"
-        return Verdict.REFUTED, f"{claims}; the map {known} only"
+        return Verdict.REFUTED, f"{claims}; the map {agreement} only"
+    # A map without a scheme claims order 1: one that misses it does not approximate the flow at
+    # all.
     only = "" if convergence.order == -1 else " only"
-    return Verdict.REFUTED, f"not a scheme for this H: the map {known}{only}"
+    return Verdict.REFUTED, f"not a scheme for this H: the map {agreement}{only}"
 
 
-def _of_defect(
-    claimed: Claimed, power: int | None, zero: bool | None, most: int, structure: Structure
+def _judge_defect(
+    claimed: SchemeClaims, power: int | None, zero: bool | None, most: int, structure: Structure
 ) -> tuple[Verdict, str]:
     name = structure.defect
     if zero:
         return Verdict.PROVED, structure.vanishes
     if zero is None:
         what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
-        said = f"the coefficient {what} in {name} is neither shown to vanish nor not to"
-        return Verdict.UNDECIDED, said
+        sentence = f"the coefficient {what} in {name} is neither shown to vanish nor not to"
+        return Verdict.UNDECIDED, sentence
     not_zero = (
         f"{name} is not the zero {structure.zero}, and its coefficients up to `h^{most}` vanish"
     )
     if claimed.symplectic:
-        found = not_zero if power is None else f"{name} has order {power}"
-        return Verdict.REFUTED, f"{claimed.name} claims {structure.claim}; {found}"
+        fact = not_zero if power is None else f"{name} has order {power}"
+        return Verdict.REFUTED, f"{claimed.name} claims {structure.claim}; {fact}"
     if power is None:
         return Verdict.PROVED, not_zero
     return Verdict.PROVED, (

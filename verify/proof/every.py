@@ -1,9 +1,9 @@
 """Proofs for every smooth H (or every H = T(p) + V(q)): the order of ΔJ, of the map, telescoping.
 
-What is zero is a polynomial in the jets that is the zero polynomial: machine-checked. What is not
-zero is one that is not, and some polynomial H gives it a value other than 0.
+A coefficient is zero for every H if it is the zero polynomial in the jets, which the machine
+checks. If it is another polynomial, some polynomial H gives it a value other than 0.
 
-Two arguments on paper stand beside the machine's, since it checks one η at a time.
+Two arguments on paper supplement the machine's, which checks one η at a time.
 
 `lieη`, any η. The exact flow φ_h has det φ_h' = 1, so every coefficient of h, h², … in
 det Σ hⁿ/n! (Xⁿz)' vanishes. The scheme has the same terms up to h^η; so has its determinant, whose
@@ -24,8 +24,8 @@ are necessary, too.
 
 In n degrees of freedom S = JᵀΩJ − Ω stands for ΔJ; see `verify.proof.every_by_series`. The order of
 a splitting and that of a Gauss method follow from conditions on their coefficients. They suffice in
-any number of degrees of freedom; and H1(p1, q1) + H2(p2, q2) + … are such H, so that what is needed
-in the plane is needed in n.
+any number of degrees of freedom; and H1(p1, q1) + H2(p2, q2) + … are such H, so that conditions
+that are necessary in the plane are necessary in n.
 
 Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
 
@@ -39,7 +39,12 @@ from dataclasses import replace
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.coordinates import check_degrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import agreed_order, first_wrong, prove_by_conditions, told_nearby
+from verify.proof.by_conditions import (
+    agreed_order,
+    describe_nearby,
+    first_wrong,
+    prove_by_conditions,
+)
 from verify.proof.every_by_series import is_long, prove_by_series
 from verify.proof.every_proof import NONE, EveryProof
 from verify.proof.order import leading_of
@@ -49,8 +54,8 @@ from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
-from verify.schemes.conditions.timed.mistakes import mistakes_of_splitting
-from verify.schemes.conditions.tree_conditions import TreeConditions, all_trees_hold
+from verify.schemes.conditions.timed.mistakes import find_mistakes
+from verify.schemes.conditions.tree_conditions import TreeConditions, holds_for_all_trees
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
@@ -64,13 +69,13 @@ _MOST_ETA = 8  # in time the terms triple with every order; lie8 takes 2 s
 def prove_every(
     name: str, separable: bool = False, least: int = 0, *, timed: bool = False, degrees: int = 1
 ) -> EveryProof:
-    """The order of ΔJ, or S, and of the map of the scheme of that name, for every H that it takes.
+    """Prove the orders of ΔJ, or S, and of the map of a scheme, for every H that it takes.
 
-    `separable`: only for every H = T(p) + V(q), of which more may be true. `least`: as far as that
-    the map's order is looked at, of a scheme that is given by coefficients and may state none.
-    `timed`: for every such H that depends on t. `degrees`: of freedom.
-    Raises InputError for a scheme that is known for one H at a time or in the plane only, or of too
-    high an order, LimitError for polynomials that are too long.
+    `name`: the scheme's. `separable`: only for every H = T(p) + V(q), for which more may hold.
+    `least`: the order up to which a scheme given by coefficients is examined at least, as it may
+    state none itself. `timed`: for every such H that depends on t. `degrees`: of freedom.
+    Raises InputError for a scheme that is defined for one H at a time or in the plane only, or of
+    too high an order; LimitError for polynomials that are too long.
     """
     check_degrees(degrees)
     scheme = get(name)
@@ -85,16 +90,18 @@ def prove_every(
         scheme.name, separable, Verdict.UNDECIDED, NONE, timed=timed, degrees=degrees
     )
     _check_length(blank, scheme, every_h)
-    # In time the plane's stages are asked for their clocks; without it their series says all.
-    asked = isinstance(every_h, ByConditions) or (timed and not isinstance(every_h, TaylorSeries))
-    if isinstance(every_h, BySeries) and not (blank.planar and asked):
+    # Where H depends on time the stages' times enter conditions; else their series decides alone.
+    by_coefficients = isinstance(every_h, ByConditions) or (
+        timed and not isinstance(every_h, TaylorSeries)
+    )
+    if isinstance(every_h, BySeries) and not (blank.planar and by_coefficients):
         return prove_by_series(blank, scheme, every_h)
-    proved = {AREA: _by_conditions, SYMPLECTIC: _in_degrees}[blank.structure]
-    return proved(blank, scheme, every_h, least)
+    prove = {AREA: _prove_by_coefficients, SYMPLECTIC: _prove_in_degrees}[blank.structure]
+    return prove(blank, scheme, every_h, least)
 
 
 def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions) -> None:
-    """Refuses polynomials that would be too long."""
+    """Refuse polynomials that would be too long, with an InputError or a LimitError."""
     name, order, taylor = scheme.name, scheme.order, isinstance(every_h, TaylorSeries)
     if isinstance(every_h, BySeries) and is_long(blank, order):
         problem = f"are too many for {name}: its polynomials are too long"
@@ -103,15 +110,15 @@ def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByCondi
         problem = f"of order {_MOST_ORDER[AREA]} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
     if blank.timed and taylor and order > _MOST_ETA:
-        told = f"up to lie{_MOST_ETA}: its polynomials are too long"
-        raise InputError("scheme", name, f"is proved for every H in t {told}")
+        limit = f"up to lie{_MOST_ETA}: its polynomials are too long"
+        raise InputError("scheme", name, f"is proved for every H in t {limit}")
 
 
 # -- by conditions on coefficients ----------------------------------------------------------------
 
 
 def _conditions(blank: EveryProof, every_h: BySeries | ByConditions) -> ByConditions:
-    """Those on coefficients, and on times where H depends on time."""
+    """Return the conditions on coefficients, and on times where H depends on time."""
     if blank.timed or not isinstance(every_h, ByConditions):
         return conditions_for(every_h)
     if blank.separable and isinstance(every_h, TreeConditions):
@@ -119,36 +126,39 @@ def _conditions(blank: EveryProof, every_h: BySeries | ByConditions) -> ByCondit
     return every_h
 
 
-def _by_conditions(
+def _prove_by_coefficients(
     blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> EveryProof:
-    """By its coefficients; where they leave det J open, by the series, if the scheme has one, and
-    else by an H: in time, too, since one without t is one of these."""
+    """Prove by the scheme's coefficients, and where they leave det J open by its series.
+
+    A scheme without a series is refuted by a counterexample, an H for which det J is not 1; also
+    where H depends on time, since an H without t is one of these.
+    """
     conditions = _conditions(blank, every_h)
-    found = prove_by_conditions(scheme, conditions, least)
-    found = replace(found, separable=blank.separable, timed=blank.timed)
-    agreed = found.convergence_order or 0
+    proof = prove_by_conditions(scheme, conditions, least)
+    proof = replace(proof, separable=blank.separable, timed=blank.timed)
+    agreed = proof.convergence_order or 0
     if blank.timed and isinstance(conditions, Splitting):
-        named = mistakes_of_splitting(conditions) if found.verdict is Verdict.REFUTED else []
-        reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
-        checked = (*found.checked, *_of_fewer(scheme, conditions, agreed))
-        return replace(found, reason=reason, checked=checked)
-    if found.verdict is Verdict.REFUTED and blank.separable and not conditions.separable:
+        mistakes = find_mistakes(conditions) if proof.verdict is Verdict.REFUTED else []
+        reason = prose(proof.reason, f"; it is {'; '.join(mistakes)}") if mistakes else proof.reason
+        checked = (*proof.checked, *_higher_orders(scheme, conditions, agreed))
+        return replace(proof, reason=reason, checked=checked)
+    if proof.verdict is Verdict.REFUTED and blank.separable and not conditions.separable:
         alone = "; of H = T(p) + V(q) alone nothing is said"  # the H that it fails for may be none
-        reason = prose("of every smooth H: ", found.reason, alone)
-        return replace(found, verdict=Verdict.UNDECIDED, reason=reason)
-    if found.verdict is not Verdict.UNDECIDED:
-        return found
+        reason = prose("of every smooth H: ", proof.reason, alone)
+        return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
+    if proof.verdict is not Verdict.UNDECIDED:
+        return proof
     if isinstance(scheme.every_h, BySeries):
         by_series = prove_by_series(blank, scheme, scheme.every_h)
-        return replace(by_series, conditions=found.conditions)
+        return replace(by_series, conditions=proof.conditions)
     against = counterexample(scheme, blank.separable) if agreed >= scheme.order else None
     if against is None:
-        return found
+        return proof
     hamiltonian, order = against
     lost = f"not det J ≡ 1: ΔJ has order {order} for H = "
     reason = prose(f"of order {scheme.order}, but {lost}", Formula(hamiltonian))
-    return replace(found, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
+    return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
 
 
 # Polynomials, so that all is decided; with cubic terms, as a quadratic H makes too much vanish.
@@ -157,7 +167,7 @@ _OTHERS = ("p**2/2 + q**2/2 + p*q**2 + q**3/3",)
 
 
 def counterexample(scheme: Scheme, separable: bool) -> tuple[str, int] | None:
-    """The H as a formula and the order of ΔJ for it, exact; None where none is found."""
+    """Find an H with ΔJ ≠ 0: its formula and the exact order of ΔJ; None where none is found."""
     for text in (*_SEPARABLE, *(() if separable else _OTHERS)):
         try:
             step_map = scheme.step_map(Hamiltonian.parse(text))
@@ -169,8 +179,8 @@ def counterexample(scheme: Scheme, separable: bool) -> tuple[str, int] | None:
     return None
 
 
-def _of_fewer(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]:
-    """The order where fewer H are asked for, where it is a higher one."""
+def _higher_orders(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]:
+    """Yield the classes of fewer H for which the map has a higher order, as sentences."""
     for kinetic in Kinetic:
         order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)
         if order > general:
@@ -180,19 +190,19 @@ def _of_fewer(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]
 # -- in n degrees of freedom ----------------------------------------------------------------------
 
 
-def _in_degrees(
+def _prove_in_degrees(
     blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> EveryProof:
-    """What the plane's proof says of the order, and the conditions that suffice for S ≡ 0."""
-    planar = _by_conditions(blank, scheme, every_h, least)
-    own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
+    """Prove the order by the plane's proof, and S ≡ 0 by the conditions that suffice for it."""
+    planar = _prove_by_coefficients(blank, scheme, every_h, least)
+    conditions = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     verdict, reason = planar.verdict, planar.reason
-    symplectic = True if own and first_wrong(own) is None else None
+    symplectic = True if conditions and first_wrong(conditions) is None else None
     if planar.nearby is not None and verdict is planar.nearby.verdict and symplectic:
-        reason = prose("symplectic, and ", told_nearby(planar.nearby))
+        reason = prose("symplectic, and ", describe_nearby(planar.nearby))
     elif verdict is Verdict.PROVED:
-        held = "every condition on the coefficients holds exactly"
-        reason = prose(f"symplectic, and of order {scheme.order}: {held}")
+        sentence = "every condition on the coefficients holds exactly"
+        reason = prose(f"symplectic, and of order {scheme.order}: {sentence}")
         if not symplectic:
             verdict = Verdict.UNDECIDED
             reason = prose("of what suffices for a symplectic map one condition does not hold")
@@ -206,7 +216,7 @@ def _in_degrees(
         area_preserving=symplectic,
         convergence_order=planar.convergence_order,
         convergence_decided=planar.convergence_decided,
-        conditions=(*(c for c in planar.conditions if c.order), *own),
+        conditions=(*(c for c in planar.conditions if c.order), *conditions),
         checked=planar.checked,
         telescopes=symplectic,
         potential="0" if symplectic else None,
@@ -215,5 +225,5 @@ def _in_degrees(
 
 
 def _suffices(every_h: object, order: int) -> bool:
-    """Whether the conditions that hold in the plane are those of n degrees of freedom."""
-    return not isinstance(every_h, TreeConditions) or all_trees_hold(every_h.tableau, order)
+    """Return True if the conditions that hold in the plane suffice in n degrees of freedom."""
+    return not isinstance(every_h, TreeConditions) or holds_for_all_trees(every_h.tableau, order)

@@ -1,4 +1,4 @@
-"""What is proved of one scheme for every H; see `verify.proof.every`."""
+"""The result of a proof about one scheme for every H; see `verify.proof.every`."""
 
 from dataclasses import dataclass, field
 
@@ -18,17 +18,17 @@ NONE = Prose()
 
 @dataclass(frozen=True)
 class EveryProof:
-    """What is proved of one scheme for every H (`separable`: every H = T(p) + V(q)).
+    """A proof about one scheme for every H (`separable`: every H = T(p) + V(q)).
 
     `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
     H, and `convergence_decided`: of some H it is no higher; `leading` is the coefficient of
     h^order, a polynomial in H_p, H_q, H_pp, …, empty where it is not written out, and `formula`
-    what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
-    every H, `why` says how that is known.
+    its closed form, where there is one. `telescopes`: whether it is X·`potential` for every H;
+    `why` says how that is shown.
     `checked` names the identities that were checked, `conditions` those on the coefficients, of a
     scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
-    place of X. `nearby`: of which coefficients it is, where those of the scheme are printed with
-    digits that leave residues.
+    place of X. `nearby`: the exact coefficients that have this order, where those of the scheme are
+    printed, rounded.
 
     In several `degrees` of freedom order, leading coefficient and potential are those of S, and
     `leading` is the formula where it has too many terms; `entry` is one of S that is not 0,
@@ -62,45 +62,48 @@ class EveryProof:
 
     @property
     def leading_text(self) -> str:
-        """`leading`, by the name that proofs for one H have for it."""
+        """The same as `leading`, under the name that proofs for one H use."""
         return self.leading
 
     @property
     def planar(self) -> bool:
-        """Whether it is of one degree of freedom."""
+        """True if there is one degree of freedom."""
         return self.degrees == 1
 
     @property
     def structure(self) -> Structure:
-        """What a canonical step of it keeps."""
+        """The structure that a canonical step preserves: area, or the symplectic form."""
         return structure_in(self.degrees)
 
-    def written(self, form: TwoForm, formula: str = "") -> str:
-        """A 2-form, of which the plane has one entry; one of too many terms by its formula."""
+    def format_form(self, form: TwoForm, formula: str = "") -> str:
+        """Format a 2-form, in the plane its one entry; `formula` where it has too many terms."""
         if self.planar:
             return str(form.ring.text(form.divergence))
         return formula if formula and form.length > MOST_TERMS else form.text
 
     @property
     def symplectic(self) -> bool | None:
-        """Whether S ≡ 0, which in the plane is that area is preserved."""
+        """True if S ≡ 0, which in the plane means that area is preserved; None if undecided."""
         return self.area_preserving if self.order is None else False
 
     @property
     def argument(self) -> Prose:
-        """What is proved on paper, for every η, beside what the machine checked of this one."""
-        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)  # told of p and q
+        """The argument on paper for every η; empty where there is none for this scheme."""
+        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)  # the argument is of p and q
+        # The argument on paper speaks of X and of dp∧dq; it is not given for D or n degrees of
+        # freedom.
         return paragraph() if taylor and self.planar and not self.timed else NONE
 
     @property
     def domain(self) -> Domain:
-        """Where it holds, beside that H is smooth at every point and time at which it is read."""
+        """The domain where it holds, H being smooth at every point and time where it is taken."""
         explicit = get(self.scheme).explicit
-        return EVERYWHERE if explicit else Domain.of((), solvable(self.structure))
+        # The equations of an implicit step need a smooth solution, which is a condition of its own.
+        return EVERYWHERE if explicit else Domain.from_requirements((), solvable(self.structure))
 
     @property
     def quantifier(self) -> str:
-        """For which H it is proved, in words."""
+        """The class of H for which it is proved, in words."""
         t = ", t" * self.timed
         general, degrees = {
             AREA: ("H(p, q, t)" if self.timed else "H", ""),

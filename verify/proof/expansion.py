@@ -12,7 +12,7 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.identities.polynomials import split
-from verify.algebra.limits import checked
+from verify.algebra.limits import check_expression
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
@@ -29,18 +29,18 @@ from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import Place, TwoForm
 
-MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
+MOST_ORDERS = 12  # Taylor coefficients examined where a map is not a polynomial in h
 
 
 @dataclass(frozen=True)
 class Leading:
-    """The first coefficient in h that is not shown to vanish: of h^`power`, as a ring's element.
+    """The leading coefficient: the first in h, of h^`power`, that is not shown to vanish.
 
     `decision.zero` is False at a proved leading term, None at an undecided one, and True where
     every coefficient vanishes (`power` is None then). False with `power` None: what is expanded is
     not zero, but its leading term lies beyond the orders looked at; `element` is then itself.
 
-    Of S it is a `form`, and `element` the entry at `place`, which decides.
+    For S it is a 2-form, `form`, and `element` is the entry at `place`, which decides.
     """
 
     power: int | None
@@ -51,7 +51,7 @@ class Leading:
 
     @classmethod
     def of_form(cls, power: int | None, form: TwoForm, ring: Ring) -> Leading:
-        """The coefficient of h^power in S; or S itself, with None."""
+        """Make it of the coefficient of h^power in S; with power None, of S itself."""
         decision, place = form.decide()
         if place is None:
             return VANISHES
@@ -59,18 +59,18 @@ class Leading:
 
     @cached_property
     def coefficient(self) -> sympy.Expr:
-        """As an expression; 0 where there is none."""
+        """The coefficient as an expression; 0 where there is none."""
         if self.element is None or self.power is None:
             return sympy.S.Zero
         ring, x = self.element
-        return ring.factored(x)
+        return ring.as_product(x)
 
     @property
     def entry(self) -> str:
         """The name of the entry of S that decides, such as dp1∧dq2; empty in the plane."""
         if self.form is None or self.place is None or self.form.names == PLANE:
             return ""
-        return self.form.called(self.place)
+        return self.form.entry_name(self.place)
 
     @cached_property
     def domain(self) -> Domain:
@@ -82,8 +82,8 @@ class Leading:
         what = f"the coefficient of h^{self.power}"
         return not_zero_for(*self.element, f"the entry {self.entry} of S" if self.entry else what)
 
-    def within(self, domain: Domain) -> Leading:
-        """As it is in the domain: the witness lies there, and without a point nothing is said."""
+    def restrict_to(self, domain: Domain) -> Leading:
+        """Return it decided in the domain: undecided unless a witness lies there."""
         if self.decision.zero is None or not domain.requirements:
             return self
         ring, x = self.element or _ZERO  # what vanishes has no element
@@ -98,7 +98,7 @@ class Leading:
 
     @property
     def text(self) -> str:
-        """As a formula; of S as a form, beyond the plane."""
+        """The coefficient as a formula; beyond the plane that of the whole 2-form."""
         if self.element is None or (self.power is None and not self.entry):
             return "0"
         if self.entry and self.form is not None:
@@ -115,7 +115,7 @@ VANISHES = Leading(None, Decision(True))
 class Expansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
-    Of an element with 1/h in it they are those of hᵐ times it, whose first m must vanish.
+    An element with 1/h in it is multiplied by hᵐ first; the first m coefficients must then vanish.
     """
 
     def __init__(self, ring: Ring, x: Poly) -> None:
@@ -126,7 +126,7 @@ class Expansion:
         self._derivatives = [x]
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
-        """The coefficient of hⁿ, with the ring that it is an element of."""
+        """Return the coefficient of hⁿ, with the ring that it is an element of."""
         if not self._smooth:
             text = self.ring.text(self._derivatives[0])
             raise LimitError("map", f"({text})/h**{self.pole}", "is not smooth in h at h = 0")
@@ -144,9 +144,10 @@ class Expansion:
             return self.ring, self._quotient.coefficients[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
+        # Taylor's formula: the n-th derivative by h at h = 0, divided by n!.
         value = as_expression_at_0(self.ring, self._derivatives[n], symbol("h"))
         try:
-            checked(value, "map", str(value))
+            check_expression(value, "map", str(value))
         except InputError as error:
             raise LimitError("map", error.value, "is not smooth in h at h = 0") from None
         ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
@@ -154,13 +155,14 @@ class Expansion:
 
     @cached_property
     def _quotient(self) -> Series | None:
-        """All coefficients that are looked at, where x is a quotient of polynomials in h."""
-        return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).of(self._derivatives[0])
+        """The series of a quotient of polynomials in h, as far as it is used; None of others."""
+        return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).expand(self._derivatives[0])
 
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
-    """m and hᵐ x, which has no 1/h in it."""
+    """Return m and hᵐ x, which has no 1/h in it."""
     h, gens = ring.variable("h"), ring.context.gens()
+    # 1/h is a generator w of its own. Σ c_n wⁿ times hᵐ, m the highest power, is Σ c_n h^(m−n).
     pole = ring.find("inverse", h)
     parts = {0: x} if pole is None else split(x, gens.index(pole))
     most = max(parts, default=0)
@@ -171,9 +173,9 @@ def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
 
 
 class ClosedSeries:
-    """The coefficients of z', S and det J − 1 of a map that is written out and no polynomial in h.
+    """The series of z', S and det J − 1 of a map in closed form that is no polynomial in h.
 
-    Each is made when it is looked at, and has a ring of its own.
+    Each coefficient is computed when it is used, and has a ring of its own.
     """
 
     def __init__(self, closed: ClosedForm) -> None:
@@ -183,7 +185,7 @@ class ClosedSeries:
     @cached_property
     def _entries(self) -> dict[Place, Expansion]:
         entries = self.closed.defect.entries
-        return {at: Expansion(self.closed.ring, x) for at, x in entries.items()}
+        return {place: Expansion(self.closed.ring, x) for place, x in entries.items()}
 
     @cached_property
     def _volume(self) -> Expansion:
@@ -191,64 +193,74 @@ class ClosedSeries:
 
     @property
     def polynomial(self) -> bool:
-        """Whether each coordinate's new value is a polynomial in h."""
+        """True if each coordinate's new value is a polynomial in h."""
         return all(x.polynomial for x in self._parts)
 
     def agrees(
         self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
     ) -> tuple[bool | None, Ring, Poly]:
-        """As of `DefectSeries`."""
-        own = self.flow.ring
+        """Compare the coefficients of hⁿ in z' with the exact flow, as `DefectSeries.agrees`."""
+        flow_ring = self.flow.ring
         for k, expansion in enumerate(self._parts):
-            ring, gap = self._difference(k, n)
-            if nearly is not None and ring is own and nearly(gap, expansion.coefficient(n)[1]):
+            ring, residual = self._difference(k, n)
+            if (
+                nearly is not None
+                and ring is flow_ring
+                and nearly(residual, expansion.coefficient(n)[1])
+            ):
                 continue
-            zero = ring.vanishes(gap)
+            zero = ring.vanishes(residual)
             if zero is not True:
-                return zero, ring, gap
-        return True, own, own.zero
+                return zero, ring, residual
+        return True, flow_ring, flow_ring.zero
 
     def differences(self, n: int) -> tuple[Ring, list[Poly]]:
-        """As of `DefectSeries`."""
+        """Return the coefficients of hⁿ in z' less those of the exact flow, in one ring."""
         parts = [self._difference(k, n) for k in range(len(self._parts))]
         return _in_one_ring(parts, self.flow.ring)
 
     def _difference(self, k: int, n: int) -> tuple[Ring, Poly]:
-        own, term = self.flow.ring, self.flow.term(n)[k]
+        flow_ring, term = self.flow.ring, self.flow.term(n)[k]
         ring, x = self._parts[k].coefficient(n)
-        if ring is own:
+        if ring is flow_ring:
             return ring, ring.reduce(x - term)
-        ring, (gap,) = embed([ring.expression(x) - own.expression(term)], own.variables)
-        return ring, gap
+        ring, (residual,) = embed(
+            [ring.expression(x) - flow_ring.expression(term)], flow_ring.variables
+        )
+        return ring, residual
 
     def in_one_field(
         self, hamiltonian: Hamiltonian, most: int, *others: sympy.Expr
     ) -> tuple[CanonicalField, list[list[Poly]], list[Poly]]:
-        """The coefficients of h⁰ … h^most in each coordinate's new value, and other expressions,
-        as elements of one ring."""
+        """Return the coefficients of h⁰ … h^most in each coordinate's new value, and the other
+        expressions, as elements of one ring."""
         parts = [x.coefficient(n) for x in self._parts for n in range(most + 1)]
         field, elements = self.flow, [x for _, x in parts]
+        # Generators differ from ring to ring: only in a common ring can coefficients be compared or
+        # added.
         if others or not all(ring is field.ring for ring, _ in parts):
-            own = (ring.expression(x) for ring, x in parts)
-            field, elements = canonical_field(hamiltonian, *own, *others)
+            expressions = (ring.expression(x) for ring, x in parts)
+            field, elements = canonical_field(hamiltonian, *expressions, *others)
         size = len(parts)
-        rows = [elements[at : at + most + 1] for at in range(0, size, most + 1)]
+        rows = [elements[start : start + most + 1] for start in range(0, size, most + 1)]
         return field, rows, elements[size:]
 
     def form(self, m: int) -> TwoForm:
-        """The coefficient of hᵐ in S."""
+        """Return the coefficient of hᵐ in S."""
         parts = [x.coefficient(m) for x in self._entries.values()]
         ring, elements = _in_one_ring(parts, self.closed.ring)
-        made = dict(zip(self._entries, elements, strict=True))
-        return TwoForm.of(ring, self.flow.names, lambda a, b: made.get((a, b), ring.zero))
+        entries = dict(zip(self._entries, elements, strict=True))
+        return TwoForm.from_entries(
+            ring, self.flow.names, lambda a, b: entries.get((a, b), ring.zero)
+        )
 
     def volume(self, n: int) -> tuple[Ring, Poly]:
-        """The coefficient of hⁿ in det J − 1."""
+        """Return the coefficient of hⁿ in det J − 1."""
         return self._volume.coefficient(n)
 
 
 def _in_one_ring(parts: Sequence[tuple[Ring, Poly]], otherwise: Ring) -> tuple[Ring, list[Poly]]:
-    """Elements of several rings as elements of one."""
+    """Embed elements of several rings in one."""
     if not parts:
         return otherwise, []
     ring, _ = parts[0]
@@ -262,15 +274,17 @@ AnySeries: TypeAlias = "DefectSeries[CanonicalField] | ClosedSeries"
 
 @lru_cache(maxsize=4)
 def series_of(step_map: StepMap, first: int) -> AnySeries:
-    """The coefficients of h⁰, h¹, … of one map, made as far as they are looked at; `first`: those
-    that are made at once, of one that is known by its step."""
-    begun = step_map.series(first)
-    if begun is None:
+    """Return the series of a map in h, computed only as far as it is used.
+
+    `first`: the power up to which it is computed at once, for a map that is given by its step.
+    """
+    initial = step_map.series(first)
+    if initial is None:
         return ClosedSeries(step_map.flat)
 
-    def made(most: int) -> tuple[CanonicalField, State]:
-        more = begun if most == first else step_map.series(most)
+    def extend(most: int) -> tuple[CanonicalField, State]:
+        more = initial if most == first else step_map.series(most)
         assert more is not None  # noqa: S101 - it has had fewer terms
         return more
 
-    return DefectSeries(made, first, step_map.flow_up_to)
+    return DefectSeries(extend, first, step_map.flow_up_to)

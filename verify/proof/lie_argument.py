@@ -1,10 +1,10 @@
 """The argument for `lieη` of every η and every H at once, step by step.
 
-The machine's own proof is for one η at a time. With each step stand the theorems of the shipped
-theory for Rocq that say it, by file and name; with one there is none.
+The machine's own proof is for one η at a time. Each step names the theorems of the shipped theory
+for Rocq that state it, by file and name; one step has none.
 """
 
-from verify.prose import Prose, joined, read_prose
+from verify.prose import Prose, join_prose, read_prose
 
 STEPS: tuple[tuple[str, tuple[str, ...]], ...] = (
     (
@@ -41,5 +41,5 @@ STEPS: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 
 def paragraph() -> Prose:
-    """The steps in one paragraph."""
-    return joined(" ", [*(read_prose(text) for text, _ in STEPS), "∎"])
+    """Join the steps into one paragraph."""
+    return join_prose(" ", [*(read_prose(text) for text, _ in STEPS), "∎"])

@@ -1,8 +1,8 @@
 """The order in h of S = JᵀΩJ − Ω for one Hamiltonian, and the order of the map itself.
 
-In the plane S is ΔJ dp∧dq; in more degrees of freedom det J ≡ 1 is the weaker half, so both are
-looked at. A map that does nothing is symplectic, so that alone proves no scheme: the Taylor
-coefficients of z' in h are held against those of the exact flow, Xⁿz/n!.
+In the plane S is ΔJ dp∧dq; in more degrees of freedom det J ≡ 1 is the weaker statement, so both
+are examined. A map that does nothing is symplectic, so symplecticity alone proves no scheme: the
+Taylor coefficients of z' in h are compared with those of the exact flow, Xⁿz/n!.
 """
 
 from collections.abc import Sequence
@@ -13,11 +13,11 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Decision, Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
-from verify.proof.by_conditions import nearby_order, told_nearby
-from verify.proof.claimed import Claimed, Convergence, held_to
+from verify.proof.by_conditions import describe_nearby, nearby_order
+from verify.proof.claimed import Convergence, SchemeClaims, judge_claims
 from verify.proof.expansion import MOST_ORDERS, VANISHES, AnySeries, Leading, series_of
 from verify.proof.parameters import almost_all, not_zero_for
-from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, told_defect
+from verify.proof.printed_formulas import describe_nearby_defect, nearby_defect, nearby_of_formulas
 from verify.proof.proof import Proof
 from verify.proof.telescoping import telescopes_of_lie
 from verify.prose import Formula, Prose, prose
@@ -30,35 +30,35 @@ from verify.schemes.splitting import splitting
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
-_FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
-_MOST = 8  # powers of h that are looked at beyond the plane; more where a higher order is claimed
+RESIDUAL = Fraction(1, 2**100)  # relative; the residuals of exact coefficients lie below it
+_FIRST_ORDERS = 6  # powers of h that are expanded at once where no order is claimed
+_MOST = 8  # powers of h examined beyond the plane; more where a higher order is claimed
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
-    """The order of S and of the map by exact algebra, and whether what `scheme` claims holds."""
-    claimed = Claimed.of(scheme) if scheme else Claimed()
+    """Prove the orders of S and of the map by exact algebra, and judge what `scheme` claims."""
+    claimed = SchemeClaims.from_scheme(scheme) if scheme else SchemeClaims()
     first = scheme.order + 1 if scheme else _FIRST_ORDERS
     planar = step_map.hamiltonian.planar  # where S is det J − 1, and conditions stand in the reason
     most = MOST_ORDERS if planar else max(_MOST, claimed.order + 1)
     convergence, near = convergence_of_scheme(step_map, scheme, first, most)
     leading, domain = leading_of(step_map, first, most), step_map.domain
-    inside = leading.within(domain)
-    defect = inside.power, inside.decision.zero
-    verdict, reason = held_to(claimed, convergence, defect, most, step_map.structure)
-    if inside.decision.zero is None and leading.decision.zero is not None:
+    leading_inside = leading.restrict_to(domain)
+    defect = leading_inside.power, leading_inside.decision.zero
+    verdict, reason = judge_claims(claimed, convergence, defect, most, step_map.structure)
+    if leading_inside.decision.zero is None and leading.decision.zero is not None:
         reason = prose("no point is found where all is defined: ", domain.prose)
     if planar:
-        reason = _with_conditions(reason, verdict, inside, step_map)
-    without = nearby_defect_of(scheme, step_map.hamiltonian, inside.power)
+        reason = _with_conditions(reason, verdict, leading_inside, step_map)
+    without = nearby_defect_of(scheme, step_map.hamiltonian, leading_inside.power)
     verdict, reason = with_nearby((verdict, reason), near, without, step_map.structure.defect)
-    telescopes, potential = _telescoping(step_map, first, inside)
+    telescopes, potential = _telescoping(step_map, first, leading_inside)
     return Proof(
         verdict=verdict,
         reason=reason,
         step_map=step_map,
-        first=inside,
-        volume=inside if planar else _volume(step_map, first, inside, most),
+        first=leading_inside,
+        volume=leading_inside if planar else _volume(step_map, first, leading_inside, most),
         convergence_order=convergence.order,
         convergence_decided=convergence.decided,
         telescopes=telescopes,
@@ -68,7 +68,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
 
 
 def _with_conditions(reason: Prose, verdict: Verdict, leading: Leading, step_map: StepMap) -> Prose:
-    """With the conditions by which ΔJ vanishes, and the parameters for which it does not."""
+    """Add to the reason the conditions by which ΔJ vanishes, or the parameters for which not."""
     if leading.decision.zero is True and step_map.implicit and step_map.conditions:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     if verdict is Verdict.PROVED and leading.domain:
@@ -89,32 +89,37 @@ def _by_conditions(conditions: Sequence[Condition]) -> Prose:
 
 
 def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS, most: int = MOST_ORDERS) -> Leading:
-    """The first coefficient in h of S that is not shown to vanish, up to h^most where S is no
-    polynomial in h; `first`: so many are made at once."""
+    """Return the leading coefficient of S: the first in h that is not shown to vanish.
+
+    It is sought up to h^most where S is no polynomial in h. `first`: the power of h up to which
+    the map is expanded at once.
+    """
     if step_map.preserves_area:
         return VANISHES
     series = series_of(step_map, first)
-    given = step_map.closed if step_map.formulas is not None else None
-    polynomial = given is not None and given.degree is not None and step_map.expand is None
-    highest = 2 * (given.degree or 0) if polynomial and given else most
+    closed = step_map.closed if step_map.formulas is not None else None
+    polynomial = closed is not None and closed.degree is not None and step_map.expand is None
+    highest = 2 * (closed.degree or 0) if polynomial and closed else most
     for m in range(step_map.flow_up_to + 1, highest + 1):
         form = series.form(m)
         leading = Leading.of_form(m, form, form.ring)
         if leading.decision.zero is not True:
             return leading
+    # S is quadratic in z', so its degree in h is at most twice that of the map.
     if polynomial:  # S is a polynomial in h, all of whose coefficients vanish
         return VANISHES
-    beyond = {AREA: most + 1, SYMPLECTIC: None}[step_map.structure]
+    power_beyond = {AREA: most + 1, SYMPLECTIC: None}[step_map.structure]
     if step_map.closed is None:
-        return Leading(beyond, Decision(None))
+        return Leading(power_beyond, Decision(None))
     whole = step_map.closed.defect
     leading = Leading.of_form(None, whole, step_map.closed.ring)
-    undecided = leading.decision.zero is None and beyond is not None
-    return Leading(beyond, leading.decision) if undecided else leading
+    undecided = leading.decision.zero is None and power_beyond is not None
+    return Leading(power_beyond, leading.decision) if undecided else leading
 
 
 def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leading:
-    """The first coefficient of det J − 1 that is shown not to vanish, before any undecided one."""
+    """Return the leading coefficient of det J − 1, if it is decided and no earlier one is open."""
+    # det J − 1 vanishes to the order of S at least: its terms below that order need no look.
     if defect.decision.zero is not False:
         return Leading(None, defect.decision)
     series = series_of(step_map, first)
@@ -130,12 +135,15 @@ def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leadin
 
 
 def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool | None, str]:
-    """Of lieη in several degrees; of other maps it is not known. In the plane see
-    `verify.proof.plane.potential`."""
+    """Decide whether the leading coefficient of S telescopes, and give its potential as a formula.
+
+    That is decided for lieη in several degrees of freedom, and undecided for other maps; for the
+    plane see `verify.proof.plane.potential`.
+    """
     eta = step_map.flow_up_to
     if step_map.hamiltonian.planar or eta < 1 or defect.power != eta + 1 or defect.form is None:
-        known = True if defect.decision.zero is True else None  # 0 is the derivative of 0
-        return known, "0" if known else ""
+        is_zero = True if defect.decision.zero is True else None  # 0 is the derivative of 0
+        return is_zero, "0" if is_zero else ""
     return telescopes_of_lie(series_of(step_map, first).flow, eta, defect.form)
 
 
@@ -148,26 +156,31 @@ def convergence_of(
     most: int = MOST_ORDERS,
     residues: bool = False,
 ) -> Convergence:
-    """The order to which the map agrees with the exact flow; with `residues`, up to such."""
-    known = step_map.known_order()
-    if known is not None:
+    """Return the order to which the map agrees with the exact flow.
+
+    `residues`: differences as small as those of rounded coefficients count as 0.
+    """
+    order = step_map.known_order()
+    if order is not None:
         # Shown at a point, without its coefficient.
-        exact, what = step_map.hamiltonian, f"the difference at h^{known + 1}"
+        exact, what = step_map.hamiltonian, f"the difference at h^{order + 1}"
         almost = almost_all(exact.symbols, what, exact.time_dependent) if exact.symbols else ""
-        return Convergence(known, True, lambda: Domain.of((), almost) if almost else EVERYWHERE)
+        return Convergence(
+            order, True, lambda: Domain.from_requirements((), almost) if almost else EVERYWHERE
+        )
     series = series_of(step_map, first)
-    given = step_map.closed if step_map.formulas is not None and step_map.expand is None else None
-    if given is not None:  # all of a polynomial, and one more
-        most = max(most, (most if given.degree is None else given.degree) + 1)
+    closed = step_map.closed if step_map.formulas is not None and step_map.expand is None else None
+    if closed is not None:  # all of a polynomial, and one more
+        most = max(most, (most if closed.degree is None else closed.degree) + 1)
     return convergence_by(series, step_map.flow_up_to + 1, most, residues)
 
 
 def convergence_by(series: AnySeries, begin: int, most: int, residues: bool = False) -> Convergence:
-    """By the coefficients of h^begin … h^most of a map."""
+    """Return the order to which a map agrees with the exact flow, by h^begin … h^most alone."""
     for n in range(begin, most + 1):
-        agrees, ring, gap = series.agrees(n, is_residue if residues else None)
+        agrees, ring, residual = series.agrees(n, is_rounding_residual if residues else None)
         if agrees is not True:
-            exact_for = partial(not_zero_for, ring, gap, f"the difference at h^{n}")
+            exact_for = partial(not_zero_for, ring, residual, f"the difference at h^{n}")
             return Convergence(n - 1, agrees is False, exact_for)
     return Convergence(None, True)
 
@@ -178,8 +191,10 @@ def convergence_of_scheme(
     first: int = _FIRST_ORDERS,
     most: int = MOST_ORDERS,
 ) -> tuple[Convergence, NearbyOrder | None]:
-    """As `convergence_of`, of exact coefficients near those that a scheme prints, where their order
-    is higher."""
+    """Return the order of the map, as `convergence_of`, and that of exact coefficients near it.
+
+    Where exact coefficients near those that a scheme prints have a higher order, it is theirs.
+    """
     printed = convergence_of(step_map, first, most)
     hamiltonian = step_map.hamiltonian
     near = nearby_of_scheme(scheme, hamiltonian) if scheme else None
@@ -202,8 +217,10 @@ def convergence_of_scheme(
 
 
 def nearby_of_scheme(scheme: Scheme, hamiltonian: Hamiltonian) -> NearbyOrder | None:
-    """The order of exact coefficients near those that the scheme prints; None where it prints none,
-    or none near them make a scheme."""
+    """Return the order of exact coefficients near those that the scheme prints.
+
+    None where it prints none, or none near them make a scheme.
+    """
     if scheme.formulas:
         return nearby_of_formulas(tuple(scheme.formulas.items()), hamiltonian)
     every_h = scheme.every_h
@@ -214,8 +231,11 @@ def nearby_of_scheme(scheme: Scheme, hamiltonian: Hamiltonian) -> NearbyOrder | 
 def nearby_defect_of(
     scheme: Scheme | None, hamiltonian: Hamiltonian, power: int | None
 ) -> NearbyOrder | None:
-    """Where the term of h^power in ΔJ, or S, is what the digits of a user's formulas leave: up to
-    which power there is none with exact coefficients near them."""
+    """Return the power of h up to which exact coefficients have no term in ΔJ, or S.
+
+    They are near those printed in a user's formulas. None unless the term of h^power vanishes with
+    them, being only what the printed digits leave.
+    """
     if scheme is None or not scheme.formulas or power is None:
         return None
     near = nearby_defect(tuple(scheme.formulas.items()), hamiltonian)
@@ -223,20 +243,28 @@ def nearby_defect_of(
 
 
 def with_nearby(
-    judged: tuple[Verdict, Prose], near: NearbyOrder | None, without: NearbyOrder | None, form: str
+    judgement: tuple[Verdict, Prose],
+    near: NearbyOrder | None,
+    without: NearbyOrder | None,
+    form: str,
 ) -> tuple[Verdict, Prose]:
-    """With what exact coefficients near printed ones have: a higher order, or no such term."""
-    verdict, reason = judged
+    """Add to a verdict what exact coefficients near the printed ones have.
+
+    That is a higher order (`near`), or no such term in the defect (`without`, called `form`).
+    """
+    verdict, reason = judgement
     if near is not None and verdict is Verdict.PROVED:
-        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
-    return verdict, reason if without is None else prose(reason, "; ", told_defect(without, form))
+        verdict, reason = near.verdict, prose(reason, "; ", describe_nearby(near))
+    return verdict, reason if without is None else prose(
+        reason, "; ", describe_nearby_defect(without, form)
+    )
 
 
-def is_residue(gap: Poly, term: Poly) -> bool:
-    """Whether a difference from a term is of coefficients that are right to some 90 digits."""
-    return size_of(gap) < RESIDUE * max(size_of(term), size_of(term - gap))
+def is_rounding_residual(residual: Poly, term: Poly) -> bool:
+    """Return True if the residual is as small as coefficients right to some 90 digits leave it."""
+    return size_of(residual) < RESIDUAL * max(size_of(term), size_of(term - residual))
 
 
 def size_of(x: Poly) -> Fraction:
-    """The largest coefficient."""
+    """Return the largest absolute coefficient."""
     return max((abs(Fraction(int(c.p), int(c.q))) for c in x.coeffs()), default=Fraction(0))

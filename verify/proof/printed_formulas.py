@@ -1,11 +1,11 @@
 """A user's formulas with decimals of eight digits and more, which stand for numbers near them.
 
-`p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, loses its order by what the digits leave.
-So each such decimal becomes a variable. What of hⁿ in z' differs from the exact flow is then a
-polynomial in these, for each monomial of what else stands there; where exact numbers near the
-printed ones make all of them 0, as `verify.schemes.printed.judged` says, the map has the order with
-them. That none near them do so is said where a ball that holds the difference at a point for all
-numbers within ten units of the last digits leaves 0 out.
+`p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, has a lower order, since its digits are
+rounded. So each such decimal becomes a variable. The difference from the exact flow at hⁿ is then,
+for each monomial in everything else, a polynomial in these variables. Where exact numbers near the
+printed ones make all of them 0, as `verify.schemes.printed.judged` decides, the map has the order
+with these numbers. The order is said to end where, at some point, an enclosure of the difference
+for all numbers within ten units of the last digits excludes 0.
 """
 
 import re
@@ -19,28 +19,28 @@ from typing import TypeAlias
 import sympy
 
 from verify.algebra.enclosure import enclose_over, points
-from verify.algebra.identities.polynomials import by_monomials
+from verify.algebra.identities.polynomials import split_by_monomials
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import Ball, around, middle_and_radius, rational_ball
+from verify.arithmetic.arb import Ball, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.exact import decimal, rational
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import E
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import AnySeries, series_of
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions.condition import Condition, NearbyOrder
-from verify.schemes.maps.by_formulas import map_by_formulas
-from verify.schemes.printed.asked import BITS, Asked, Named, ball_of
+from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.printed.condition_set import BITS, ConditionSet, NamedEquation, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged, judge
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.nearby_order import highest
 from verify.schemes.printed.printed_numbers import PrintedNumbers, power
-from verify.schemes.printed.sentences import of_printed
+from verify.schemes.printed.sentences import judgement_of_order
 
 _MOST_NUMBERS, _MOST_CONDITIONS = 24, 600
-MOST_ORDER = 8  # that is looked at where no other is asked for
+MOST_ORDER = 8  # the highest power of h examined by default
 _POINTS = 8
 _DIGITS = 12  # of a residue
 
@@ -51,37 +51,43 @@ Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what the
 
 @lru_cache(maxsize=16)
 def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
-    """The highest order that the map has with exact numbers near those printed in its formulas;
-    None where they print none, or none near them is seen to make it a scheme."""
-    return _looked_for(formulas, hamiltonian, lambda series, n: series.differences(n))
+    """Return the highest order of the map with exact numbers near those printed in its formulas.
+
+    None where they print none, or none near them is seen to make it a scheme.
+    """
+    return _highest_order(formulas, hamiltonian, lambda series, n: series.differences(n))
 
 
 @lru_cache(maxsize=16)
 def nearby_defect(
     formulas: Formulas, hamiltonian: Hamiltonian, most: int = MOST_ORDER
 ) -> NearbyOrder | None:
-    """The same of S = JᵀΩJ − Ω: up to which power of h, `most` at most, it has no term with such
-    numbers."""
-    return _looked_for(formulas, hamiltonian, _defects, most)
+    """Return the power of h, at most `most`, up to which S = JᵀΩJ − Ω has no term.
+
+    The numbers are exact ones near those printed in the formulas; None as `nearby_of_formulas`.
+    """
+    return _highest_order(formulas, hamiltonian, _defects, most)
 
 
 def _defects(series: AnySeries, n: int) -> Elements:
-    """Of hⁿ in S."""
+    """Return the entries of the coefficient of hⁿ in S, with their ring."""
     form = series.form(n)
     return form.ring, list(form.entries.values())
 
 
-def moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> list[Formulas]:
-    """The formulas with one printed number after the other moved by a unit of its last digit."""
-    read = _read(dict(formulas), hamiltonian)
-    if not read.readings:
+def formulas_moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> list[Formulas]:
+    """Return the formulas, with each printed number in turn moved by a unit of its last digit."""
+    parsed = _read(dict(formulas), hamiltonian)
+    if not parsed.readings:
         return []
-    first = read.readings[0]
-    return [read.at({name: first.values[name] + unit}) for name, unit in first.units.items()]
+    first = parsed.readings[0]
+    return [
+        parsed.with_values({name: first.values[name] + unit}) for name, unit in first.units.items()
+    ]
 
 
-def told_defect(near: NearbyOrder, form: str) -> Prose:
-    """Of which coefficients ΔJ or S has no term; `form`: which of them it is."""
+def describe_nearby_defect(near: NearbyOrder, form: str) -> Prose:
+    """Say up to which power `form`, ΔJ or S, has no term with exact coefficients."""
     power = Formula(f"h^{near.order}")
     return prose(
         f"{form} has no term up to ", power, " with exact coefficients near the printed ones: ",
@@ -89,53 +95,59 @@ def told_defect(near: NearbyOrder, form: str) -> Prose:
     )  # fmt: skip
 
 
-def _looked_for(
+def _highest_order(
     formulas: Formulas,
     hamiltonian: Hamiltonian,
     elements: Callable[[AnySeries, int], Elements],
     most: int = MOST_ORDER,
 ) -> NearbyOrder | None:
     try:
-        with limited("scheme", formulas, "to look for exact numbers near the printed ones"):
-            read = _read(dict(formulas), hamiltonian)
-            if not read.readings or len(read.numbers) > _MOST_NUMBERS:
+        with limit_effort("scheme", formulas, "to look for exact numbers near the printed ones"):
+            parsed = _read(dict(formulas), hamiltonian)
+            if not parsed.readings or len(parsed.numbers) > _MOST_NUMBERS:
                 return None
-            named = map_by_formulas(hamiltonian, read.named, tuple(read.numbers))
-            printed = _PrintedMap(tuple(read.numbers), read.readings)
-            return printed.order(partial(elements, series_of(named, 2)), most)
+            step_map = step_map_from_formulas(hamiltonian, parsed.with_names, tuple(parsed.numbers))
+            printed = _PrintedMap(tuple(parsed.numbers), parsed.readings)
+            return printed.order(partial(elements, series_of(step_map, 2)), most)
     except InputError:  # no polynomial in its decimals, or too long
         return None
 
 
 @dataclass(frozen=True)
-class _ReadFormulas:
-    """`named`: the formulas with a name for each long decimal, `numbers` these as they are printed;
-    `readings`: the ways in which they may be read, the first before others; none without any."""
+class _NamedFormulas:
+    """A user's formulas with names for the long decimals.
 
-    named: Mapping[str, str]
+    `named`: the formulas with a name in place of each long decimal; `numbers`: these decimals as
+    printed; `readings`: the ways to read them, the preferred one first; empty without decimals.
+    """
+
+    with_names: Mapping[str, str]
     numbers: Mapping[str, str]
     readings: tuple[PrintedNumbers, ...]
 
-    def at(self, values: Mapping[str, Fraction]) -> Formulas:
-        """The formulas with these values, and the other numbers as they are printed."""
+    def with_values(self, values: Mapping[str, Fraction]) -> Formulas:
+        """Return the formulas with these values, and the other numbers as they are printed."""
         texts = {**self.numbers, **{name: str(x) for name, x in values.items()}}
         pattern = re.compile(rf"\b({'|'.join(map(re.escape, texts))})\b")
-        written = {x: pattern.sub(lambda m: f"({texts[m[0]]})", y) for x, y in self.named.items()}
-        return tuple(written.items())
+        formulas = {
+            x: pattern.sub(lambda m: f"({texts[m[0]]})", y) for x, y in self.with_names.items()
+        }
+        return tuple(formulas.items())
 
 
-def _read(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> _ReadFormulas:
+def _read(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> _NamedFormulas:
+    # The names of the decimals must not be parameters of H.
     naming, label = Naming({}), "number"
     while any(name.startswith(label) for name in hamiltonian.parameters):
         label += "_"
-    named = {
-        left: naming.entry(right, f"{label}{k}") for k, (left, right) in enumerate(formulas.items())
+    formulas_with_names = {
+        side: naming.entry(right, f"{label}{k}") for k, (side, right) in enumerate(formulas.items())
     }
     # What H has too is a parameter, and exact.
     parameters = {abs(x) for x in hamiltonian.exact.atoms(sympy.Rational)}
     numbers = {name: _exact_or_printed(text, parameters) for name, text in naming.numbers.items()}
     readings = tuple(x for x in PrintedNumbers(numbers).of_a_method() if x.units)
-    return _ReadFormulas(named, numbers, readings)
+    return _NamedFormulas(formulas_with_names, numbers, readings)
 
 
 def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
@@ -148,70 +160,80 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
 
 @dataclass(frozen=True)
 class _PrintedMap:
-    """A map over a ring in which the printed numbers are variables, called `names`; `readings`:
-    the ways in which they may be read, that taken first before others."""
+    """A map over a ring in which the printed numbers are variables, called `names`.
+
+    `readings`: the ways to read the numbers, the preferred one first.
+    """
 
     names: tuple[str, ...]
     readings: tuple[PrintedNumbers, ...]
 
     def order(self, elements: Callable[[int], Elements], most: int) -> NearbyOrder | None:
-        """Up to which power of h, `most` at most, the elements are 0 with numbers near the printed
-        ones."""
+        """Return the power of h, at most `most`, up to which exact numbers near the printed ones
+        make the elements 0."""
+        # The conditions are polynomials in the printed numbers, so they are the same for every
+        # reading.
         conditions = _Conditions(self.names, elements)
         best, _ = highest(self.readings, most, conditions.judge)
         if best is None:
             return None
-        order, numbers, found = best
-        verdict, said, _ = of_printed(found, order)
-        beyond = self._excluded(order + 1, numbers, elements) if order < most else None
-        return NearbyOrder(order, verdict, said, beyond, ())
+        order, numbers, judgement = best
+        verdict, sentence, _ = judgement_of_order(judgement, order)
+        end = self._find_nonzero(order + 1, numbers, elements) if order < most else None
+        return NearbyOrder(order, verdict, sentence, end, ())
 
-    def _excluded(
+    def _find_nonzero(
         self, n: int, numbers: PrintedNumbers, elements: Callable[[int], Elements]
     ) -> Condition | None:
-        """One of hⁿ that is not 0 whatever numbers near the printed ones are taken, shown at a
-        point; None where none is seen."""
-        ring, looked_at = elements(n)
+        """Find an element of hⁿ that is not 0 for any numbers near the printed ones.
+
+        That is shown by an enclosure at a point; None where no such element is seen.
+        """
+        ring, coefficients = elements(n)
         others = [name for name in ring.variables if name not in self.names]
         for point in islice(points(others), _POINTS):
             with working_precision(BITS):
-                at = {name: rational_ball(value) for name, value in point.items()}
-                box = at | self._box(numbers)
-                for x in looked_at:
-                    found = enclose_over(ring, x, box)
-                    if found is not None and not found.contains(0):
-                        size = decimal(middle_and_radius(found)[0], _DIGITS)
+                point_balls = {name: rational_ball(value) for name, value in point.items()}
+                box = point_balls | self._box(numbers)
+                for x in coefficients:
+                    enclosure = enclose_over(ring, x, box)
+                    if enclosure is not None and not enclosure.contains(0):
+                        size = decimal(midpoint_and_radius(enclosure)[0], _DIGITS)
                         return Condition(f"the coefficient of h^{n} = 0", n, size, False)
         return None
 
     def _box(self, numbers: PrintedNumbers) -> dict[str, Ball]:
-        """All values near the printed ones, in balls."""
+        """Enclose all values near the printed ones in balls."""
         exact = {
             name: ball_of(numbers.entry(name)) for name in self.names if name not in numbers.units
         }
         units = numbers.units.items()
-        return exact | {name: around(numbers.values[name], WITHIN * unit) for name, unit in units}
+        return exact | {
+            name: make_ball(numbers.values[name], WITHIN * unit) for name, unit in units
+        }
 
 
 class _Conditions:
-    """What has to be 0 of each power of h: polynomials in the printed numbers."""
+    """The conditions at each power of h: polynomials in the printed numbers that must be 0."""
 
     def __init__(self, names: tuple[str, ...], elements: Callable[[int], Elements]) -> None:
         self.names, self.elements = names, elements
-        self._made: list[list[Polynomial]] = []
+        self._cache: list[list[Polynomial]] = []
 
     def judge(self, numbers: PrintedNumbers, order: int) -> Judged:
-        """Whether numbers near the printed ones make all of them 0 up to h^order."""
-        while len(self._made) <= order:
-            self._made.append(self._of_power(len(self._made)))
-        rows = [(n, x) for n, made in enumerate(self._made[: order + 1]) for x in made]
+        """Judge whether numbers near the printed ones make all of them 0 up to h^order."""
+        while len(self._cache) <= order:
+            self._cache.append(self._of_power(len(self._cache)))
+        rows = [
+            (n, x) for n, polynomials in enumerate(self._cache[: order + 1]) for x in polynomials
+        ]
         if len(rows) > _MOST_CONDITIONS:
             raise LimitError("scheme", len(rows), "are more conditions than are looked at")
-        equations = tuple(Named(f"{k + 1}. term of h^{n}", max(n, 1))
+        equations = tuple(NamedEquation(f"{k + 1}. term of h^{n}", max(n, 1))
                           for k, (n, _) in enumerate(rows))  # fmt: skip
         entries = tuple(numbers.entry(name) for name in self.names)
         residues = partial(_residues, [x for _, x in rows])
-        return judge(numbers, Asked(entries, equations, residues), order)
+        return judge(numbers, ConditionSet(entries, equations, residues), order)
 
     def _of_power(self, n: int) -> list[Polynomial]:
         ring, elements = self.elements(n)
@@ -219,19 +241,23 @@ class _Conditions:
 
 
 def _by_monomials(ring: Ring, x: Poly, names: Sequence[str]) -> list[Polynomial]:
-    """The coefficient of each monomial of all else, as a polynomial in the names; LimitError where
-    a function of one of them stands in it."""
+    """Return the coefficient of each monomial in all other variables, as a polynomial in the names.
+
+    Raises LimitError where one of the names occurs within a function.
+    """
     places = [ring.places.get(name) for name in names]  # None of one that it does not hold
     for name, place in zip(names, places, strict=True):
+        # The derivative in the ring follows functions, the polynomial's own does not: they differ
+        # exactly where the name occurs within a function.
         if place is not None and ring.diff(x, name) != ring.reduce(x.derivative(place)):
             raise LimitError("scheme", name, "stands within a function")
     others = {place for place in range(len(x.degrees())) if place not in places}
     return [
         tuple(
-            (Fraction(int(c.p), int(c.q)), tuple(0 if k is None else own[k] for k in places))
-            for own, c in part.items()
+            (Fraction(int(c.p), int(c.q)), tuple(0 if k is None else exponents[k] for k in places))
+            for exponents, c in part.items()
         )
-        for part in by_monomials(x, others).values()
+        for part in split_by_monomials(x, others).values()
     ]
 
 
@@ -244,6 +270,7 @@ def _residues(
 def _value(row: Polynomial, entries: Sequence[E], one: E, bound: bool) -> E:
     total = one * 0
     for number, powers in row:
+        # A bound of the rounding error takes the absolute value of every coefficient.
         size = abs(number) if bound else number
         term = one * size.numerator / size.denominator
         for x, n in zip(entries, powers, strict=True):

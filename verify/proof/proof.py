@@ -1,4 +1,4 @@
-"""What is proved of one step map; see `verify.proof.order`."""
+"""The result of a proof about one step map; see `verify.proof.order`."""
 
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -18,18 +18,18 @@ from verify.verdict import Verdict
 
 @dataclass(frozen=True)
 class Proof:
-    """What is proved of one step map.
+    """A proof about one step map.
 
     `first`: the leading coefficient of S; in the plane that is of ΔJ. `volume`: that of det J − 1,
     which is the same in the plane; `decision.zero` says whether det J ≡ 1, which every symplectic
     map fulfils and some others do.
     `convergence_order`: z' agrees with the exact flow up to h to this power; None where all
     coefficients looked at agree. `convergence_decided`: whether it is shown to agree no further.
-    `nearby`: of which coefficients, where those of the scheme are printed and leave residues.
+    `nearby`: the exact coefficients that have this order, where the scheme's are printed, rounded.
     `telescopes`: whether the leading coefficient of S is the Lie derivative of a 2-form,
     `potential`; None where that is not known.
     `verdict` is REFUTED for a map that is not a scheme for H at all, or misses the order its
-    scheme claims; `reason` says what was found in one line.
+    scheme claims; `reason` gives the result in one line.
     """
 
     verdict: Verdict
@@ -42,40 +42,43 @@ class Proof:
     telescopes: bool | None = None
     potential: str = ""
     nearby: NearbyOrder | None = None
-    # What a proof for every H says beside, and one for one H does not.
+    # A proof for every H has these too; in a proof for one H they are empty.
     formula: str = ""
     why: str = ""
     checked: tuple[Prose, ...] = ()
 
     @property
     def planar(self) -> bool:
-        """Whether it is of p and q."""
+        """True if the map is one of the plane, of p and q."""
         return self.step_map.hamiltonian.planar
 
     @property
     def structure(self) -> Structure:
-        """What a canonical step of it keeps."""
+        """The structure that a canonical step preserves: area, or the symplectic form."""
         return self.step_map.structure
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
+        """The number of degrees of freedom."""
         return self.step_map.degrees
 
     @property
     def order(self) -> int | None:
-        """S, in the plane ΔJ, is `leading`·h^order + O(h^(order+1)), `leading` not zero; None where
-        it vanishes, or that is not decided."""
+        """The order in h of S, in the plane of ΔJ; None where it vanishes or is not decided.
+
+        S = `leading`·h^order + O(h^(order+1)), with `leading` not zero.
+        """
+        # A power without a proved nonzero coefficient is only where the search stopped.
         return self.first.power if self.first.decision.zero is False else None
 
     @property
     def symplectic(self) -> bool | None:
-        """Whether S ≡ 0; None where that is not decided."""
+        """True if S ≡ 0; None where that is not decided."""
         return self.first.decision.zero
 
     @property
     def area_preserving(self) -> bool | None:
-        """Whether det J ≡ 1."""
+        """True if det J ≡ 1; None where that is not decided."""
         return self.volume.decision.zero
 
     @property
@@ -85,7 +88,7 @@ class Proof:
 
     @property
     def enclosure(self) -> str:
-        """Its value there."""
+        """The enclosure of the leading coefficient at the witness."""
         return self.first.decision.enclosure
 
     @property
@@ -95,7 +98,7 @@ class Proof:
 
     @property
     def volume_order(self) -> int | None:
-        """That of det J − 1, where it is shown not to vanish."""
+        """The order in h of det J − 1, or None where that is not shown to be nonzero."""
         return self.volume.power if self.volume.decision.zero is False else None
 
     @property
@@ -105,7 +108,7 @@ class Proof:
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """Those on the coefficients by which the map is symplectic, of a scheme that has such."""
+        """The conditions on the scheme's coefficients by which the map is symplectic, if any."""
         return self.step_map.conditions
 
     @property
@@ -120,17 +123,19 @@ class Proof:
 
     @property
     def delta_j(self) -> sympy.Expr | None:
-        """ΔJ in closed form, written out when it is asked for; None where it is too large."""
+        """ΔJ in closed form, computed when it is first used; None where it is too large."""
         return self.step_map.delta_j if self.step_map.has_closed_form else None
 
     @property
     def domain(self) -> Domain:
-        """Where it holds: where the map is defined, and `leading` is not zero for all of z."""
+        """The domain where it holds: the map is defined, and `leading` is no zero function of z."""
+        # The order needs `leading` ≠ 0 as a function of z, which may fail for single parameter
+        # values.
         return self.step_map.domain & self.first.domain
 
     @property
     def consistent(self) -> bool:
-        """Whether the map agrees with the exact flow up to h, at least."""
+        """True if the map agrees with the exact flow up to h, at least."""
         return self.convergence_order is None or self.convergence_order >= 1
 
     def __repr__(self) -> str:
@@ -144,17 +149,17 @@ class Proof:
 
 
 def _rows(proof: Proof) -> list[tuple[str, str]]:
-    """Verdict, order, leading coefficient, closed form, witness, order of the map."""
+    """Return the table's rows: verdict, orders, leading coefficient, witness, closed form."""
     closed = proof.step_map.delta_j_text
     rows = [("verdict", f"{proof.verdict}: {proof.reason}")]
     if proof.area_preserving:
         rows.append(("area", "det J ≡ 1: the map preserves area exactly"))
     if proof.order is not None:
-        at = ", ".join(f"{name} = {text(value)}" for name, value in proof.witness.items())
+        point = ", ".join(f"{name} = {text(value)}" for name, value in proof.witness.items())
         rows += [
             ("order of ΔJ", str(proof.order)),
             ("leading coefficient", cut(proof.first.text)),
-            (f"its value at {at or 'any point'}", proof.enclosure),
+            (f"its value at {point or 'any point'}", proof.enclosure),
         ]
     rows.append(("ΔJ in closed form", "too large; left out" if closed is None else cut(closed)))
     order = proof.convergence_order
@@ -164,7 +169,7 @@ def _rows(proof: Proof) -> list[tuple[str, str]]:
 
 
 def _latex_lines(proof: Proof) -> list[str]:
-    """ΔJ by its leading term and in closed form; det J ≡ 1 where that is proved."""
+    """Return ΔJ by its leading term and in closed form, or det J ≡ 1 where that is proved."""
     lines = []
     if proof.area_preserving:
         lines.append(r"\det J &\equiv 1")

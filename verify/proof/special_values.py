@@ -1,4 +1,4 @@
-"""What holds at the parameter values that a proof leaves out, where they are rational numbers."""
+"""Proofs at the parameter values that a proof excludes, where these are rational numbers."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -6,7 +6,7 @@ from functools import partial
 
 import sympy
 
-from verify.effort import unless_long
+from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.proof.order import prove
 from verify.proof.proof import Proof
@@ -15,7 +15,7 @@ from verify.schemes.scheme import Scheme
 
 @dataclass(frozen=True)
 class SpecialValue:
-    """The proof where this parameter has this value."""
+    """The proof for a parameter that has this value."""
 
     parameter: str
     value: Fraction
@@ -23,13 +23,14 @@ class SpecialValue:
 
 
 def special_values(proof: Proof, scheme: Scheme) -> list[SpecialValue]:
-    """For each single parameter that must not have one value, what is proved at that value."""
-    found, hamiltonian = [], proof.step_map.hamiltonian
+    """Prove the scheme at each value that the proof excludes for a single parameter."""
+    values, hamiltonian = [], proof.step_map.hamiltonian
     for requirement in proof.first.domain.requirements:
         names = requirement.expression.free_symbols
         if len(names) != 1 or not requirement.expression.is_polynomial(*names):
             continue
-        polynomial = unless_long(partial(sympy.Poly, requirement.expression, *names), None)
+        polynomial = answer_unless_long(partial(sympy.Poly, requirement.expression, *names), None)
+        # Roots of higher degree may be irrational, for which H has no exact parameter value.
         if polynomial is None or polynomial.degree() != 1:
             continue
         slope, constant = polynomial.all_coeffs()
@@ -39,8 +40,8 @@ def special_values(proof: Proof, scheme: Scheme) -> list[SpecialValue]:
         (name,) = (s.name for s in names)
         try:
             special = hamiltonian.with_values({**dict(hamiltonian.values), name: root})
-            there = prove(scheme.step_map(special), scheme)
+            special_proof = prove(scheme.step_map(special), scheme)
         except InputError:  # H is not defined there
             continue
-        found.append(SpecialValue(name, root, there))
-    return found
+        values.append(SpecialValue(name, root, special_proof))
+    return values

@@ -1,12 +1,12 @@
-"""Whether the step of −h undoes that of h, Φ_(−h) ∘ Φ_h = id, by its Taylor series for one H.
+"""A test of symmetry, Φ_(−h) ∘ Φ_h = id, by the Taylor series of a step for one H.
 
-A coefficient of Φ_(−h)(Φ_h(p, q)), exact, that does not vanish shows that the step is not
-symmetric. That all do, as far as they are looked at, shows nothing; the verdict is UNDECIDED then.
+An exact coefficient of Φ_(−h)(Φ_h(p, q)) − (p, q) that does not vanish shows that the step is not
+symmetric. Finitely many that vanish show nothing; the verdict is UNDECIDED then.
 """
 
 from dataclasses import dataclass
 
-from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.algebra.series.power_series import Derivatives, Series, expand_at
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.maps.step_map import StepMap
@@ -16,34 +16,38 @@ from verify.verdict import Verdict
 
 @dataclass(frozen=True)
 class Symmetry:
-    """`power`: of h, the first in Φ_(−h) ∘ Φ_h − id that does not vanish; None where none is
-    known."""
+    """A verdict on symmetry.
+
+    `power`: the first power of h in Φ_(−h) ∘ Φ_h − id that does not vanish; None where all looked
+    at vanish, or one is not decided.
+    """
 
     verdict: Verdict
     reason: Prose
     power: int | None = None
 
 
-def by_series(step_map: StepMap, most: int) -> Symmetry:
-    """The coefficients of Φ_(−h) ∘ Φ_h up to h^most, for one H."""
-    seen = -1
+def judge_symmetry(step_map: StepMap, most: int) -> Symmetry:
+    """Judge symmetry by the coefficients of Φ_(−h) ∘ Φ_h up to h^most, for one H."""
+    decided_up_to = -1
     for reach in dict.fromkeys([*range(2, most, 2), most]):  # terms multiply with every order
         expanded = step_map.series(reach)
         if expanded is None or not _begins_with_z(*expanded):
             return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
         field, step = expanded
-        gaps = [undone(field, x, step) for x in step]
-        for n in range(seen + 1, reach + 1):
-            zero = [field.ring.decide(x.coefficients[n]).zero for x in gaps]
+        residuals = [step_back_residual(field, x, step) for x in step]
+        for n in range(decided_up_to + 1, reach + 1):
+            zero = [field.ring.decide(x.coefficients[n]).zero for x in residuals]
             if False in zero:
-                shown_h = Formula(str(step_map.hamiltonian.expression))
+                hamiltonian = Formula(str(step_map.hamiltonian.expression))
                 differs = f" `Φ_(−h)` ∘ `Φ_h` differs from the identity by O(`h^{n}`)"
-                reason = prose("for H = ", shown_h, read_prose(differs))
+                reason = prose("for H = ", hamiltonian, read_prose(differs))
                 return Symmetry(Verdict.REFUTED, reason, n)
+            # A later coefficient may be nonzero, but then the first power would not be decided.
             if None in zero:
                 undecided = read_prose(f"the coefficient of `h^{n}` is not decided")
                 return Symmetry(Verdict.UNDECIDED, undecided)
-        seen = reach
+        decided_up_to = reach
     alike = read_prose(f"`Φ_(−h)` ∘ `Φ_h` is the identity up to `h^{most}` at least")
     return Symmetry(Verdict.UNDECIDED, alike)
 
@@ -53,20 +57,21 @@ def _begins_with_z(field: CanonicalField, step: State) -> bool:
     return all(x.coefficients[0] == z for x, z in pairs)
 
 
-def undone(field: CanonicalField, x: Series, step: State) -> Series:
-    """Of a coordinate x, Σ (−h)ⁿ xₙ at the point z' that is given by its series, less its start.
+def step_back_residual(field: CanonicalField, x: Series, step: State) -> Series:
+    """Return a coordinate of Φ_(−h)(Φ_h(z)) less its value in z: Σ (−h)ⁿ xₙ(z') − x₀(z).
 
-    Where H depends on time, at t + h, at which the step of −h begins.
+    z' is given by its series. Where H depends on time, xₙ is taken at t + h, at which the step of
+    −h begins.
     """
     ring = field.ring
     moves = [
-        (name, y - Series.of(ring, [z], y.most))
+        (name, y - Series.from_coefficients(ring, [z], y.most))
         for name, y, z in zip(field.names, step, field.start, strict=True)
     ]
     if field.timed:
-        moves.append(("t", Series.of(ring, [ring.zero, ring.one], x.most)))
-    total = Series.of(ring, [-x.coefficients[0]], x.most)
+        moves.append(("t", Series.from_coefficients(ring, [ring.zero, ring.one], x.most)))
+    total = Series.from_coefficients(ring, [-x.coefficients[0]], x.most)
     for n, coefficient in enumerate(x.coefficients):
-        moved = at_moved(Derivatives(ring, coefficient), moves, x.most).shifted(n)
-        total = total - moved if n % 2 else total + moved
+        shifted = expand_at(Derivatives(ring, coefficient), moves, x.most).shift(n)
+        total = total - shifted if n % 2 else total + shifted
     return total

@@ -1,7 +1,8 @@
-"""Whether the leading coefficient of ΔJ, or S, is a derivative along the flow, and so telescopes.
+"""The test whether the leading coefficient of ΔJ, or S, is a derivative along the flow.
 
-In the plane that is X·G, whose sum along an orbit is [G]₀ᵀ; in n degrees of freedom it is the Lie
-derivative of a 2-form, and M_kᵀ (S_k/h) M_k adds up to the difference of that form at the ends.
+Such a coefficient telescopes. In the plane it is X·G, whose sum along an orbit is [G]₀ᵀ; in n
+degrees of freedom it is the Lie derivative of a 2-form, and M_kᵀ (S_k/h) M_k adds up to the
+difference of that form at the ends.
 
 Let [a, b] = Σ_i d(Xᵃp_i)∧d(X^b q_i). The Lie derivative L commutes with d, so that L[a, b] =
 [a+1, b] + [a, b+1], and L[0, 0] = LΩ = 0. S of `lieη` begins with −h^(η+1)/(η+1)! ([η+1, 0] +
@@ -29,7 +30,7 @@ import sympy
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.generator import terms_of
-from verify.algebra.linear_combination import combination
+from verify.algebra.linear_combination import solve_combination
 from verify.algebra.series.jets import Index, Jets, Poly
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
@@ -40,7 +41,7 @@ from verify.schemes.steps.two_form import TwoForm, lie_derivative, wedge
 
 
 def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
-    """β of lieη, for even η."""
+    """Return the potential β of lieη's leading coefficient; ValueError for odd η."""
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
     n, ring = flow.degrees, flow.ring
@@ -54,34 +55,35 @@ def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
             total += (-1) ** k * sum(both, ring.zero)
         return factor * total
 
-    return TwoForm.of(ring, flow.names, entry)
+    return TwoForm.from_entries(ring, flow.names, entry)
 
 
 def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
-    """Whether the leading coefficient of lieη's S is a Lie derivative, and β as a formula.
+    """Decide whether the leading coefficient of lieη's S is a Lie derivative, with β as a formula.
 
-    None where neither is found.
+    None, and an empty formula, where neither answer is shown.
     """
     if eta % 2 == 0:
         potential = potential_of_lie(flow, eta)
-        gap, _ = (lie_derivative(flow, potential) - leading).decide()
-        return (True, potential.text) if gap.zero is True else (None, "")
-    return (False if _shown_at_rest(flow, leading) else None), ""
+        decision, _ = (lie_derivative(flow, potential) - leading).decide()
+        return (True, potential.text) if decision.zero is True else (None, "")
+    return (False if _has_divergence_at_rest(flow, leading) else None), ""
 
 
-def _shown_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
-    """Whether the origin is an equilibrium at which the divergence is not 0."""
+def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
+    """Return True if the origin is an equilibrium at which the divergence is not 0."""
     ring = flow.ring
     if flow.timed:  # f vanishes at all times where D of what does not depend on t is X of it
         return False
     origin = {symbol(name): sympy.S.Zero for name in flow.names}
     elements = [*flow.slopes, leading.divergence]
     try:
-        there = [substitute(ring.expression(x), origin, "z0") for x in elements]
-        constants, found = embed(there, [n for n in ring.variables if n not in flow.names])
+        values = [substitute(ring.expression(x), origin, "z0") for x in elements]
+        constants, numbers = embed(values, [n for n in ring.variables if n not in flow.names])
     except (InputError, ArithmeticError, KeyError):
         return False
-    *slopes, divergence = (constants.vanishes(x) for x in found)
+    # All slopes 0 means an equilibrium; there a Lie derivative of a smooth form has no divergence.
+    *slopes, divergence = (constants.vanishes(x) for x in numbers)
     return all(x is True for x in slopes) and divergence is False
 
 
@@ -90,7 +92,10 @@ def _shown_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
 
 @dataclass(frozen=True)
 class Telescoping:
-    """`holds`: L = X·G for every H with `potential` G; False: not for every H, as `reason` says."""
+    """The answer whether L = X·G for every H.
+
+    `holds`: it is, with `potential` G; False: for some H it is not, as `reason` says.
+    """
 
     holds: bool
     reason: Prose
@@ -98,10 +103,10 @@ class Telescoping:
 
 
 def telescopes(jets: Jets, leading: Poly) -> Telescoping:
-    """Whether the polynomial L in the jets is X·G with a polynomial G in the jets.
+    """Decide whether the polynomial L in the jets is X·G with a polynomial G in the jets.
 
-    False is shown by a linear functional that vanishes on all X·G and not on L: to take the value
-    at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
+    False is shown by a linear functional that vanishes on all X·G and not on L: the value at an
+    equilibrium, which rules out every smooth G, or a functional found by linear algebra.
     """
     if jets.timed:
         reason = (
@@ -123,9 +128,10 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
         grade = _grade(jets, monomial)
         graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient
     total = jets.zero
+    # X maps each grade into one other, so L is X·G exactly where each of its graded parts is.
     for grade, part in graded.items():
-        found, rank, unknowns = _solve_for_potential(jets, grade, jets.context.from_dict(part))
-        if found is None:
+        solution, rank, unknowns = _solve_for_potential(jets, grade, jets.context.from_dict(part))
+        if solution is None:
             return Telescoping(
                 False,
                 prose(
@@ -133,12 +139,12 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
                     f"space of dimension {rank}; with L it has dimension {rank + 1}"
                 ),
             )
-        total += found
+        total += solution
     return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
 
 
 def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
-    """(factors H_ij, derivatives by p, by q), each of which X raises by one."""
+    """Return (number of factors H_ij, derivatives by p, by q); X raises each by one."""
     powers = [int(n) for n in monomial[2:]]
     return (
         sum(powers),
@@ -150,7 +156,7 @@ def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
 def _solve_for_potential(
     jets: Jets, grade: tuple[int, int, int], x: Poly
 ) -> tuple[Poly | None, int, int]:
-    """(G with X·G = x, the rank of X on such G, their number of monomials).
+    """Return (G with X·G = x, or None; the rank of X on such G; their number of monomials).
 
     x has all its monomials of one grade, and so may G have: X respects grades. G contains neither p
     nor q nor H itself, as X takes none of them away. And its derivatives have lower orders than
@@ -161,23 +167,27 @@ def _solve_for_potential(
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
     candidates = list(map(jets.product, multisets(indices, factors, by_p, by_q)))
-    found, rank = combination(list(map(JetFlow.over(jets).derive, candidates)), x)
-    if found is None:
+    coefficients, rank = solve_combination(list(map(JetFlow.from_jets(jets).derive, candidates)), x)
+    if coefficients is None:
         return None, rank, len(candidates)
-    terms = (c * candidates[k] for k, c in found.items())
+    terms = (c * candidates[k] for k, c in coefficients.items())
     return sum(terms, jets.zero), rank, len(candidates)
 
 
 def multisets(
     indices: Sequence[Index], factors: int, by_p: int, by_q: int, first: int = 0
 ) -> Iterator[list[tuple[int, int]]]:
-    """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
+    """Yield all products of `factors` derivatives H_ij with these totals of i and of j.
+
+    Only indices from `first` on are used, so that each product comes once.
+    """
     if factors == 0:
         if by_p == by_q == 0:
             yield []
         return
-    for at in range(first, len(indices)):
-        i, j = indices[at]
+    for k in range(first, len(indices)):
+        i, j = indices[k]
+        # Each factor that remains needs one derivative at least; else the branch yields nothing.
         if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
-            for rest in multisets(indices, factors - 1, by_p - i, by_q - j, at):
+            for rest in multisets(indices, factors - 1, by_p - i, by_q - j, k):
                 yield [(i, j), *rest]

@@ -24,7 +24,7 @@ loses some 20 digits and not thousands. The quadratic term is closed by a bootst
 twice the bound without it; if with E* in it the bound is at most E*, then by induction over k it
 holds for all k, and so does the bound with E* in it. Φ must be defined all over the box.
 
-Norms are those of Euclid: what is carried are the sum and the greatest of F_k² = ‖M_k‖² in
+Norms are Euclidean: the run carries the sum and the greatest of F_k² = ‖M_k‖² in
 Frobenius' norm, and ‖M_k‖² ≤ g(F_k²), g(y) = (y + (y² − 4d²)^½)/2, as the eigenvalues of MᵀM have
 the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) over N + 1 matrices is at
 most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
@@ -50,7 +50,7 @@ from functools import cached_property
 import flint
 
 from verify import observables
-from verify.arithmetic.arb import bounds, in_reach, rational_ball
+from verify.arithmetic.arb import bounds, is_representable, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import PRECISION, Ball
@@ -63,26 +63,28 @@ from verify.runs.step_rounding import StepErrors, StepRounding
 _ROUNDED = flint.arb(2) ** -48  # of an entry of MᵀΩM or of det M, relative to ‖M‖²
 
 
-def least_of(size: int, seen: Mapping[str, Ball]) -> Ball:
-    """d > 0 with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; at most 0 where there is none."""
-    lost = _ROUNDED * seen["growth_top"]
+def least_of(size: int, records: Mapping[str, Ball]) -> Ball:
+    """Return d > 0 with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; at most 0 if there is none."""
+    lost = _ROUNDED * records["growth_top"]
     if size == 2:
-        return seen["det_low"] - lost
+        return records["det_low"] - lost
     n = size // 2
-    largest = seen["form_top"].abs_upper().sqrt() * (1 + _ROUNDED)  # entry of the computed B
+    largest = records["form_top"].abs_upper().sqrt() * (1 + _ROUNDED)  # entry of the computed B
     terms = flint.arb(1)
     for k in range(1, n + 1):
         terms *= 2 * k - 1  # so many products in a Pfaffian
     # Each product of n entries, computed from entries that are off by `lost`.
-    own = (largest + lost) ** n
-    apart = terms * (own - largest**n + _ROUNDED * n * own)
+    product = (largest + lost) ** n
+    error = terms * (product - largest**n + _ROUNDED * n * product)
     norm = largest + size * lost
-    return (seen["det_low"] - apart) / norm ** (n - 1)
+    return (records["det_low"] - error) / norm ** (n - 1)
 
 
 def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
-    """A bound of ‖M‖², from those of the sum of its entries' squares and of its determinant; or one
-    of the mean of ‖M‖² over several M, from that of those sums."""
+    """Return a bound of ‖M‖², from bounds of its entries' sum of squares and of its determinant.
+
+    From a bound of the mean of such sums over several M it is one of the mean of ‖M‖².
+    """
     if size > 2:
         return squares.abs_upper()
     return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
@@ -95,63 +97,64 @@ METHOD = "a-posteriori bound with the tangent map carried along"
 def certify(
     run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int = -1
 ) -> dict[str, Fraction] | None:
-    """Bounds of the errors of a run's final values, rigorous; None where there is none.
+    """Return rigorous bounds of the errors of a run's final values; None where there is none.
 
-    Or of those at the checkpoint of index `note`. The run must have carried the tangent map. Errors
-    are those against the exact orbit of the exact map for the exact h, parameters and initial
-    values.
+    With `note` the values are those at the checkpoint of that index. The run must have carried the
+    tangent map. Errors are measured from the exact orbit of the exact map for the exact h,
+    parameters and initial values.
     """
     with working_precision(PRECISION):
         return _Certificate(run, arithmetic, outcome, note).bounds()
 
 
 class _Certificate:
-    """What observables are bounded from; see `verify.observables.observable.Certificate`."""
+    """The quantities that bound observables; see `verify.observables.observable.Certificate`."""
 
     rounded: StepErrors
     derivatives: Derivatives
     error: Ball
-    summed: Ball
+    error_sum: Ball
 
     def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
         self.rounding = StepRounding(run, arithmetic, outcome, note)
-        self.steps, self.seen = self.rounding.steps, self.rounding.seen
+        self.steps, self.records = self.rounding.steps, self.rounding.records
         self.names, self.unit = self.rounding.names, self.rounding.unit
         self.scale = flint.arb(2) ** -outcome.shift
 
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        derivatives, rounded = self._derivatives(), self.rounding.errors()
-        if derivatives is None or rounded is None:
+        """Return the bound of each value that has one; None where the orbit has none."""
+        derivatives, rounding_errors = self._derivatives(), self.rounding.errors()
+        if derivatives is None or rounding_errors is None:
             return None
-        self.derivatives, self.rounded = derivatives, rounded
+        self.derivatives, self.rounded = derivatives, rounding_errors
         orbit = self.orbit()
         if orbit is None:
             return None
-        self.error, self.summed = orbit
-        found = dict.fromkeys(self.names, self.error)
-        for each in observables.among(self.run.observables):
+        self.error, self.error_sum = orbit
+        balls = dict.fromkeys(self.names, self.error)
+        for each in observables.select(self.run.observables):
             bound = each.bound(self) if each.bound else None
             if bound is not None:
-                found[each.name] = bound.abs_upper()
-        return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
+                balls[each.name] = bound.abs_upper()
+        return {name: bounds(x)[1] for name, x in balls.items() if is_representable(x)}
 
     def _derivatives(self) -> Derivatives | None:
-        """Those of the step."""
+        """Return the derivatives of the step; None where they are not available."""
         exact, scheme, needs = self.run.hamiltonian, self.run.scheme, needs_of(self.run.observables)
         volume, form = "delta_j" in needs, bool(needs & {"symplectic", "carried"})
-        return Derivatives.of(exact, scheme, volume=volume, form=form)
+        return Derivatives.from_scheme(exact, scheme, volume=volume, form=form)
 
     @cached_property
     def motion(self) -> form_bound.Motion | None:
-        """How M has grown; None where nothing follows from it."""
-        seen, count, size = self.seen, self.steps, len(self.names)
+        """The growth of M along the run; None where no bound follows from it."""
+        records, count, size = self.records, self.steps, len(self.names)
         # Of float64's own sums, over the steps and in each sum of squares.
         slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
-        growth, highest = seen["growth"] * slack, seen["growth_top"] * slack
-        least = least_of(size, seen)
+        growth, highest = records["growth"] * slack, records["growth_top"] * slack
+        least = least_of(size, records)
         if not (growth.is_finite() and least > 0):
             return None
         # Q: it multiplies every bound by e^Q, so that a large one says nothing.
@@ -163,7 +166,7 @@ class _Certificate:
         return form_bound.Motion(count, least, rate, top, (count * (count + 1) * mean).sqrt())
 
     def orbit(self) -> tuple[Ball, Ball] | None:
-        """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
+        """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
         motion = self.motion
         if motion is None:
             return None
@@ -171,7 +174,7 @@ class _Certificate:
         # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
         alone = rate.exp() * (self.first_error() + path / least * self.rounded.state)
         error = (2 * top * alone).abs_upper()
-        second = self.derivatives.second(self.rounding.fixed(), self.rounding.box(error))
+        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
         start = (alone + rate.exp() * path / least * second * error * error / 2).abs_upper()
         # The bootstrap: with E* in the quadratic term the bound must stay within E*.
         if not top * start <= error:
@@ -179,6 +182,7 @@ class _Certificate:
         return (top * start).abs_upper(), (start * path).abs_upper()
 
     def first_error(self) -> Ball:
+        """Return ‖e_0‖, the rounding of the initial values."""
         start, number, exact = self.run.start, self.arithmetic.number, self.arithmetic.exact
         lost = [rational_ball(exact(number(start[n])) - start[n]) for n in self.names]
         return norm(lost)
@@ -187,8 +191,8 @@ class _Certificate:
 
     @cached_property
     def _box(self) -> tuple[dict[str, Ball], dict[str, Ball]]:
-        """What does not change, and the states visited, widened by the error."""
-        return self.rounding.fixed(), self.rounding.box(self.error)
+        """The constants of the run, and the states that it visited, widened by the error."""
+        return self.rounding.constants(), self.rounding.box(self.error)
 
     @cached_property
     def slope(self) -> Ball:
@@ -201,16 +205,16 @@ class _Certificate:
         return self.rounded.size + self.slope * self.error
 
     @cached_property
-    def moved(self) -> Ball:
-        """One of Σ |D̂_k − D(z_k)|."""
-        return self.slope * self.summed + self.steps * self.rounded.delta_j
+    def sum_of_shifts(self) -> Ball:
+        """A bound of Σ |D̂_k − D(z_k)|."""
+        return self.slope * self.error_sum + self.steps * self.rounded.delta_j
 
     def total(self, name: str) -> Ball:
-        """An observable as it was computed."""
+        """Return an observable as it was computed."""
         return rational_ball(self.values[name])
 
     def adding(self, total: Ball, term: Ball) -> Ball:
-        """The rounding of one term and of its addition to a sum of non-negative terms."""
+        """Return the rounding of one term and of its addition to a sum of non-negative terms."""
         return self.unit if self.arithmetic.absolute else self.unit * (total + term) * 2
 
     # -- S and W: see `verify.runs.form_bound` ----------------------------------------------------
@@ -220,61 +224,65 @@ class _Certificate:
         return self.derivatives.form(*self._box)
 
     def slope_of_form(self) -> Ball:
-        """A bound of the gradients of S."""
+        """Return a bound of the gradients of S."""
         return self._form[1]
 
     def bound_of_form(self) -> Ball | None:
-        """Of W."""
+        """Return a bound of the error of W."""
         motion, rounding, values = self.motion, self.rounding, self.rounded.values
         if motion is None:
             return None
         size, slope = self._form
         most = form_bound.MOST * motion.top
-        matrix = (rounding.adding(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
+        matrix = (rounding.error_of_addition(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
         entries = [x for name, x in values.items() if name.startswith("dw_")]
         largest = flint.arb(0)
         for x in entries:
-            largest = largest.max(rounding.adding(most * most / self.scale, x))
-        return form_bound.of_form(
+            largest = largest.max(rounding.error_of_addition(most * most / self.scale, x))
+        return form_bound.bound_total_defect(
             motion,
-            summed=self.summed,
+            error_sum=self.error_sum,
             second=self.derivatives.second(*self._box),
             size=size,
             slope=slope,
-            of_matrix=norm(matrix),
-            of_entry=self.scale * largest,
+            matrix_rounding=norm(matrix),
+            entry_rounding=self.scale * largest,
         )
 
     # -- the energy -------------------------------------------------------------------------------
 
     def bound_of_energy(self) -> Ball:
-        """Of the greatest |H − H₀|: with Ĥ_k the sum of k computed changes of H,
+        """Return a bound of the error of the greatest |H − H₀|.
+
+        With Ĥ_k the sum of k computed changes of H,
         |Ĥ_k − (H(z_k) − H(z_0))| ≤ 2 G E + k (G ε + η), G the greatest gradient of H, and η the
-        rounding of one step's change of H and of its addition to the sum."""
+        rounding of one step's change of H and of its addition to the sum.
+        """
         box = self.rounding.box(self.error + self.rounded.state, last=True)
-        slope = self.derivatives.energy(self.rounding.fixed(), box)
+        slope = self.derivatives.energy(self.rounding.constants(), box)
         change = self.rounded.values["de"]
-        adding = self.rounding.adding(self.total("energy_error_max"), change)
+        adding = self.rounding.error_of_addition(self.total("energy_error_max"), change)
         return 2 * slope * self.error + self.steps * (slope * self.rounded.state + adding)
 
     # -- Λ ----------------------------------------------------------------------------------------
 
     def bound_of_product(self) -> Ball:
+        """Return a bound of the error of Λ."""
         scale, count = self.scale, self.steps
-        low, high = self.seen["least"], self.seen["most"]
+        low, high = self.records["least"], self.records["most"]
         largest, jump = abs(low).max(abs(high)), scale * self.size
         # Logarithms of the factors and of the product are taken: both must stay positive.
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         drift = count * self.of_product(scale, jump, largest) / (1 + low)
-        shift = (scale * self.moved / (1 - jump)).expm1() * drift.exp() * (1 + high)
+        shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
         apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
         if self.arithmetic.absolute:
             return shift + scale * count * (self.size * apart + self.unit)
         return shift + apart
 
     def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
-        """The rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""
+        """Return the rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""
         if self.arithmetic.absolute:
             # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
             return self.unit * (1 + scale)

@@ -1,4 +1,4 @@
-"""Digits on demand: which arithmetic, how precise, and a rigorous bound where one can be had.
+"""Digits on demand: the choice of arithmetic and precision, with rigorous bounds where possible.
 
 A run that carries the tangent map is certified (`verify.runs.a_posteriori`); where digits are
 missing it is done again at the precision that gives them. How many will be missing is foreseen at
@@ -8,8 +8,8 @@ the bound grows like N³, and that of Λ like N⁴. Where there is no certificat
 
 The certificate of W grows like N⁹ and is 10⁵ to 10¹⁷ times its error, since it takes the worst of
 every step for all of them. So the W of a short run, whose steps cost less than its certificate, is
-held against that of a run with 20 more digits: what they differ by, and the certificate of the
-second, bound its error, which the first of the two nearly is.
+compared with that of a run with 20 more digits: their difference and the certificate of the second
+bound its error, which their difference nearly equals.
 """
 
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ from verify.runs.estimated import (
     digits_of,
     missing_digits,
     missing_of,
-    resolved,
+    resolve,
     working_digits,
 )
 
@@ -45,22 +45,23 @@ METHOD_OF_W = f"{METHOD}; W held against a run with {_MORE} more digits"
 
 
 @dataclass(frozen=True)
-class Measured:
-    """Values with bounds, and the run that they are from."""
+class Measurement:
+    """Values with bounds, and the run that gave them."""
 
     bounds: Bounds
     arithmetic: str
     outcome: Outcome
-    fallback: str = ""  # why another arithmetic was taken than the one that was asked for
+    fallback: str = ""  # why an arithmetic other than the requested one was taken
 
 
 def choose(kernel_run: KernelRun, digits: int) -> str:
-    """The fastest arithmetic with rigorous bounds for so many digits, steps and these functions.
+    """Return the fastest arithmetic with rigorous bounds for these digits, steps and functions.
 
-    float64 is not among them: it is what is under test, and its bounds are estimates.
+    float64 is not among them: it is under test itself, and its bounds are estimates.
     """
     *faster, last = number_systems.automatic()
     for system in faster:
+        # A kernel that several runs share is compiled once for all of them.
         repaid = kernel_run.shares_kernel or worth_compiling(system, kernel_run.steps)
         worth = repaid and digits <= system.most_digits
         if worth and _fits(kernel_run, system.make(digits)):
@@ -69,12 +70,12 @@ def choose(kernel_run: KernelRun, digits: int) -> str:
 
 
 def worth_compiling(system: NumberSystem, steps: int) -> bool:
-    """Whether so many steps repay what the number system takes to compile a kernel."""
+    """Return True if so many steps repay the time in which the number system compiles a kernel."""
     return steps >= WORTH_COMPILING or not system.compiles
 
 
 def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
-    """Whether it has the functions, and a step from the start stays within its range."""
+    """Return True if it has the functions, and a step from the start stays within its range."""
     try:
         return kernel_run.fits(arithmetic)
     except UnsupportedError:
@@ -83,105 +84,112 @@ def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
 
 def measure(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
-) -> Course[Measured]:
-    """The run's values to so many digits in the arithmetic of that name, or in its fallback.
+) -> Course[Measurement]:
+    """Measure the run's values to so many digits in the arithmetic of that name, or its fallback.
 
-    A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
-    solved, goes to the one of every range.
+    The fallback is the arithmetic of unlimited range. It is taken where a fixed-point run leaves
+    its range, where a function is missing, and where equations cannot be solved.
     """
     try:
         if number_systems.get(name, digits).radius is not None:
             wider = number_systems.get(name, working_digits(digits, kernel_run.steps))
-            bounds, run = enclosed(kernel_run, wider, digits, progress)
-            return Measured(bounds, name, run)
-        own = yield from certified(kernel_run, name, digits, progress)
-        if isinstance(own, Measured):
-            return own
-        found = yield from _estimated(kernel_run, own, digits, progress)
-        if not own.absolute or found.bounds.status == "finished":
-            return found
-        reason = found.outcome.reason or found.bounds.method
+            bounds, run = run_in_balls(kernel_run, wider, digits, progress)
+            return Measurement(bounds, name, run)
+        certificate = yield from certify_run(kernel_run, name, digits, progress)
+        if isinstance(certificate, Measurement):
+            return certificate
+        estimate = yield from _estimate(kernel_run, certificate, digits, progress)
+        if not certificate.absolute or estimate.bounds.status == "finished":
+            return estimate
+        reason = estimate.outcome.reason or estimate.bounds.method
     except UnsupportedError as error:
         reason = str(error)
     last = number_systems.automatic()[-1].name
     return replace((yield from measure(kernel_run, last, digits, progress)), fallback=reason)
 
 
-def enclosed(
-    kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None = None
+def run_in_balls(
+    kernel_run: KernelRun, arithmetic: Arithmetic, digits: int, progress: Progress | None = None
 ) -> tuple[Bounds, Outcome]:
-    """The values of a run in ball arithmetic, which encloses them, with the radii of their balls,
-    and the run that they are of.
+    """Do the run in ball arithmetic; return its values with the radii of their balls, and the run.
 
-    Where the digits asked for are not all known, or the balls have grown so wide that nothing is,
-    it is done again, in that case with twice the digits, and then with as many as the steps so far
-    say that all of them cost. Where twice the digits end at the same step, the orbit has left the
-    range or the domain there. Where too many digits or attempts would be needed, the run is
-    "unresolved".
+    Where requested digits are missing, it is done again with so many more. Where the balls have
+    grown so wide that no digit is left, it is done again with twice the digits, and then with as
+    many as all steps cost at the rate of those done so far. Where twice the digits end at the same
+    step, the orbit has left the range or the domain there. Where too many digits or attempts would
+    be needed, the run is "unresolved".
     """
-    most, last = _MOST_TIMES * digits_of(own), None
+    most, last = _MOST_TIMES * digits_of(arithmetic), None
     for attempt in range(1, _BALL_ATTEMPTS + 1):
-        run = kernel_run.run(own, progress=progress)
-        has, wanted = digits_of(own), 2 * digits_of(own)
+        run = kernel_run.run(arithmetic, progress=progress)
+        has, next_digits = digits_of(arithmetic), 2 * digits_of(arithmetic)
         if run.done == kernel_run.steps:
-            found = {n: (x, run.radii[n]) for n, x in run.values.items()}
-            missing = max(missing_of(n, *value, digits) for n, value in found.items())
+            values = {n: (x, run.radii[n]) for n, x in run.values.items()}
+            missing = max(missing_of(n, *value, digits) for n, value in values.items())
             if missing <= 0:
-                return Bounds(found, f"ball arithmetic with {has} digits", rigorous=True), run
-            wanted = has + missing + 5
+                return Bounds(values, f"ball arithmetic with {has} digits", rigorous=True), run
+            next_digits = has + missing + 5
         elif last and last[1] == run.done:
             # Twice as many digits would have carried a ball that had only grown too wide further.
             return Bounds({}, "ball arithmetic", "left range", run.done + 1), run
         elif last:  # about evenly, steps cost digits
             steps, spent = run.done - last[1], has - last[0]
-            wanted = max(wanted, has + (kernel_run.steps - run.done) * spent // steps)
-        if wanted > most or attempt == _BALL_ATTEMPTS:
+            next_digits = max(next_digits, has + (kernel_run.steps - run.done) * spent // steps)
+        if next_digits > most or attempt == _BALL_ATTEMPTS:
             break
         last = has, run.done
-        own = number_systems.get(own.name, wanted)
-    method = f"balls that grow too wide in {has} digits; {wanted} would be tried next"
+        arithmetic = number_systems.get(arithmetic.name, next_digits)
+    method = f"balls that grow too wide in {has} digits; {next_digits} would be tried next"
     return Bounds({}, method, "unresolved"), run
 
 
-def certified(
+def certify_run(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
-) -> Course[Measured | Arithmetic]:
-    """The run's values to so many digits with rigorous bounds; where there are none, the arithmetic
-    at the precision that was reached. Raises UnsupportedError."""
-    own = number_systems.get(name, _first_digits(name, digits, kernel_run))
+) -> Course[Measurement | Arithmetic]:
+    """Return the run's values to so many digits with rigorous bounds.
+
+    Where there are no such bounds, the arithmetic at the precision that was reached is returned
+    instead. Raises UnsupportedError.
+    """
+    arithmetic = number_systems.get(name, _first_digits(name, digits, kernel_run))
     if kernel_run.implicit or kernel_run.hamiltonian.degrees > _MOST_DEGREES:
-        return own
+        return arithmetic
     for _ in range(_ATTEMPTS):
-        foreseen = _Foresight(kernel_run, own, digits) if kernel_run.steps > _SHORT else None
+        foreseen = _Foresight(kernel_run, arithmetic, digits) if kernel_run.steps > _SHORT else None
         outcome = yield from kernel_run.run_in_turn(
-            own, tangent=True, progress=progress, enough=foreseen
+            arithmetic, tangent=True, progress=progress, enough=foreseen
         )
         if foreseen and foreseen.missing > 0:
-            own = _finer(own, foreseen.missing)
+            arithmetic = _finer(arithmetic, foreseen.missing)
             continue
-        errors = certify(kernel_run, own, outcome) if outcome.done == kernel_run.steps else None
+        errors = (
+            certify(kernel_run, arithmetic, outcome) if outcome.done == kernel_run.steps else None
+        )
         if errors is None or len(errors) < len(outcome.values):
             break
-        apart = yield from difference_of_w(kernel_run, own, outcome)
-        if apart is not None:
-            errors[_W] = min(errors[_W], apart)
+        # The certificate of W is far too wide: for a short run a second one gives a better bound.
+        bound_of_w = yield from difference_of_w(kernel_run, arithmetic, outcome)
+        if bound_of_w is not None:
+            errors[_W] = min(errors[_W], bound_of_w)
         values = {n: (x, errors[n]) for n, x in outcome.values.items()}
         missing = max(missing_digits(*pair, digits) for pair in values.values())
         if missing <= 0:
-            method = METHOD if apart is None else METHOD_OF_W
-            return Measured(Bounds(values, method, rigorous=True), name, outcome)
-        own = _finer(own, missing)
-    return own
+            method = METHOD if bound_of_w is None else METHOD_OF_W
+            return Measurement(Bounds(values, method, rigorous=True), name, outcome)
+        arithmetic = _finer(arithmetic, missing)
+    return arithmetic
 
 
 def difference_of_w(
-    kernel_run: KernelRun, own: Arithmetic, outcome: Outcome
+    kernel_run: KernelRun, arithmetic: Arithmetic, outcome: Outcome
 ) -> Course[Fraction | None]:
-    """A bound of W's error by a run with more digits and its certificate; None of a long run, of
-    one without W, and where that has no certificate."""
+    """Return a bound of W's error by a run with more digits and its certificate.
+
+    None for a long run, for one without W, and where the finer run has no certificate.
+    """
     if kernel_run.steps > _SHORT or _W not in outcome.values:
         return None
-    finer = number_systems.get(own.name, digits_of(own) + _MORE)
+    finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE)
     second = yield from kernel_run.run_in_turn(finer, tangent=True)
     errors = certify(kernel_run, finer, second) if second.done == kernel_run.steps else None
     if errors is None or _W not in errors:
@@ -189,15 +197,15 @@ def difference_of_w(
     return abs(outcome.values[_W] - second.values[_W]) + errors[_W]
 
 
-def _estimated(
-    kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None
-) -> Course[Measured]:
-    first = yield from kernel_run.run_in_turn(own, progress=progress)
-    if own.absolute and first.done < kernel_run.steps:
+def _estimate(
+    kernel_run: KernelRun, arithmetic: Arithmetic, digits: int, progress: Progress | None
+) -> Course[Measurement]:
+    first = yield from kernel_run.run_in_turn(arithmetic, progress=progress)
+    if arithmetic.absolute and first.done < kernel_run.steps:
         bounds = Bounds({}, "", "left range", first.done + 1)
     else:
-        bounds = yield from resolved(kernel_run, own, first, digits)
-    return Measured(bounds, own.name, first)
+        bounds = yield from resolve(kernel_run, arithmetic, first, digits)
+    return Measurement(bounds, arithmetic.name, first)
 
 
 def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
@@ -210,33 +218,41 @@ def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
     return digits + 3 + len(str(kernel_run.steps)) + len(str(int(time)))
 
 
-def _finer(own: Arithmetic, missing: int) -> Arithmetic:
-    return number_systems.get(own.name, digits_of(own) + missing + 2)
+def _finer(arithmetic: Arithmetic, missing: int) -> Arithmetic:
+    return number_systems.get(arithmetic.name, digits_of(arithmetic) + missing + 2)
 
 
 def power_of(name: str) -> int:
-    """The power of N by which a value's bound grows where the tangent map grows linearly."""
+    """Return the power of N by which a value's bound grows if the tangent map grows linearly."""
     each = observables.by_name().get(name)
     return each.growth if each else 3
 
 
 class _Foresight:
-    """Asked at a run's first checkpoint whether its digits will do; `missing` says how many."""
+    """A forecast, at a run's first checkpoint, of whether its digits suffice.
 
-    def __init__(self, kernel_run: KernelRun, own: Arithmetic, digits: int) -> None:
-        self.kernel_run, self.own, self.digits, self.missing = kernel_run, own, digits, 0
+    It returns True where they do; `missing` is the number of digits that will be missing.
+    """
+
+    def __init__(self, kernel_run: KernelRun, arithmetic: Arithmetic, digits: int) -> None:
+        self.kernel_run = kernel_run
+        self.arithmetic = arithmetic
+        self.digits = digits
+        self.missing = 0
 
     def __call__(self, outcome: Outcome) -> bool:
-        errors = certify(self.kernel_run, self.own, outcome, 0)
+        errors = certify(self.kernel_run, self.arithmetic, outcome, 0)
         if errors is None:  # let it run: what follows is for estimates
             return True
+        # The checkpoint has seen 1/growth of the steps; its bounds are scaled by the power of N of
+        # each value.
         growth = Fraction(self.kernel_run.steps, int(outcome.tangents[0]["done"]))
-        note, seen = outcome.trail[0], outcome.tangents[0]
+        note, records = outcome.trail[0], outcome.tangents[0]
         sizes = {n: abs(x) for n, x in note.items()}
         largest = max(sizes[name] for name in outcome.coordinates)
         sizes |= dict.fromkeys(outcome.coordinates, largest)
         if "lambda" in sizes:
-            sizes["lambda"] = max(abs(seen["least"]), abs(seen["most"]))
+            sizes["lambda"] = max(abs(records["least"]), abs(records["most"]))
         short = [
             missing_digits(sizes[n], error * growth ** power_of(n), self.digits)
             for n, error in errors.items()

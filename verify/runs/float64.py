@@ -1,8 +1,8 @@
-"""Error bounds of float64 runs: what rounding left of the digits, that of the inputs included.
+"""Error bounds of float64 runs, which include the rounding of their inputs.
 
-Up to `DIRECT_STEPS` steps float64 is held against a certified run (`verify.runs.digits_on_demand`)
+Up to `DIRECT_STEPS` steps float64 is compared with a certified run (`verify.runs.digits_on_demand`)
 from the exact inputs: the bound is rigorous. Where there is no certificate, and the orbit is short,
-it is held against an mpfr rerun whose precision is itself confirmed, an estimate.
+it is compared with an mpfr rerun whose precision is itself confirmed, an estimate.
 
 Beyond: against a compensated run (see `verify.kernels.statements`), by four times the greatest
 difference at any of the checkpoints on the way, p and q taken together, since a single difference
@@ -21,8 +21,8 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.lockstep import Course
-from verify.runs.digits_on_demand import Measured, certified, choose
-from verify.runs.estimated import LINEAR, Bounded, Bounds, resolved, spread, working_digits
+from verify.runs.digits_on_demand import Measurement, certify_run, choose
+from verify.runs.estimated import LINEAR, BoundedValues, Bounds, resolve, spread, working_digits
 
 DIRECT_STEPS = 200_000
 REFERENCE = "mpfr"  # mpmath finds the same, and takes five to ten times as long
@@ -32,92 +32,99 @@ _FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at
 _RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
 
 
-def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Course[Bounds]:
-    """The values of the float64 run `first` of the run with their bounds.
+def bound_errors(run: KernelRun, first: Outcome, proved_values: BoundedValues) -> Course[Bounds]:
+    """Return the values of the float64 run `first` of `run` with their bounds.
 
-    `known`: what a proof gives for observables that were not run.
+    `proved_values`: those that a proof gives for observables that were not run.
     """
     if first.done < run.steps:
         return Bounds({}, "none", "left range", first.done + 1)
     # A compensated run has the same clock, whose rounding it would not see.
     direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
-    found = (yield from _held(run, first)) if direct else _compensated(run, first)
-    values = dict(found.values)
-    better = (known | values).get("lambda")
+    bounds = (
+        (yield from _compare_with_certified(run, first))
+        if direct
+        else _compare_with_compensated(run, first)
+    )
+    values = dict(bounds.values)
+    better = (proved_values | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:
         # The closed form is the better value of the same product, up to its own error.
-        plain, (closed, bound) = first.values["lambda_plain"], better
-        values["lambda_plain"] = plain, abs(plain - closed) + bound
-    return replace(found, values={n: x for n, x in values.items() if n in first.values})
+        plain, (closed_value, bound) = first.values["lambda_plain"], better
+        values["lambda_plain"] = plain, abs(plain - closed_value) + bound
+    return replace(bounds, values={n: x for n, x in values.items() if n in first.values})
 
 
-def _held(run: KernelRun, first: Outcome) -> Course[Bounds]:
-    """Against a certified run; else against an estimated one, or a compensated one."""
-    exact = run.observing(_comparable(run.observables))
+def _compare_with_certified(run: KernelRun, first: Outcome) -> Course[Bounds]:
+    """Compare with a certified run; else with an estimated one, or a compensated one."""
+    exact = run.with_observables(_comparable_observables(run.observables))
     name = choose(exact, _CERTIFIED_DIGITS)
-    true = yield from certified(exact, name, _CERTIFIED_DIGITS)
-    if isinstance(true, Measured):
+    true = yield from certify_run(exact, name, _CERTIFIED_DIGITS)
+    if isinstance(true, Measurement):
         method = f"difference from a certified run in {name}"
-        return Bounds(_from(first, true.bounds.values), method, rigorous=True)
+        return Bounds(_distances(first, true.bounds.values), method, rigorous=True)
     if run.steps > _RERUN_STEPS:
-        return _compensated(run, first)
-    return (yield from _against_rerun(exact, first))
+        return _compare_with_compensated(run, first)
+    return (yield from _compare_with_rerun(exact, first))
 
 
-def _comparable(observables: frozenset[str]) -> frozenset[str]:
-    """What the true values are wanted of: the plain product's is Λ."""
+def _comparable_observables(observables: frozenset[str]) -> frozenset[str]:
+    """Return the observables whose true values are needed: for the plain product it is Λ."""
     plain = {"lambda"} if "lambda_plain" in observables else set()
     return (observables - {"lambda_plain", "extremes"}) | plain
 
 
-def _from(first: Outcome, true: Bounded) -> Bounded:
-    """The values with their distance from the true ones; the plain product's true value is Λ."""
+def _distances(first: Outcome, true: BoundedValues) -> BoundedValues:
+    """Return the values with their distances from the true ones; for the plain product from Λ."""
     if "lambda" in true:
         true = {**true, "lambda_plain": true["lambda"]}
     return {n: (x, abs(x - true[n][0]) + true[n][1]) for n, x in first.values.items() if n in true}
 
 
-def _against_rerun(run: KernelRun, first: Outcome) -> Course[Bounds]:
+def _compare_with_rerun(run: KernelRun, first: Outcome) -> Course[Bounds]:
     reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
     second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
+    # The rerun agrees to a hundredth: rounding is still small against the orbit, and the rerun's
+    # far smaller.
     if second.done == run.steps and spread(first, second) < LINEAR:
-        return Bounds(_from(first, _floored(second.values, run.steps)), method)
+        return Bounds(_distances(first, _add_floor(second.values, run.steps)), method)
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?
     if run.steps > _FOLLOWED_STEPS:
-        return _compensated(run, first)
-    true = yield from resolved(run, reference, second, 1)
+        return _compare_with_compensated(run, first)
+    true = yield from resolve(run, reference, second, 1)
     if true.status != "finished":
         return Bounds({}, f"{method}, which finds another orbit", "unresolved")
     values = {n: value for n, (value, _) in true.values.items()}
-    return Bounds(_from(first, _floored(values, run.steps)), method)
+    return Bounds(_distances(first, _add_floor(values, run.steps)), method)
 
 
-def _compensated(run: KernelRun, first: Outcome) -> Bounds:
+def _compare_with_compensated(run: KernelRun, first: Outcome) -> Bounds:
     method = "four times the difference from a compensated run"
     second = run.run(number_systems.get("float64", 17), compensated=True)
     if second.done < run.steps:
         return Bounds({}, f"{method}, which left the range", "unresolved")
-    apart = spread(first, second)
-    if apart > 1:  # two orbits, not one with errors
+    distance = spread(first, second)
+    if distance > 1:  # two orbits, not one with errors
         return Bounds({}, f"{method}, which is another orbit", "unresolved")
-    apart *= 4
-    found = {}
+    distance *= 4
+    values = {}
     for name, x in first.values.items():
+        # p and q share one relative distance: that of one coordinate alone may be small by chance.
         largest = max(abs(a[name]) for a in (*first.trail, *second.trail))
         if name in first.coordinates:
-            difference = apart * largest
+            difference = distance * largest
         else:
             pairs = zip(first.trail, second.trail, strict=True)
             difference = 4 * max(abs(a[name] - b[name]) for a, b in pairs)
-        found[name] = x, difference + _floor(x, run.steps)
-    return Bounds(found, method)
+        values[name] = x, difference + _floor(x, run.steps)
+    return Bounds(values, method)
 
 
-def _floored(true: Mapping[str, Fraction], steps: int) -> Bounded:
+def _add_floor(true: Mapping[str, Fraction], steps: int) -> BoundedValues:
     return {n: (x, _floor(x, steps)) for n, x in true.items()}
 
 
 def _floor(x: Fraction, steps: int) -> Fraction:
-    """What no comparison can see: float64's last bits, and its underflow in every step."""
+    """Return the error that no comparison shows: float64's last bits, and underflow of steps."""
     return abs(x) / 2**51 + Fraction(steps, 2**1060)

@@ -11,7 +11,7 @@ and S these are). With B a bound of the second derivatives of a step, ‖A(ẑ_k
    ‖E_k‖ ≤ E = max ‖M‖ e^Q (2 max ‖M‖² B Σ‖e_k‖ + S ρ)/d.
 3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most the sum of
    (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k) − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were
-   taken to be within ±3 max ‖M‖ where rounding was counted, so that E ≤ max ‖M‖ is asked for.
+   taken to be within ±3 max ‖M‖ where rounding was counted, so that E ≤ max ‖M‖ is required.
 
 Where ‖M‖ grows like N, as in integrable motion, Σ‖e_k‖ grows like N⁵, E like N⁷, and the bound like
 N⁹: it takes the worst of every step for all. `verify.runs.digits_on_demand` has a nearer one.
@@ -28,7 +28,7 @@ MOST = 3  # times max ‖M‖: the entries of Ĵ
 
 @dataclass(frozen=True)
 class Motion:
-    """`steps`, d, Q, max ‖M‖ and S."""
+    """The growth of a run's matrices M: `steps`, d, Q, max ‖M‖ and S of the module's text."""
 
     steps: int
     least: Ball
@@ -37,29 +37,30 @@ class Motion:
     path: Ball
 
 
-def of_form(
+def bound_total_defect(
     motion: Motion,
     *,
-    summed: Ball,
+    error_sum: Ball,
     second: Ball,
     size: Ball,
     slope: Ball,
-    of_matrix: Ball,
-    of_entry: Ball,
+    matrix_rounding: Ball,
+    entry_rounding: Ball,
 ) -> Ball:
-    """A bound of the error of each entry of W; not finite where there is none.
+    """Return a bound of the error of each entry of W; not finite where there is none.
 
-    `summed`: Σ ‖e_k‖. `second`: B. `size`, `slope`: of S and its gradient.
-    `of_matrix`, `of_entry`: the rounding of one step of Ĵ, and of one term of W and its addition.
+    `error_sum`: Σ ‖e_k‖. `second`: B. `size`, `slope`: bounds of S and of its gradient.
+    `matrix_rounding`: of one step of Ĵ. `entry_rounding`: of one term of W and its addition.
     """
-    top, grown = motion.top, motion.rate.exp()
-    moved = 2 * top * top * second * summed / motion.least
-    if not grown * (moved + motion.rate) <= 1:
+    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
+    top, growth = motion.top, motion.rate.exp()
+    displacement = 2 * top * top * second * error_sum / motion.least
+    if not growth * (displacement + motion.rate) <= 1:
         return flint.arb.nan()
-    apart = top * grown * (moved + motion.path * of_matrix / motion.least)
-    if not apart <= top:
+    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
+    if not error <= top:
         return flint.arb.nan()
-    terms = motion.steps * (2 * top + MOST * top) * size * apart
-    found = terms + 4 * top * top * slope * summed + motion.steps * of_entry
+    terms = motion.steps * (2 * top + MOST * top) * size * error
+    bound = terms + 4 * top * top * slope * error_sum + motion.steps * entry_rounding
     # The computed W was taken to be below 9 max ‖M‖² where its rounding was counted.
-    return found.abs_upper() if found <= 3 * top * top else flint.arb.nan()
+    return bound.abs_upper() if bound <= 3 * top * top else flint.arb.nan()

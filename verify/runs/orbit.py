@@ -2,7 +2,7 @@
 
 A float64 run's p, q and Λ are the numbers of that run, whole: it is what is under test. In any
 other arithmetic the states of exact arithmetic are wanted: the run is done twice, with 15 more
-digits the second time, at a precision that is raised until the two agree to the digits asked for,
+digits the second time, at a precision that is raised until the two agree to the requested digits,
 and a row holds the digits in which they do. That is an estimate, as in `verify.runs.estimated`.
 
 H − H₀ and ΔJ are those of exact arithmetic at the state in the row, enclosed by balls; where a step
@@ -18,7 +18,7 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import Enclosures
-from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import is_representable, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.exact import known_text, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
@@ -33,7 +33,7 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
 from verify.runs.start import Start
-from verify.scenes.observables import accumulated
+from verify.scenes.observables import accumulated_observables
 from verify.scenes.results.orbit import MOST_POINTS as MOST_POINTS
 from verify.scenes.results.orbit import OrbitTable
 from verify.scenes.results.run import RunResult
@@ -49,9 +49,9 @@ Box = Mapping[str, tuple[Fraction, Fraction]]  # p and q, each with how far it m
 
 @dataclass(frozen=True)
 class _States:
-    """What is carried, at the steps `at`, with how far it may be off; 0 where it is what it is."""
+    """The carried values at `steps`, with the radii of their errors, 0 where a value is exact."""
 
-    at: tuple[int, ...]
+    steps: tuple[int, ...]
     notes: tuple[Note, ...]
     radii: tuple[Note, ...]
 
@@ -59,7 +59,7 @@ class _States:
 def orbit_of(
     result: RunResult, points: int = MOST_POINTS, progress: Progress | None = None
 ) -> OrbitTable:
-    """The states of a run: every step up to `points` of them, then every second, third, …
+    """Return the states of a run: every step up to `points` of them, then every second, third, …
 
     `points`: so many states after the initial one at most, 1 … 10,000; the last state is always
     among them. Of a run that left the arithmetic's range: the states up to its last finite one.
@@ -67,80 +67,89 @@ def orbit_of(
     InputError where no digits of it can be confirmed.
     """
     whole("points", points, 1, MOST_POINTS)
-    orbit = Start.of(result)
+    orbit = Start.from_result(result)
     binary = result.arithmetic == float64.NAME
-    states = _states(orbit, result.steps, points, 0 if binary else result.digits, progress)
+    states = _collect_states(orbit, result.steps, points, 0 if binary else result.digits, progress)
     rows = _Rows(orbit, float64.NUMBER_SYSTEM.digits or 17 if binary else result.digits)
-    every = states.at[1] if len(states.at) > 1 else 1
+    every = states.steps[1] if len(states.steps) > 1 else 1
     digits = _BINARY if binary else _AGREED
-    shown = {"lambda": ("delta_j", "lambda")}
-    observables = tuple(x for name in rows.observed for x in shown.get(name, (name,)))
+    columns = {"lambda": ("delta_j", "lambda")}
+    observables = tuple(x for name in rows.observables for x in columns.get(name, (name,)))
     names = tuple(orbit.point)
-    return OrbitTable(tuple(rows.of(states, binary)), every, digits, names, observables)
+    return OrbitTable(tuple(rows.format_rows(states, binary)), every, digits, names, observables)
 
 
 # -- the states -----------------------------------------------------------------------------------
 
 
-def _states(
+def _collect_states(
     orbit: Start, steps: int, points: int, digits: int, progress: Progress | None
 ) -> _States:
-    """The states of the run; in float64 where no digits are asked for."""
+    """Return the states of the run; in float64 if `digits` is 0."""
     start = orbit.inputs
     nothing_lost = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
-    asked = frozenset[str]() if nothing_lost else frozenset(accumulated(orbit.hamiltonian))
+    observables = (
+        frozenset[str]() if nothing_lost else frozenset(accumulated_observables(orbit.hamiltonian))
+    )
     while True:
-        run = KernelRun(orbit.hamiltonian, orbit.scheme, start, steps, asked, 0, sections=points)
-        found = _confirmed(run, digits, progress) if digits else _binary(run, progress)
-        own, done, notes, radii = found
+        run = KernelRun(
+            orbit.hamiltonian, orbit.scheme, start, steps, observables, 0, sections=points
+        )
+        run_states = (
+            _confirm_states(run, digits, progress) if digits else _run_in_float64(run, progress)
+        )
+        arithmetic, done, notes, radii = run_states
         if done == steps or not done:
             break
         steps = done  # it left the range; so that its last finite state is noted as well
-    first = orbit.point if digits else _first(own, orbit.point)
+    first = orbit.point if digits else _rounded_start(arithmetic, orbit.point)
+    # Rounded up, so that at most `points` states are noted.
     every = -(-steps // points)
-    at = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
-    nothing = dict.fromkeys((*orbit.point, *accumulated(orbit.hamiltonian)), _ZERO)
-    return _States(at, ({**nothing, **first}, *notes), (nothing, *radii))
+    indices = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
+    nothing = dict.fromkeys((*orbit.point, *accumulated_observables(orbit.hamiltonian)), _ZERO)
+    return _States(indices, ({**nothing, **first}, *notes), (nothing, *radii))
 
 
-Found = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]
+RunStates = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]
 
 
-def _binary(run: KernelRun, progress: Progress | None) -> Found:
-    own = number_systems.get(float64.NAME, 17)
-    outcome = run.run(own, progress=progress)
-    return own, outcome.done, outcome.trail, ({},) * len(outcome.trail)
+def _run_in_float64(run: KernelRun, progress: Progress | None) -> RunStates:
+    arithmetic = number_systems.get(float64.NAME, 17)
+    outcome = run.run(arithmetic, progress=progress)
+    return arithmetic, outcome.done, outcome.trail, ({},) * len(outcome.trail)
 
 
-def _first(own: Arithmetic, point: Note) -> Note:
-    """The initial state as the arithmetic has it."""
-    return {name: Fraction(own.number(x)) for name, x in point.items()}
+def _rounded_start(arithmetic: Arithmetic, point: Note) -> Note:
+    """Return the initial state as the arithmetic rounds it."""
+    return {name: Fraction(arithmetic.number(x)) for name, x in point.items()}
 
 
-def _confirmed(run: KernelRun, digits: int, progress: Progress | None) -> Found:
-    """The run, and by how much it differs from one with fewer digits."""
-    name, wanted = choose(run, digits), working_digits(digits, run.steps)
+def _confirm_states(run: KernelRun, digits: int, progress: Progress | None) -> RunStates:
+    """Return the run's states, and their differences from those of a run with fewer digits."""
+    name, precision = choose(run, digits), working_digits(digits, run.steps)
     for _ in range(_ATTEMPTS):
-        own = number_systems.get(name, wanted)
-        finer = number_systems.get(name, digits_of(own) + _MORE_DIGITS)
+        arithmetic = number_systems.get(name, precision)
+        finer = number_systems.get(name, digits_of(arithmetic) + _MORE_DIGITS)
         try:
-            first, second = (run.run(each, progress=progress) for each in (own, finer))
+            first, second = (run.run(each, progress=progress) for each in (arithmetic, finer))
         except UnsupportedError:
             name = number_systems.automatic()[-1].name
             continue
-        if own.absolute and second.done < run.steps:  # of a limited range
+        if arithmetic.absolute and second.done < run.steps:  # of a limited range
             name = number_systems.automatic()[-1].name
             continue
-        apart = _apart(first, second)
-        if apart is not None and apart <= Fraction(1, 10**digits):
-            return own, second.done, second.trail, tuple(_differences(first, second))
+        difference = _difference(first, second)
+        if difference is not None and difference <= Fraction(1, 10**digits):
+            return arithmetic, second.done, second.trail, tuple(_differences(first, second))
         # Two orbits, and not one with errors: nothing tells how many digits are lost.
-        wanted = 2 * wanted if apart is None or apart > LINEAR else wanted + digits
+        precision = (
+            2 * precision if difference is None or difference > LINEAR else precision + digits
+        )
     raise InputError("scheme", run.scheme, f"{_ATTEMPTS} reruns of its orbit did not agree")
 
 
-def _apart(first: Outcome, second: Outcome) -> Fraction | None:
-    """How far the two are apart, relative to the orbit's size; None where they end elsewhere."""
+def _difference(first: Outcome, second: Outcome) -> Fraction | None:
+    """Return the relative difference of two runs; None where they end at different steps."""
     if first.done != second.done:
         return None
     return spread(first, second) if second.trail else Fraction(0)
@@ -155,60 +164,73 @@ def _differences(first: Outcome, second: Outcome) -> Iterator[Note]:
 
 
 class _Rows:
-    """Writes the rows of one orbit with so many digits."""
+    """A writer of the rows of one orbit with so many digits."""
 
     def __init__(self, orbit: Start, digits: int) -> None:
         self.orbit, self.digits = orbit, digits
         self.names = tuple(orbit.point)
         ring, energy = energy_of(orbit.hamiltonian)
         self.energy = Enclosures(ring, [energy])
-        self.observed = accumulated(orbit.hamiltonian)
-        self.delta_j = _DeltaJ(orbit, digits) if "lambda" in self.observed else None
+        self.observables = accumulated_observables(orbit.hamiltonian)
+        self.delta_j = _DeltaJ(orbit, digits) if "lambda" in self.observables else None
 
-    def of(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
-        """The rows; in `binary` a number is written so that it is read back to the same double."""
-        z_0 = {name: around(states.notes[0][name], _ZERO) for name in self.names}
-        z_0 |= self._time(0)
-        for k, note, radii in zip(states.at, states.notes, states.radii, strict=True):
+    def format_rows(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
+        """Yield the rows; with `binary` every number reads back as the same double."""
+        z_0 = {name: make_ball(states.notes[0][name], _ZERO) for name in self.names}
+        # H − H₀ takes each state at its own time, where H depends on it.
+        z_0 |= self._time_input(0)
+        for k, note, radii in zip(states.steps, states.notes, states.radii, strict=True):
             pairs = {
-                n: (note.get(n, _ZERO), radii.get(n, _ZERO)) for n in (*self.names, *self.observed)
+                n: (note.get(n, _ZERO), radii.get(n, _ZERO))
+                for n in (*self.names, *self.observables)
             }
-            shown = {
-                n: repr(float(x)) if binary else self._known(x, r) for n, (x, r) in pairs.items()
+            texts = {
+                n: repr(float(x)) if binary else self._format_value(x, r)
+                for n, (x, r) in pairs.items()
             }
             box = {n: pairs[n] for n in self.names}
             energy = self._energy_error(box, z_0, k) if k else "0"
             change = [self._text(self.delta_j(box, k))] if self.delta_j else []
-            state, others = ([shown[n] for n in names] for names in (self.names, self.observed))
-            yield text(self._at(k)), *state, energy, *change, *others
+            state, others = ([texts[n] for n in names] for names in (self.names, self.observables))
+            yield text(self._time_of_step(k)), *state, energy, *change, *others
 
-    def _at(self, k: int) -> Fraction:
+    def _time_of_step(self, k: int) -> Fraction:
         return self.orbit.t0 + k * self.orbit.step_size
 
-    def _time(self, k: int) -> dict[str, flint.arb]:
-        """The time of step k, for an H that depends on it."""
-        return {"t": rational_ball(self._at(k))} if self.orbit.hamiltonian.time_dependent else {}
+    def _time_input(self, k: int) -> dict[str, flint.arb]:
+        """Return the time of step k as an input, for an H that depends on it."""
+        return (
+            {"t": rational_ball(self._time_of_step(k))}
+            if self.orbit.hamiltonian.time_dependent
+            else {}
+        )
 
     def _energy_error(self, box: Box, start: Mapping[str, flint.arb], k: int) -> str:
-        """H − H₀ in the box, with more bits as long as they give digits that are missing."""
+        """Return H − H₀ in the box, with more bits as long as they give digits that are missing."""
         exact = not any(radius for _, radius in box.values())
         bits = 4 * self.digits + _GUARD
         for _ in range(_ATTEMPTS if exact else 1):
             with working_precision(bits):
-                at = {name: around(*pair) for name, pair in box.items()} | self._time(k)
-                both = self.energy.over(at), self.energy.over(start)
+                point = {name: make_ball(*pair) for name, pair in box.items()} | self._time_input(k)
+                both = self.energy.enclose_over(point), self.energy.enclose_over(start)
                 if both[0] is None or both[1] is None:
                     return ""
-                found = both[0][0] - both[1][0]
-            if found == 0 or found.rel_accuracy_bits() >= bits_for(self.digits):
+                difference = both[0][0] - both[1][0]
+            if difference == 0 or difference.rel_accuracy_bits() >= bits_for(self.digits):
                 break
+            # Digits of H − H₀ cancel where the drift is small: more bits bring them back, if the
+            # state is exact.
             bits *= 2
-        return self._text(found)
+        return self._text(difference)
 
     def _text(self, x: flint.arb | None) -> str:
-        return self._known(*middle_and_radius(x)) if x is not None and in_reach(x) else ""
+        return (
+            self._format_value(*midpoint_and_radius(x))
+            if x is not None and is_representable(x)
+            else ""
+        )
 
-    def _known(self, value: Fraction, radius: Fraction) -> str:
+    def _format_value(self, value: Fraction, radius: Fraction) -> str:
         return known_text(value, radius, self.digits)
 
 
@@ -218,30 +240,32 @@ class _DeltaJ:
     def __init__(self, orbit: Start, digits: int) -> None:
         step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
         self.vanishes, self.names = step_map.preserves_area, tuple(orbit.point)
-        self.own = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
+        self.arithmetic = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
         run = KernelRun(orbit.hamiltonian, orbit.scheme, orbit.inputs, 1, frozenset({"lambda"}), 0)
-        self.kernel = kernel_for(run.hamiltonian, run.scheme, self.own, run.observables)
-        given = run.inputs(self.kernel, 0)
+        self.kernel = kernel_for(run.hamiltonian, run.scheme, self.arithmetic, run.observables)
+        arguments = run.inputs(self.kernel, 0)
         if self.kernel.timed:
-            given |= clock_inputs(self.own, run.start)
-        self.inputs = [self.own.number(x) for x in given.values()]
+            arguments |= clock_inputs(self.arithmetic, run.start)
+        self.inputs = [self.arithmetic.number(x) for x in arguments.values()]
 
     def __call__(self, box: Box, k: int) -> flint.arb | None:
-        """A ball with the ΔJ of step k from all states in the box; None where one may not be
-        defined."""
+        """Return a ball with the ΔJ of step k from all states in the box.
+
+        None where it may not be defined at one of them.
+        """
         if self.vanishes:
             return flint.arb(0)
-        own = self.own
+        arithmetic = self.arithmetic
         try:
-            with own.context():
-                state = [_in(own, *box[name]) for name in self.names]
-                state += [own.number(Fraction(k))] if self.kernel.timed else []
-                _, *after = self.kernel.function(1, *self.inputs, *state, own.number(_ZERO))
-                found: Any = after[-1]
-                return found if own.radius else around(own.exact(found), _ZERO)
+            with arithmetic.context():
+                state = [_convert(arithmetic, *box[name]) for name in self.names]
+                state += [arithmetic.number(Fraction(k))] if self.kernel.timed else []
+                _, *after = self.kernel.function(1, *self.inputs, *state, arithmetic.number(_ZERO))
+                delta_j: Any = after[-1]
+                return delta_j if arithmetic.radius else make_ball(arithmetic.exact(delta_j), _ZERO)
         except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
             return None
 
 
-def _in(own: Arithmetic, value: Fraction, radius: Fraction) -> object:
-    return around(value, radius) if own.radius else own.number(value)
+def _convert(arithmetic: Arithmetic, value: Fraction, radius: Fraction) -> object:
+    return make_ball(value, radius) if arithmetic.radius else arithmetic.number(value)

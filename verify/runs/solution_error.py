@@ -1,4 +1,4 @@
-"""How far a run's states are from the exact solution through its start."""
+"""The solution error: distances of a run's states from the exact solution through its start."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -19,19 +19,19 @@ _Point = tuple[tuple[Fraction, ...], Fraction]  # the coordinates, and the bound
 
 
 def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
-    """(t, |z − φ_t(z₀)|), Euclidean in all coordinates, at so many states of the run at most.
+    """Return (t, |z − φ_t(z₀)|), Euclidean in all coordinates, at up to so many states of the run.
 
-    That of a float64 run is of its own numbers. The bound holds the exact solution's. Where no
+    For a float64 run z are its own numbers. The bound includes that of the exact solution. Where no
     closed form is known the solution is followed from state to state, and the bound is an estimate:
-    it holds how far that ends from the solution which is followed to the last state at once.
+    it includes the distance of its end from a solution that is followed to the last state at once.
     Raises InputError where it cannot be followed so far.
     """
-    table, begun = orbit_of(result, points), Start.of(result)
+    table, start = orbit_of(result, points), Start.from_result(result)
     times = [Fraction(t) for t in table.texts("t")]
-    states = zip(*(table.texts(name) for name in begun.point), strict=True)
+    states = zip(*(table.texts(name) for name in start.point), strict=True)
     digits = max(_MORE, result.digits + _DIGITS)
     try:
-        exact = list(_solution(begun, times, digits))
+        exact = list(_solve_at(start, times, digits))
     except NoFlowError as error:
         problem = f"no exact solution to hold it to: {error}"
         raise InputError("run", result.scheme, problem) from None
@@ -41,37 +41,40 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
     )
 
 
-def _solution(begun: Start, times: list[Fraction], digits: int) -> Iterator[_Point]:
-    """The solution and the bound of each coordinate at the times."""
-    whole = solution_from(begun.hamiltonian, begun.point, times[-1] - begun.t0, digits, begun.t0)
+def _solve_at(start: Start, times: list[Fraction], digits: int) -> Iterator[_Point]:
+    """Yield the solution and the bound of each coordinate at the times."""
+    whole = solution_from(start.hamiltonian, start.point, times[-1] - start.t0, digits, start.t0)
+    # Without a closed form each time would need a solution from the start: one walk visits all of
+    # them.
     if not whole.enclosed:
-        yield from _followed(begun, times, digits, whole)
+        yield from _follow(start, times, digits, whole)
         return
     for t in times:
-        found = solution_from(begun.hamiltonian, begun.point, t - begun.t0, digits, begun.t0)
-        yield tuple(found.point.values()), found.bound
+        solution = solution_from(start.hamiltonian, start.point, t - start.t0, digits, start.t0)
+        yield tuple(solution.point.values()), solution.bound
 
 
-def _followed(
-    begun: Start, times: list[Fraction], digits: int, whole: Solution
-) -> Iterator[_Point]:
-    """The solution from one time to the next, held at its end to the one of a single piece.
+def _follow(start: Start, times: list[Fraction], digits: int, whole: Solution) -> Iterator[_Point]:
+    """Follow the solution from one time to the next, and compare its end with that of one piece.
 
-    What errors grow by on the way is seen there: it is least at first and most at the end.
+    The end shows how much errors grow on the way: they are least at first and greatest there.
     """
-    made: list[_Point] = []
-    point, before, total = begun.point, begun.t0, Fraction(0)
+    rows: list[_Point] = []
+    point, before, total = start.point, start.t0, Fraction(0)
     for t in times:
-        found = solution_from(begun.hamiltonian, point, t - before, digits, before)
-        point, before, total = found.point, t, total + found.bound
-        made.append((tuple(point.values()), total))
-    missed = max(abs(whole.point[name] - point[name]) for name in point) + whole.bound
-    for state, bound in made:
-        yield state, max(bound, missed)
+        solution = solution_from(start.hamiltonian, point, t - before, digits, before)
+        # The errors of the pieces add up; what they grow by on the way is not among them, but in
+        # `mismatch`.
+        point, before, total = solution.point, t, total + solution.bound
+        rows.append((tuple(point.values()), total))
+    mismatch = max(abs(whole.point[name] - point[name]) for name in point) + whole.bound
+    for state, bound in rows:
+        yield state, max(bound, mismatch)
 
 
-def _distance(apart: Sequence[Fraction], bound: Fraction) -> Value:
-    square = sum((x * x for x in apart), Fraction(0))
+def _distance(difference: Sequence[Fraction], bound: Fraction) -> Value:
+    # The integer square root is within 2^−_BITS of the root, which the bound includes.
+    square = sum((x * x for x in difference), Fraction(0))
     scale = 1 << (2 * _BITS)
     size = Fraction(isqrt(square.numerator * scale // square.denominator), 1 << _BITS)
-    return Value.of(size, len(apart) * bound + Fraction(1, 1 << _BITS), _DIGITS)
+    return Value.from_bound(size, len(difference) * bound + Fraction(1, 1 << _BITS), _DIGITS)

@@ -1,4 +1,4 @@
-"""What a run is of, and where it begins."""
+"""The inputs of a run: the scheme with its H, and the initial state."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ class Start:
     t0: Fraction
 
     @classmethod
-    def of(cls, result: RunResult) -> "Start":
-        """That of a run that was done."""
+    def from_result(cls, result: RunResult) -> "Start":
+        """Return the start of a finished run."""
         hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
         point = point_of(hamiltonian, result.q, result.p)
         step_size, t0 = Fraction(result.step_size), Fraction(result.t0)
@@ -34,16 +34,16 @@ class Start:
         return hash((self.hamiltonian, self.scheme, self.step_size, point, self.t0))
 
     @property
-    def asked(self) -> dict[str, Any]:
-        """What a run from there is asked for with, beside its steps."""
+    def run_arguments(self) -> dict[str, Any]:
+        """The keyword arguments that request a run from there, without its number of steps."""
         fields = {name: x for name, x in vars(self).items() if name != "point"}
         return {**fields, "q": self.text("q"), "p": self.text("p")}
 
     @property
     def inputs(self) -> dict[str, Fraction]:
-        """What a kernel's run begins with."""
+        """The initial values, h and t of a kernel's run, by their names."""
         return {**self.point, "h": self.step_size, "t": self.t0}
 
     def text(self, letter: str) -> str | tuple[str, ...]:
-        """q or p as it is shown: a number, or a list in n degrees of freedom."""
+        """Return q or p as results show it: a number, or a list in n degrees of freedom."""
         return shown_of(self.hamiltonian, self.point, letter)

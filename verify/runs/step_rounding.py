@@ -1,7 +1,7 @@
 """The rounding of one step of a run, counted over the box that its orbit has visited.
 
-What is counted, ε and ρ among it, and what follows from it is told in `verify.runs.a_posteriori`;
-by what rules, in `verify.kernels.rounding`.
+`verify.runs.a_posteriori` defines the quantities that are counted, ε and ρ among them, and derives
+bounds from them; the rules of counting are in `verify.kernels.rounding`.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ from verify.runs.derivatives import norm
 
 @dataclass(frozen=True)
 class StepErrors:
-    """One step's rounding: of the state, of D, of the tangent map relative to its size."""
+    """The rounding of one step: of the state, of D, of the tangent map relative to its size."""
 
     state: Ball
     delta_j: Ball
@@ -32,8 +32,10 @@ class StepErrors:
 
 
 class StepRounding:
-    """Counts it for the steps up to the checkpoint of index `note`; the run has carried the tangent
-    map."""
+    """A count of rounding for the steps up to the checkpoint of index `note`.
+
+    The run must have carried the tangent map.
+    """
 
     def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
@@ -41,7 +43,7 @@ class StepRounding:
         self.last = outcome.trail[note]
         self.shift = outcome.shift
         self.steps = int(outcome.tangents[note]["done"])
-        self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
+        self.records = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
         self.h = rational_ball(run.start["h"])
         self.unit = flint.arb(2) ** -arithmetic.bits
         self.names = self.kernel.coordinates
@@ -49,99 +51,108 @@ class StepRounding:
     # -- where the run has been -----------------------------------------------------------------
 
     def box(self, margin: Ball, *, last: bool = False) -> dict[str, Ball]:
-        """The states at which a step was made, and the last one where it is asked for, widened;
-        float64's rounding of them is within 2^−50."""
+        """Return the states at which a step was made, and with `last` the last one, all widened.
+
+        float64's rounding of the recorded states is within 2^−50.
+        """
         around = flint.arb(0, 1)
-        found = {}
+        intervals = {}
         for n in self.names:
-            low, high = self.seen[f"{n}_low"], self.seen[f"{n}_high"]
-            rounded = flint.arb(2) ** -50 * (1 + abs(low) + abs(high))
-            found[n] = low.union(high) + around * (margin + rounded)
+            low, high = self.records[f"{n}_low"], self.records[f"{n}_high"]
+            rounding = flint.arb(2) ** -50 * (1 + abs(low) + abs(high))
+            intervals[n] = low.union(high) + around * (margin + rounding)
             if last:
-                found[n] = found[n].union(rational_ball(self.last[n]) + around * margin)
-        return found
+                intervals[n] = intervals[n].union(rational_ball(self.last[n]) + around * margin)
+        return intervals
 
     def times(self) -> Ball:
-        """All times at which a step is made."""
+        """Return all times at which a step is made."""
         turns = self.run.turns(self.arithmetic)
         if turns:
             first, last = map(rational_ball, turns.times)
             return first.union(last)
-        begun = rational_ball(self.run.start.get("t", Fraction(0)))
-        return begun.union(begun + self.steps * self.h)
+        start = rational_ball(self.run.start.get("t", Fraction(0)))
+        return start.union(start + self.steps * self.h)
 
-    def fixed(self) -> dict[str, Ball]:
-        """h, the parameters, and all times where they are asked for."""
-        named = {n: rational_ball(x) for n, x in self.run.parameters.items()}
+    def constants(self) -> dict[str, Ball]:
+        """Return h, the parameters, and all times if the kernel has a clock."""
+        parameters = {n: rational_ball(x) for n, x in self.run.parameters.items()}
         time = {"t": self.times()} if self.kernel.timed else {}
-        return {"h": self.h, **named, **time}
+        return {"h": self.h, **parameters, **time}
 
-    # -- what a step loses ----------------------------------------------------------------------
+    # -- the rounding of a step -----------------------------------------------------------------
 
     def errors(self) -> StepErrors | None:
-        """None where they are not known for this kernel or arithmetic."""
+        """Return the rounding of one step; None where this kernel or arithmetic has no count."""
         kernel, program = self.kernel, self.kernel.lowering.program
         if kernel.tangent is None or self.arithmetic.rounding is None:
             return None
         live = kernel.lowering.live(kernel.roots)
-        found = analyse(program, live, self.inputs() | self.matrix(), rounding_of(self.arithmetic))
-        if found is None:
+        enclosures = analyse(
+            program, live, self.inputs() | self.matrix(), rounding_of(self.arithmetic)
+        )
+        if enclosures is None:
             return None
-        values = {name: found[index] for name, index in kernel.outputs.items()}
-        tangent = self.of_tangent(found)
+        values = {name: enclosures[index] for name, index in kernel.outputs.items()}
+        tangent = self.tangent_error(enclosures)
         if tangent is None:
             return None
         # ε is Euclid's norm of what both components lose.
         sizes = self.box(flint.arb(0))
-        added = norm(self.adding(sizes[n].abs_upper(), values[f"d{n}"]) for n in self.names)
-        changed, defect = values["dj"], flint.arb(0)
+        state_error = norm(
+            self.error_of_addition(sizes[n].abs_upper(), values[f"d{n}"]) for n in self.names
+        )
+        delta_j, defect = values["dj"], flint.arb(0)
         for index in kernel.defect.values():
-            defect = defect.max(found[index].error)
-        return StepErrors(added, changed.error, tangent, changed.magnitude, defect, values)
+            defect = defect.max(enclosures[index].error)
+        return StepErrors(state_error, delta_j.error, tangent, delta_j.magnitude, defect, values)
 
     def matrix(self) -> dict[str, Rounded]:
-        """The entries of M where it is carried: data too, within the box of `form_bound`."""
-        most = form_bound.MOST * self.seen["growth_top"].abs_upper().sqrt()
+        """Return the entries of M where it is carried: data too, within the box of `form_bound`."""
+        most = form_bound.MOST * self.records["growth_top"].abs_upper().sqrt()
         box = flint.arb(0, 1) * most * (1 + flint.arb(2) ** -10)
         return {name: Rounded(box, flint.arb(0)) for name in self.kernel.matrix}
 
     def inputs(self) -> dict[str, Rounded]:
-        """The state, which is data and has no error, and h, t and the parameters as rounded."""
-        given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
+        """Return the state, which is data without error, and h, t and the parameters as rounded."""
+        inputs = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         for name, exact in self.run.inputs(self.kernel, self.shift).items():
+            # The rounded input against the exact one, as a rational.
             lost = self.arithmetic.exact(self.arithmetic.number(exact)) - exact
-            given[name] = Rounded(rational_ball(exact), rational_ball(abs(lost)))
+            inputs[name] = Rounded(rational_ball(exact), rational_ball(abs(lost)))
         if self.kernel.timed:
+            # The clock's error grows with the number of additions and is greatest at the largest
+            # time.
             latest = abs(self.run.start["t"]) + self.steps * self.run.start["h"]
-            given["t"] = Rounded(
+            inputs["t"] = Rounded(
                 self.times(), rational_ball(error_of_time(self.arithmetic, latest))
             )
-        return given
+        return inputs
 
-    def adding(self, size: Ball, increment: Rounded) -> Ball:
-        """The error of an increment, and of adding it to what is of that size."""
+    def error_of_addition(self, size: Ball, increment: Rounded) -> Ball:
+        """Return the error of an increment, and of its addition to a number of that size."""
         if self.arithmetic.absolute:
             return increment.error
         return increment.error + (size + increment.magnitude) * self.unit
 
-    def of_tangent(self, main: Mapping[int, Rounded]) -> Ball | None:
-        """ρ: the error of one step of the tangent map, relative to ‖M‖."""
+    def tangent_error(self, main: Mapping[int, Rounded]) -> Ball | None:
+        """Return ρ, the error of one step of the tangent map, relative to ‖M‖."""
         tangent = self.kernel.tangent
         assert tangent is not None  # noqa: S101 - the caller's condition
         # A's entries come from wide numbers turned into float64, each with an error of its own.
         unit = flint.arb(2) ** -52
         inputs = {}
-        for at in tangent.needed:
-            x = main[at]
+        for entry in tangent.main_values:
+            x = main[entry]
             lost = x.magnitude * unit + flint.arb(2) ** -96
-            inputs[f"approx(v{at})"] = Rounded(x.interval, x.error + lost)
+            inputs[f"approx(v{entry})"] = Rounded(x.interval, x.error + lost)
         live = tangent.lowering.live(tangent.change)
-        found = analyse(tangent.program, live, inputs, FLOAT)
-        if found is None:
+        values = analyse(tangent.program, live, inputs, FLOAT)
+        if values is None:
             return None
-        entries = [found[index] for index in tangent.change]
+        entries = [values[index] for index in tangent.change]
         size, error = norm(x.magnitude for x in entries), norm(x.error for x in entries)
         # 2n products, their sum, and its sum with M's rest are rounded; the rest is left out of the
-        # products. That is 2n + 2 times half a unit, and what is of second order.
+        # products. That is 2n + 2 times half a unit, and terms of second order.
         units = len(self.names) // 2 + 2
         return ((error + units * unit * size) * (1 + unit) + unit * unit).abs_upper()

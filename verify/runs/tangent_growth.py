@@ -1,9 +1,9 @@
-"""How fast neighbours part along an orbit: the finite-time Lyapunov exponent, and chaos told apart.
+"""The rate at which neighbours of an orbit part: finite-time Lyapunov exponents, and chaos.
 
-By `ln ‖M‖` at times, with M the tangent map from the orbit's start, or its action on one
-direction: where neighbours part like a power of t, as on an orbit that is not chaotic, the second
-half of a time adds a few times ln 2 to it, however long that is; where they part exponentially it
-adds half of all (Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15, 1980).
+Both are computed from `ln ‖M‖` at several times, with M the tangent map from the orbit's start, or
+its action on one direction: where neighbours part like a power of t, as on an orbit that is not
+chaotic, the second half of a time adds a few times ln 2 to it, however long that is; where they
+part exponentially it adds half of all (Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15, 1980).
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ _EXPONENTIAL = 4.0  # at least, of those that part exponentially: a power of t b
 
 
 def finite_time_lyapunov(log_norm: float, size: int, time: float) -> float:
-    """λ = ln(‖M‖/√m)/T in units of 1/time: the mean rate at which neighbouring orbits part.
+    """Return λ = ln(‖M‖/√m)/T in units of 1/time, the mean rate at which neighbouring orbits part.
 
     `log_norm`: ln ‖M‖ of Frobenius after the time T > 0, of a tangent map with m = `size` rows that
     began as 1, where it is ln √m; or m = 1 and its action on a direction of length 1. It is of
@@ -28,11 +28,13 @@ def finite_time_lyapunov(log_norm: float, size: int, time: float) -> float:
 
 
 def is_exponential(times: Sequence[float], logs: Sequence[float]) -> bool | None:
-    """Whether neighbours part exponentially; None where the time does not tell."""
+    """Return True if neighbours part exponentially; None where the time is too short to decide."""
+    # Where neighbours part like t^a, the second half of the time adds a ln 2 at most, however long
+    # it is; where they part exponentially it adds as much as the first half.
     middle = times[-1] / 2
     first = max((y for t, y in zip(times, logs, strict=True) if t <= middle), default=0.0)
     second = max((y for t, y in zip(times, logs, strict=True) if t > middle), default=0.0)
-    gained = second - max(first, 0.0)
-    if gained >= _EXPONENTIAL:
+    gain = second - max(first, 0.0)
+    if gain >= _EXPONENTIAL:
         return True
-    return False if gained <= _POWER else None
+    return False if gain <= _POWER else None

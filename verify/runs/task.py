@@ -8,14 +8,15 @@ from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import NOTHING, Keeper
 from verify.execution.task import StartTask
 from verify.kernels.run_inputs import SECTIONS
-from verify.lockstep import Course, alone
+from verify.lockstep import Course, run_alone
 from verify.runs.float64 import DIRECT_STEPS
-from verify.runs.run import AskedRun
+from verify.runs.run import RequestedRun
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import Number, StepSize
 
-# About what a run costs however short, and one that is too long to be held against a certified one.
+# About the cost of any run, however short, and of one too long for a comparison with a certified
+# one.
 _RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
 
 
@@ -36,12 +37,14 @@ class RunTask(StartTask):
 
     @property
     def cost(self) -> int:
-        """Steps times what a step in this arithmetic costs, beside what any run does.
+        """The number of steps times the cost of one in this arithmetic, added to that of any run.
 
-        Short ones in float64 are held against another run, whose steps are what they cost.
+        A short run in float64 is compared with another run, whose steps make up its cost.
         """
         if self.arithmetic != float64.NAME:
             return _RUN_COST + self.steps * step_cost(self.arithmetic)
+        # A short float64 run is compared with a certified one, which costs far more than its own
+        # steps.
         if self.steps <= DIRECT_STEPS:
             other = AUTO if self.shares_kernel else mpfr.NAME
             return _RUN_COST + self.steps * step_cost(other)
@@ -49,24 +52,24 @@ class RunTask(StartTask):
 
     @property
     def ensemble(self) -> str | None:
-        """Runs of one kernel, where its number system steps several together."""
+        """A key of the runs of one kernel, where its number system steps several together."""
         if not in_lanes(self.arithmetic):
             return None
         series = "with" if self.points else "without"
         return f"{self.kind} {self.scheme} {self.hamiltonian} {self.arithmetic} {series} series"
 
-    def proved(self) -> RunResult | None:
-        """What a proof gives of the run without a step; None where it is not all that is asked."""
-        return self.asked_run().proved()
+    def result_by_proof(self) -> RunResult | None:
+        """Return the result that a proof gives without a step; None if it leaves requests open."""
+        return self.requested_run().prove_result()
 
-    def asked_run(self, keeper: Keeper = NOTHING) -> AskedRun:
-        """The run that `compute` does."""
-        return AskedRun(self.exact_hamiltonian(), **self.asked(), keeper=keeper)
+    def requested_run(self, keeper: Keeper = NOTHING) -> RequestedRun:
+        """Return the run that `compute` does."""
+        return RequestedRun(self.exact_hamiltonian(), **self.other_fields(), keeper=keeper)
 
     def compute(self, keeper: Keeper) -> RunResult:
-        """The run, from its last checkpoint where there is one."""
-        return alone(self.asked_run(keeper).result())
+        """Do the run, from its last checkpoint where there is one."""
+        return run_alone(self.requested_run(keeper).result())
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
-        """The same."""
-        return {self.key: (yield from self.asked_run(keeper).result())}
+        """Do the run in turn with others; see `verify.lockstep`."""
+        return {self.key: (yield from self.requested_run(keeper).result())}

@@ -1,1 +1,1 @@
-"""What is asked: scenes, their sections and values, and what results look like. Data alone."""
+"""The data of requests and results: scenes, their sections and values, and models of results."""

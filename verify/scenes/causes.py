@@ -1,4 +1,4 @@
-"""What one mistake, or one fact, explains of several statements of a paper.
+"""A cause: one mistake, or one fact, that explains why several statements do not hold.
 
 [[cause]]
 says = "Both tables print `1/N` for MSE."   # in a sentence; a formula stands between backticks
@@ -12,13 +12,13 @@ from typing import Annotated
 from pydantic import Field
 
 from verify.errors import InputError
-from verify.scenes.frozen import Said, WithProse
+from verify.scenes.frozen import ProseText, WithProse
 
 
 class Cause(WithProse):
     """See the module's text for the keys."""
 
-    says: Said
+    says: ProseText
     """The cause in a sentence."""
     explains: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
     """The ids of the statements that it explains."""
@@ -26,7 +26,8 @@ class Cause(WithProse):
     """The ids of the claims that show it."""
 
     def check(self, statements: Collection[str], claims: Collection[str]) -> None:
-        """InputError where a statement or a claim is unknown."""
+        """Raise InputError where a statement or a claim is unknown."""
+        # Unknown ids are refused here, since a page would silently show no link for them.
         for key, names, allowed in (
             ("explains", self.explains, statements), ("shown_by", self.shown_by, claims),
         ):  # fmt: skip

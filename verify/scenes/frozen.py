@@ -1,4 +1,4 @@
-"""The base of all data here: frozen models that refuse what they do not know."""
+"""The base classes of all data here: frozen models that refuse unknown keys."""
 
 from functools import cache
 from typing import Annotated, Any, get_args
@@ -20,17 +20,20 @@ from verify.prose import Prose
 
 Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
 Seconds = Real
-PLAIN = {"parts": False}  # a context of `model_dump`
-_BESIDE = "_parts"  # the key of a prose's parts is its own and this
-_PARTS_SCHEMA = {"type": "array"}  # of texts and tables, or of such arrays
+# The context of `model_dump` that leaves out the parts of prose.
+PLAIN = {"parts": False}
+# The parts of the prose NAME are written under the key NAME_parts.
+_PARTS_SUFFIX = "_parts"
+# An array of texts and tables, or of such arrays.
+_PARTS_SCHEMA = {"type": "array"}
 
 
-def _read(given: object) -> Prose:
-    return given if isinstance(given, Prose) else Prose.of_data(given)
+def _read_prose(content: object) -> Prose:
+    return content if isinstance(content, Prose) else Prose.from_data(content)
 
 
-Said = Annotated[  # a field of Prose, in a model `WithProse`
-    Prose, PlainValidator(_read), PlainSerializer(str), WithJsonSchema({"type": "string"})
+ProseText = Annotated[  # a field of Prose, in a model `WithProse`
+    Prose, PlainValidator(_read_prose), PlainSerializer(str), WithJsonSchema({"type": "string"})
 ]
 
 
@@ -41,11 +44,11 @@ class Frozen(BaseModel):
 
 
 class Section(Frozen):
-    """What a scene asks for, in a table of its own."""
+    """A section of a scene: requests in a table of its own."""
 
 
 class OfScheme(Frozen):
-    """What was found of a scheme for one H with its parameter values."""
+    """A result on one scheme for one H with its parameter values."""
 
     hamiltonian: str
     parameters: dict[str, str]
@@ -53,51 +56,52 @@ class OfScheme(Frozen):
 
 
 class WithProse(Frozen):
-    """A model with fields that are `Said`: each is its plain text in data.
+    """A model with fields of type `ProseText`, each of which is its plain text in data.
 
-    Where one is more than text, `NAME_parts` stands beside it; what is read may leave that out.
-    With `context=PLAIN` it is left out, as in what commands print. Raises ValueError where the
-    parts are not those of the text.
+    Where the prose NAME has formulas or numbers, its parts are written as `NAME_parts`, which data
+    that are read may leave out. With `context=PLAIN` they are not written, as in the output of
+    commands. Raises ValueError where the parts do not make up the text.
     """
 
     @model_serializer(mode="wrap")
-    def _parts_beside(
-        self, shown: SerializerFunctionWrapHandler, info: SerializationInfo
+    def _serialize_parts(
+        self, handler: SerializerFunctionWrapHandler, info: SerializationInfo
     ) -> dict[str, Any]:
         data: dict[str, Any] = {}
         with_parts = () if info.context == PLAIN else _prose_fields(type(self))
-        for name, value in shown(self).items():
+        for name, value in handler(self).items():
             data[name] = value
             if name in with_parts and _more_than_text(getattr(self, name)):
-                data[name + _BESIDE] = _data_of(getattr(self, name))
+                data[name + _PARTS_SUFFIX] = _data_of(getattr(self, name))
         return data
 
     @classmethod
     def __get_pydantic_json_schema__(
         cls, core_schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """That of its fields, and of what stands beside them."""
-        schema = handler(_unserialized(core_schema))
-        own = handler.resolve_ref_schema(schema)
-        beside = {name + _BESIDE: _PARTS_SCHEMA for name in _prose_fields(cls)}
-        own["properties"] = {**own.get("properties", {}), **beside}
+        """Return the schema of the fields, with the parts of prose added."""
+        schema = handler(_without_serializer(core_schema))
+        resolved = handler.resolve_ref_schema(schema)
+        parts = {name + _PARTS_SUFFIX: _PARTS_SCHEMA for name in _prose_fields(cls)}
+        resolved["properties"] = {**resolved.get("properties", {}), **parts}
         return schema
 
     @model_validator(mode="before")
     @classmethod
-    def _join_parts(cls, given: Any) -> Any:
-        if not isinstance(given, dict):
-            return given
-        data = dict(given)
+    def _join_parts(cls, content: Any) -> Any:
+        if not isinstance(content, dict):
+            return content
+        data = dict(content)
         for name in _prose_fields(cls):
-            parts = data.pop(name + _BESIDE, None)
+            # The plain text stays readable for every program; the parts keep what it loses.
+            parts = data.pop(name + _PARTS_SUFFIX, None)
             if parts is not None:
-                data[name] = _checked(parts, data.get(name), name)
+                data[name] = _check_parts(parts, data.get(name), name)
         return data
 
 
-def _unserialized(schema: Any) -> Any:
-    """The core schema of a model without its serializer, of whose data pydantic knows no keys."""
+def _without_serializer(schema: Any) -> Any:
+    """Return a model's core schema without its serializer, whose keys pydantic cannot know."""
     return {key: value for key, value in schema.items() if key != "serialization"}
 
 
@@ -117,17 +121,17 @@ def _more_than_text(value: Any) -> bool:
 
 
 def _data_of(value: Any) -> Any:
-    """The parts of a prose, or of each in a tuple of such."""
+    """Return the parts of a prose, or of each prose in a tuple."""
     return value.as_data() if isinstance(value, Prose) else [_data_of(each) for each in value]
 
 
-def _checked(parts: Any, text: Any, name: str) -> Any:
-    """The prose of these parts; in a list, where the text is one."""
+def _check_parts(parts: Any, text: Any, name: str) -> Any:
+    """Return the prose with these parts, or a list of them where the text is a list."""
     if isinstance(text, list | tuple):
         if not isinstance(parts, list | tuple) or len(parts) != len(text):
-            raise ValueError(f"{name}{_BESIDE} has another length than {name}")
-        return [_checked(*each, name) for each in zip(parts, text, strict=True)]
-    found = Prose.of_data(parts)
-    if text is not None and found != text:
-        raise ValueError(f"{name}{_BESIDE} do not make up {name}")
-    return found
+            raise ValueError(f"{name}{_PARTS_SUFFIX} has another length than {name}")
+        return [_check_parts(*each, name) for each in zip(parts, text, strict=True)]
+    prose = Prose.from_data(parts)
+    if text is not None and prose != text:
+        raise ValueError(f"{name}{_PARTS_SUFFIX} do not make up {name}")
+    return prose

@@ -1,58 +1,61 @@
-"""What a run may be asked for, in the plane and in n degrees of freedom."""
+"""The observables that a run can compute, in the plane and in n degrees of freedom."""
 
 from collections.abc import Sequence
 
 from verify import observables
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-_EVERY = observables.by_name()
-_BY_PLACE = sorted((each.usual, name) for name, each in _EVERY.items() if each.usual is not None)
+_KINDS = observables.by_name()
+_BY_PLACE = sorted((each.usual, name) for name, each in _KINDS.items() if each.usual is not None)
 _USUAL = tuple(name for _, name in _BY_PLACE)
-CLOSED_FORM = tuple(name for name in _USUAL if not _EVERY[name].in_plane)
-REPORTED = (*CLOSED_FORM, "lambda_plain")  # of float64, whose plain way is what is looked at
+CLOSED_FORM = tuple(name for name in _USUAL if not _KINDS[name].in_plane)
+# With the plain way, which is of interest in float64.
+REPORTED = (*CLOSED_FORM, "lambda_plain")
 
 
 def names(*, planar: bool) -> tuple[str, ...]:
-    """All that may be asked for in the plane, or in some number of degrees of freedom."""
+    """Return the names of all observables in the plane, or in any number of degrees of freedom."""
     fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 1)
-    return tuple(name for name, each in _EVERY.items() if fits(each))
+    return tuple(name for name, each in _KINDS.items() if fits(each))
 
 
-def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str, ...]:
-    """What is asked for; where it is left out, ΔJ, MSE and Λ, and S and W where they are more."""
-    if asked is not None:
-        return tuple(asked)
+def select_observables(
+    hamiltonian: Hamiltonian, requested: Sequence[str] | None
+) -> tuple[str, ...]:
+    """Return the requested observables; by default ΔJ, MSE, Λ, and S and W where these differ."""
+    if requested is not None:
+        return tuple(requested)
     return tuple(name for name in _USUAL if carries(hamiltonian, name))
 
 
-def accumulated(hamiltonian: Hamiltonian) -> tuple[str, ...]:
-    """What all steps together do: Λ, and W where that is more, and is carried."""
-    usual = observed(hamiltonian, None)
+def accumulated_observables(hamiltonian: Hamiltonian) -> tuple[str, ...]:
+    """Return the observables of all steps together: Λ, and W where it differs and is carried."""
+    usual = select_observables(hamiltonian, None)
     return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
 
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
-    """Whether W is carried in so many degrees of freedom, or Λ, which it is in the plane."""
+    """Return True if W, in the plane Λ, is carried in H's number of degrees of freedom."""
     return carries(hamiltonian, hamiltonian.structure.of_run)
 
 
 def carries(hamiltonian: Hamiltonian, name: str) -> bool:
-    """Whether an observable is carried of such an H, and is no other one's in the plane."""
-    each = _EVERY[name]
+    """Return True if the observable is carried for such an H and repeats none of the plane."""
+    each = _KINDS[name]
     return each.fits(hamiltonian.degrees) and not (each.in_plane and hamiltonian.planar)
 
 
-def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
-    """InputError for a name that there is not, or that is not for such an H."""
-    there = names(planar=hamiltonian.planar)
-    for name in asked:
-        each = _EVERY.get(name)
-        if each and each.in_plane and name not in there:
+def check_observables(hamiltonian: Hamiltonian, requested: Sequence[str]) -> None:
+    """Raise InputError for a name that does not exist, or that is not for such an H."""
+    available = names(planar=hamiltonian.planar)
+    for name in requested:
+        each = _KINDS.get(name)
+        if each and each.in_plane and name not in available:
             problem = f"is |{each.in_plane}| in one degree of freedom; ask for it"
             raise InputError("observable", name, problem)
-        if each is None or name not in there:
-            raise unknown("observable", name, there)
+        if each is None or name not in available:
+            raise unknown_name("observable", name, available)
         if hamiltonian.time_dependent and not each.timed:
             raise InputError("observable", name, "is for an H that does not depend on t")
         if not each.fits(hamiltonian.degrees):

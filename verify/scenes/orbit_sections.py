@@ -1,5 +1,4 @@
-"""Sections of a scene that look at orbits now and then: once in each period of H, and where they
-pass a surface, Poincaré's.
+"""Sections of a scene on points of orbits: once in each period of H, and Poincaré sections.
 
 [[stroboscopic]]                       # states at multiples of a period, in the (q, p) plane
 period = 1                             # of H in t, a whole number of steps
@@ -43,13 +42,14 @@ from verify.scenes.values import (
     Steps,
     StepSize,
     Time,
-    distinct,
-    one_length,
-    steps_of,
+    check_distinct,
+    check_one_length,
+    count_steps,
 )
 
-_MOST_PERIODS, _MOST_POINTS, _MOST_STEPS = 10_000, 20_000, 10**8
-_MOST_PASSING = 2_000_000  # steps of all orbits by one map: minutes
+_MAX_PERIODS, _MAX_POINTS, _MAX_STEPS = 10_000, 20_000, 10**8
+# The limit on the steps of all orbits by one map together; they take minutes.
+_MAX_PASSING_STEPS = 2_000_000
 
 
 class Stroboscopic(Section):
@@ -59,7 +59,7 @@ class Stroboscopic(Section):
     """The time between two looks: a period of H in t, and a whole number of steps."""
     step_size: StepSize
     """The step size h."""
-    periods: Annotated[int, Field(ge=1, le=_MOST_PERIODS, strict=True)]
+    periods: Annotated[int, Field(ge=1, le=_MAX_PERIODS, strict=True)]
     """How many periods the orbits last."""
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=100)]
     """Where the orbits start, each once."""
@@ -72,26 +72,27 @@ class Stroboscopic(Section):
 
     @property
     def steps(self) -> int:
-        """Of one period."""
+        """The number of steps in one period."""
         return int(self.period / self.step_size)
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("initial_values", "schemes"):
-            distinct(name, getattr(self, name))
+            check_distinct(name, getattr(self, name))
+        # The phase of the drive would move if a period were no whole number of steps.
         count = Fraction(self.period / self.step_size)
         if count.denominator != 1:
-            shown = f"is no whole number of steps of {text(self.step_size)}: {text(count)}"
-            raise InputError("period", text(self.period), shown)
-        if self.periods * len(self.initial_values) > _MOST_POINTS:
-            problem = f"with {len(self.initial_values)} orbits, of {_MOST_POINTS} points at most"
+            problem = f"is no whole number of steps of {text(self.step_size)}: {text(count)}"
+            raise InputError("period", text(self.period), problem)
+        if self.periods * len(self.initial_values) > _MAX_POINTS:
+            problem = f"with {len(self.initial_values)} orbits, of {_MAX_POINTS} points at most"
             raise InputError("periods", self.periods, problem)
-        if self.periods * count > _MOST_STEPS:
-            raise InputError("periods", self.periods, f"are more than {_MOST_STEPS} steps")
+        if self.periods * count > _MAX_STEPS:
+            raise InputError("periods", self.periods, f"are more than {_MAX_STEPS} steps")
         return self
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """InputError where H at t + period is another function than at t."""
+        """Raise InputError where H at t + period is another function than at t."""
         check_period(hamiltonian, self.period)
 
 
@@ -125,22 +126,23 @@ class Poincare(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        one_length(self.time, self.steps)
+        check_one_length(self.time, self.steps)
         for name in ("initial_values", "schemes", "draw"):
-            distinct(name, getattr(self, name))
-        if self.count * len(self.initial_values) > _MOST_PASSING:
-            problem = f"for {len(self.initial_values)} orbits are more than {_MOST_PASSING} in all"
+            check_distinct(name, getattr(self, name))
+        if self.count * len(self.initial_values) > _MAX_PASSING_STEPS:
+            problem = (
+                f"for {len(self.initial_values)} orbits are more than {_MAX_PASSING_STEPS} in all"
+            )
             raise InputError("steps", self.count, problem)
         return self
 
     @property
     def count(self) -> int:
         """The number N of steps of each orbit."""
-        return steps_of(self.time, self.steps, self.step_size)
+        return count_steps(self.time, self.steps, self.step_size)
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """InputError where H depends on t, is of one degree of freedom, or has no such
-        coordinate."""
+        """Raise InputError where H depends on t, is planar, or lacks one of the coordinates."""
         formula, names = hamiltonian.formula, hamiltonian.coordinates
         if hamiltonian.degrees < 2:
             problem = "is of one degree of freedom; [[poincare]] takes p1 … pn and q1 … qn, n ≥ 2"
@@ -148,6 +150,6 @@ class Poincare(Section):
         if hamiltonian.time_dependent:
             problem = "depends on t; [[poincare]] takes an H that does not"
             raise InputError("hamiltonian", formula, problem)
-        for key, given in (("coordinate", self.coordinate), *(("draw", x) for x in self.draw)):
-            if given not in names:
-                raise InputError(key, given, f"is no coordinate; allowed: {', '.join(names)}")
+        for key, name in (("coordinate", self.coordinate), *(("draw", x) for x in self.draw)):
+            if name not in names:
+                raise InputError(key, name, f"is no coordinate; allowed: {', '.join(names)}")

@@ -1,4 +1,4 @@
-"""A paper's figures, to be made again from our own runs: what each shows, and of which claims.
+"""A paper's figures, to be made again from our own runs, with the claims drawn from them.
 
 [[figure]]
 label = "Figure 6"
@@ -37,7 +37,7 @@ class PaperFigure(Frozen):
     """The ids of the claims that the paper draws from it."""
 
     def check(self, scene: Scene, claims: Collection[str]) -> None:
-        """InputError where the scene has not what is to be shown, or a claim is unknown."""
+        """Raise InputError where the scene lacks the section to show, or a claim is unknown."""
         for claim in self.claims:
             if claim not in claims:
                 raise InputError("claims", claim, "is no id of a claim of this file")

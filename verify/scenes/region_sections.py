@@ -39,18 +39,20 @@ from verify.scenes.values import (
     Steps,
     StepSize,
     Time,
-    distinct,
-    steps_of,
+    check_distinct,
+    count_steps,
 )
 
-MOST_DIGITS = 1000  # of points: a curve has thousands of them
-FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too
+# The limit on the digits of points, of which a curve has thousands.
+MOST_DIGITS = 1000
+# The limit on a shape's coordinates, so that squares of its images' coordinates are floats too.
+FARTHEST = 1e100
 Corner = tuple[Number, Number]
 _ORIGIN = InitialValue(q=Fraction(0), p=Fraction(0))
 
 
 class _SizedShape(Frozen):
-    """A shape by its name, as a polygon or as an SVG path; then how large it is."""
+    """A shape by its name, as a polygon or as an SVG path, with its scale."""
 
     shape: str | None = None
     """A shape by its name; or `polygon`, or `path`."""
@@ -63,16 +65,16 @@ class _SizedShape(Frozen):
 
     @model_validator(mode="after")
     def _check_shape(self) -> Self:
-        given = [n for n in ("shape", "polygon", "path") if getattr(self, n) is not None]
-        if len(given) != 1:
-            raise InputError("flow", ", ".join(given), "give one of shape, polygon and path")
+        names = [n for n in ("shape", "polygon", "path") if getattr(self, n) is not None]
+        if len(names) != 1:
+            raise InputError("flow", ", ".join(names), "give one of shape, polygon and path")
         if self.scale <= 0:
             raise InputError("scale", text(self.scale), "must be greater than 0")
         return self
 
 
 class PlacedShape(_SizedShape):
-    """A shape where it is put in a plane."""
+    """A shape with its place in a plane."""
 
     centre: InitialValue = _ORIGIN
     """Where the shape's (0, 0) is put."""
@@ -84,31 +86,31 @@ class PlacedShape(_SizedShape):
         return self
 
     def to_shape(self) -> Shape:
-        """The shape where it is put."""
-        return _placed(self)
+        """Return the shape at its place."""
+        return _build_shape(self)
 
 
 # A plan asks for the same few shapes again for each map and number of steps.
 @lru_cache(maxsize=64)
-def _placed(given: PlacedShape) -> Shape:
-    if given.shape is not None:
-        made = shapes.get(given.shape)
-    elif given.polygon is not None:
+def _build_shape(placement: PlacedShape) -> Shape:
+    if placement.shape is not None:
+        shape = shapes.get(placement.shape)
+    elif placement.polygon is not None:
         from verify.scenes.shapes.user_outline import polygon
 
-        made = polygon(given.polygon)
+        shape = polygon(placement.polygon)
     else:
         from verify.scenes.shapes.user_outline import svg_path
 
-        made = svg_path(given.path or "")
-    return made.placed(given.centre.q, given.centre.p, given.scale)
+        shape = svg_path(placement.path or "")
+    return shape.place_at(placement.centre.q, placement.centre.p, placement.scale)
 
 
 @lru_cache(maxsize=64)
-def _reach(given: PlacedShape) -> Any:
-    """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
+def _reach(placement: PlacedShape) -> Any:
+    """Return the greatest |coordinate| of some points of each arc, in numbers of any size."""
     mp = MPContext()
-    arcs = (arc for outline in _placed(given).outlines for arc in outline.arcs)
+    arcs = (arc for outline in _build_shape(placement).outlines for arc in outline.arcs)
     points = (arc(mp, mp.mpf(k) / 2) for arc in arcs for k in (0, 1))
     return max(abs(x) for point in points for x in point)
 
@@ -145,11 +147,11 @@ class Flow(_SizedShape, Section):
             raise InputError("steps, times", NOT_GIVEN, "give one of the two")
         if self.digits > MOST_DIGITS:
             raise InputError("digits", self.digits, f"must be at most {MOST_DIGITS}")
-        distinct("steps", self.steps)
+        check_distinct("steps", self.steps)
         if len(set(self.counts)) < len(self.counts):
-            shown = ", ".join(map(text, self.times))
-            raise InputError("times", shown, "two of them make the same number of steps")
-        distinct("schemes", self.schemes)
+            times = ", ".join(map(text, self.times))
+            raise InputError("times", times, "two of them make the same number of steps")
+        check_distinct("schemes", self.schemes)
         if self.plane > min(map(len, self._lists)):
             problem = f"must be 1 … {min(map(len, self._lists))}, as q and p of centre have it"
             raise InputError("plane", self.plane, problem)
@@ -158,15 +160,18 @@ class Flow(_SizedShape, Section):
 
     @property
     def _lists(self) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
-        """q and p of the centre; the origin has as many as there are planes."""
+        """q and p of the centre; the default, the origin, has as many as there are planes."""
         if not isinstance(self.centre, InitialValue):
             return self.centre.q, self.centre.p
+        # The default centre has as many planes as `plane` requires, so that H decides which exist.
         planes = 1 if "centre" in self.model_fields_set else self.plane
         return (self.centre.q,) * planes, (self.centre.p,) * planes
 
     def point(self, hamiltonian: Hamiltonian) -> dict[str, Fraction]:
-        """The centre, by the names of H's coordinates. InputError where it, or the plane, is of
-        another number of degrees of freedom."""
+        """Return the centre by the names of H's coordinates.
+
+        Raises InputError where it, or the plane, is of another number of degrees of freedom.
+        """
         degrees = hamiltonian.degrees
         if self.plane > degrees:
             raise InputError("plane", self.plane, f"must be 1 … {degrees}: H is in (q1, p1), …")
@@ -176,12 +181,12 @@ class Flow(_SizedShape, Section):
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The numbers of steps, ascending; of a time T/h, rounded down."""
-        of_times = (steps_of(time, None, self.step_size) for time in self.times)
+        """The numbers of steps, ascending; for a time T, T/h rounded down."""
+        of_times = (count_steps(time, None, self.step_size) for time in self.times)
         return tuple(sorted((*self.steps, *of_times)))
 
     def placed_shape(self) -> PlacedShape:
-        """Where which shape is in its plane, without the rest."""
+        """Return the shape with its place in its plane alone."""
         q, p = (values[self.plane - 1] for values in self._lists)
-        own = {n: getattr(self, n) for n in _SizedShape.model_fields}
-        return PlacedShape(**own, centre=InitialValue(q=q, p=p))
+        sized = {n: getattr(self, n) for n in _SizedShape.model_fields}
+        return PlacedShape(**sized, centre=InitialValue(q=q, p=p))

@@ -1,5 +1,4 @@
-"""Sections of a scene that ask for runs of its schemes: a grid of them, separations, series; error
-against run time, and data to test against.
+"""Sections of a scene on runs of its schemes: a grid, separations, series, work and reference data.
 
 [work_precision]                       # error against run time
 time = 20                              # N is T/h, rounded down
@@ -30,7 +29,7 @@ from pydantic import Field, model_validator
 
 from verify import observables
 from verify import schemes as scheme_catalogue
-from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
     AUTO,
@@ -43,9 +42,9 @@ from verify.scenes.values import (
     StepSize,
     Time,
     auto_for_digits,
-    distinct,
-    one_length,
-    steps_of,
+    check_distinct,
+    check_one_length,
+    count_steps,
 )
 
 
@@ -81,13 +80,13 @@ class Grid(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        one_length(self.time, self.steps)
+        check_one_length(self.time, self.steps)
         for name in self.observables or ():
             if name not in observables.by_name():
-                raise unknown("observable", name, observables.by_name())
+                raise unknown_name("observable", name, observables.by_name())
         if self.growth and self.observables and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
-        distinct("step_sizes", self.step_sizes)
+        check_distinct("step_sizes", self.step_sizes)
         if len(set(self.initial_values)) < len(self.initial_values):
             raise InputError(
                 "initial_values", len(self.initial_values), "one of them stands twice; leave it out"
@@ -97,28 +96,30 @@ class Grid(Section):
         return self
 
     def steps_for(self, h: Fraction) -> int:
-        """N: as given, or the whole steps of size h that fit into `time`."""
-        return steps_of(self.time, self.steps, h)
+        """Return N: the number of steps, or the whole steps of size h that fit into `time`."""
+        return count_steps(self.time, self.steps, h)
 
     @property
     def in_the_plane(self) -> tuple[InitialValue, ...]:
-        """The initial values in one degree of freedom, for what there is of it alone."""
+        """The initial values in one degree of freedom, for computations that exist there alone."""
         return tuple(at for at in self.initial_values if isinstance(at, InitialValue))
 
     @property
     def runs(self) -> int:
-        """Those of one scheme."""
+        """The number of runs of one scheme."""
         return len(self.step_sizes) * len(self.initial_values)
 
     @cached_property
     def steps_in_all(self) -> int:
-        """Those of all runs of one scheme."""
+        """The number of steps of all runs of one scheme."""
         return sum(map(self.steps_for, self.step_sizes)) * len(self.initial_values)
 
 
 class SeparationOver(Section):
-    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`. In n
-    degrees of freedom in W, which has all steps' symplectic defects."""
+    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`.
+
+    In n degrees of freedom it is W, the symplectic defect of all steps, instead of Λ.
+    """
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
     """The step sizes h over which the two are compared."""
@@ -135,7 +136,7 @@ class SeparationOver(Section):
         return self
 
     def as_grid(self) -> Grid:
-        """The same as a grid, which checks it."""
+        """Return the section as a grid, which checks its values."""
         return Grid(
             time=self.time,
             steps=self.steps,
@@ -145,9 +146,9 @@ class SeparationOver(Section):
 
 
 class Series(Section):
-    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
+    """A run that is stored as a thinned series of at most `points` points.
 
-    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
+    `source`: the part of a paper that it repeats, for a caption; no result depends on it.
     """
 
     step_size: StepSize
@@ -171,16 +172,17 @@ class Series(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        one_length(self.time, self.steps)
-        steps_of(self.time, self.steps, self.step_size)
+        check_one_length(self.time, self.steps)
+        count_steps(self.time, self.steps, self.step_size)
         return self
 
     @property
     def count(self) -> int:
-        return steps_of(self.time, self.steps, self.step_size)
+        return count_steps(self.time, self.steps, self.step_size)
 
 
-MOST_STEPS = 10**8  # of a run that is repeated
+# The limit on the steps of a run that is timed several times.
+MOST_STEPS = 10**8
 
 
 class WorkPrecision(Section):
@@ -210,9 +212,10 @@ class WorkPrecision(Section):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "schemes", "number_systems", "digits"):
-            distinct(name, getattr(self, name))
-        own = self.number_systems_step_size
-        for h in (*self.step_sizes, *(() if own is None else (own,))):
+            check_distinct(name, getattr(self, name))
+        step_size = self.number_systems_step_size
+        # Each step size must make a permitted number of steps, also that of the number systems.
+        for h in (*self.step_sizes, *(() if step_size is None else (step_size,))):
             self.steps_for(h)
         if bool(self.number_systems) != bool(self.digits):
             raise InputError("number_systems, digits", NOT_GIVEN, "give both or neither")
@@ -223,11 +226,12 @@ class WorkPrecision(Section):
         return self
 
     def steps_for(self, h: Fraction) -> int:
-        """N = T/h, rounded down; the error is that at t = N·h."""
-        return steps_of(self.time, None, h, MOST_STEPS)
+        """Return N = T/h, rounded down; the error is that at t = N·h."""
+        return count_steps(self.time, None, h, MOST_STEPS)
 
 
-MOST_ROWS = 100_000  # of a section: they are held in memory, and checked one by one
+# The limit on a section's rows, which are held in memory and checked one by one.
+MOST_ROWS = 100_000
 _MOST_STEPS = 10**8
 _MOST_DIGITS = 1000
 Chosen = Annotated[int, Field(ge=0, le=_MOST_STEPS, strict=True)]
@@ -253,7 +257,7 @@ class Reference(Section):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "initial_values", "schemes"):
-            distinct(name, getattr(self, name))
+            check_distinct(name, getattr(self, name))
         if list(self.steps) != sorted(set(self.steps)):
             raise InputError("steps", list(self.steps), "must ascend")
         rows = len(self.step_sizes) * len(self.initial_values) * len(self.steps)

@@ -72,7 +72,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Frozen, Section
-from verify.scenes.mistakes.values import one_line
+from verify.scenes.mistakes.values import describe_first_error
 from verify.scenes.observables import check_observables
 from verify.scenes.orbit_sections import Poincare, Stroboscopic
 from verify.scenes.region_sections import Flow
@@ -81,7 +81,7 @@ from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stabilit
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
 from verify.scenes.values import Number, SchemeName, SystemName
 
-_OF_THE_PLANE = ("criteria", "stroboscopic")
+_PLANE_KEYS = ("criteria", "stroboscopic")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
 
 
@@ -138,84 +138,86 @@ class Scene(Frozen):
             raise InputError("system, hamiltonian", NOT_GIVEN, "give one of the two")
         exact = self.exact_hamiltonian()
         sections = self.sections()
-        also = (name for section in sections for name in getattr(section, "schemes", ()))
-        for name in dict.fromkeys((*self.schemes, *also)):
+        section_schemes = (name for section in sections for name in getattr(section, "schemes", ()))
+        for name in dict.fromkeys((*self.schemes, *section_schemes)):
             scheme_catalogue.get(name).step_map(exact)
         self._check_degrees(exact)
         if exact.time_dependent:
             if self.grid is not None and self.grid.growth:
                 problem = "depends on t; [grid] with growth = true is of orbits that close"
                 raise InputError("hamiltonian", exact.formula, problem)
-            for strobed in self.stroboscopic:
-                strobed.check_hamiltonian(exact)
+            for strobe in self.stroboscopic:
+                strobe.check_hamiltonian(exact)
         free = set(exact.symbols)
+        # A map varies its own parameter, which needs no value in the scene.
         if all(isinstance(section, StabilityMap) for section in sections):
-            free -= {over.parameter for over in self.stability_map}
+            free -= {stability_map.parameter for stability_map in self.stability_map}
         if sections and free:
             raise InputError(
                 "parameter", min(free), f"has no value; a run needs one, as {min(free)}=1"
             )
-        for over in self.stability_map:
-            if over.parameter not in exact.parameters:
-                known = ", ".join(exact.parameters) or "none"
-                raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
+        for stability_map in self.stability_map:
+            if stability_map.parameter not in exact.parameters:
+                names = ", ".join(exact.parameters) or "none"
+                raise InputError(
+                    "parameter", stability_map.parameter, f"H has no such; it has: {names}"
+                )
         return self
 
     def _check_degrees(self, exact: Hamiltonian) -> None:
-        """Whether starts are those of H, and in n degrees of freedom nothing of the plane is asked
-        for."""
+        """Raise InputError where a start or a section does not fit H's degrees of freedom."""
         if not exact.planar:
             self._check_no_plane(exact)
-        for passed in self.poincare:
-            passed.check_hamiltonian(exact)
-        for over in self.orbit_map:
-            over.check_hamiltonian(exact)
+        for surface in self.poincare:
+            surface.check_hamiltonian(exact)
+        for orbit_map in self.orbit_map:
+            orbit_map.check_hamiltonian(exact)
         for section in self.sections():
             starts = getattr(section, "initial_values", None) or ()
-            one = getattr(section, "initial_value", None)
-            for at in (*starts, *(() if one is None else (one,))):
-                point_of(exact, at.q, at.p)
+            single = getattr(section, "initial_value", None)
+            for start in (*starts, *(() if single is None else (single,))):
+                point_of(exact, start.q, start.p)
         for flow in self.flow:
             flow.point(exact)
         if self.grid is not None and self.grid.observables is not None:
             check_observables(exact, self.grid.observables)
 
     def _check_no_plane(self, exact: Hamiltonian) -> None:
-        """InputError where something of the plane is asked for."""
-        asked = {name for name in _OF_THE_PLANE if getattr(self, name)}
-        asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
-        of_form = any(over.symplectic_defect is not None for over in self.largest_step)
-        if self.separation or (self.grid and self.grid.separate) or of_form:
+        """Raise InputError where something is requested that exists in the plane alone."""
+        requested = {name for name in _PLANE_KEYS if getattr(self, name)}
+        requested |= {"grid.growth"} if self.grid and self.grid.growth else set()
+        limits_defect = any(section.symplectic_defect is not None for section in self.largest_step)
+        if self.separation or (self.grid and self.grid.separate) or limits_defect:
             check_observables(exact, ("symplectic_defect",))  # W is what is separated
-        if asked:
+        if requested:
             names = ", ".join(exact.coordinates)
-            problem = f"is of {names}; {min(asked)} takes p and q, one degree of freedom"
+            problem = f"is of {names}; {min(requested)} takes p and q, one degree of freedom"
             raise InputError("hamiltonian", exact.formula, problem)
 
     def sections(self) -> list[Section]:
-        """Every [section] and [[section]] of the scene, whatever it asks for."""
-        given = (getattr(self, name) for name in Scene.model_fields)
-        each = (x for value in given for x in (value if isinstance(value, tuple) else (value,)))
-        return [x for x in each if isinstance(x, Section)]
+        """Return every [section] and [[section]] of the scene."""
+        values = (getattr(self, name) for name in Scene.model_fields)
+        members = (x for value in values for x in (value if isinstance(value, tuple) else (value,)))
+        return [x for x in members if isinstance(x, Section)]
 
     def with_only(self, **sections: Any) -> "Scene":
-        """The same H and schemes with these sections, and no others."""
+        """Return a scene with the same H and schemes, and with these sections only."""
         empty = {name: field.default for name, field in Scene.model_fields.items()
                  if name not in _IDENTITY}  # fmt: skip
         return self.model_copy(update=empty | sections)
 
     @property
     def begin(self) -> Fraction | None:
-        """t0 where H depends on time; else None."""
+        """The start time t0 where H depends on time; else None."""
         return self.t0 if self.exact_hamiltonian().time_dependent else None
 
     def hamiltonian_fields(self) -> dict[str, Any]:
-        """H as a task has it: its formula, and its parameter values exactly."""
+        """Return H as the fields of a task: its formula, and its exact parameter values."""
         exact = self.exact_hamiltonian()
         return {"hamiltonian": exact.formula, "parameters": dict(exact.values)}
 
     def exact_hamiltonian(self) -> Hamiltonian:
-        """The Hamiltonian with the scene's parameter values."""
+        """Return the Hamiltonian with the scene's parameter values."""
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
         systems.check_is_formula(self.hamiltonian or "")
@@ -223,22 +225,22 @@ class Scene(Frozen):
 
 
 def load_scene(path: Path) -> Scene:
-    """The scene in a TOML file; InputError names the file, the key, its value and the problem."""
+    """Read a scene from a TOML file; InputError names the file, key, value and problem."""
     return scene_from(read_toml(path), path.name, default_name=path.stem)
 
 
 def scene_from_toml(content: str, name: str) -> Scene:
-    """The scene in a TOML text, which a file of that name held."""
+    """Read a scene from the text of a TOML file of that name."""
     return scene_from(toml_data(content, name), name, default_name=name)
 
 
 def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
-    """The scene from a mapping, as TOML gives it."""
+    """Build a scene from a mapping, as TOML gives it."""
     check_depth(data, "scene", source)
     try:
         scene = Scene.model_validate(dict(data))
     except ValidationError as error:
-        raise one_line(error, source, Scene) from None
+        raise describe_first_error(error, source, Scene) from None
     return (
         scene if scene.name else scene.model_copy(update={"name": without_controls(default_name)})
     )

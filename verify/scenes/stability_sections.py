@@ -1,4 +1,4 @@
-"""Sections of a scene that ask how stable its schemes are.
+"""Sections of a scene on the stability of its schemes.
 
 [[stability]]                          # each run judged: stable, drifts, unstable and whose fault
 name = "near the top"                  # part of the cases' names; may be left out
@@ -51,46 +51,49 @@ from verify.scenes.values import (
     Steps,
     StepSize,
     Time,
-    distinct,
-    one_length,
+    check_distinct,
+    check_one_length,
+    count_steps,
     read_range,
-    steps_of,
 )
 
-_MOST_STEPS = 10**9  # of a run that is judged, or of all orbits of a map: minutes
-_MOST_MAP_STEPS = 100_000
-_MOST_CELLS = 10_000
-_SHOWN = 3  # digits of a value in a range
+# The limit on the steps of a judged run, or of all orbits of a map together; they take minutes.
+_MAX_STEPS = 10**9
+_MAX_MAP_STEPS = 100_000
+_MAX_CELLS = 10_000
+# Significant digits of the values in a range.
+_DIGITS = 3
 
 
-def _evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
-    """Values evenly on a logarithmic scale, to three digits."""
+def _space_logarithmically(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
+    """Yield values evenly spaced on a logarithmic scale, to three digits."""
+    # 20 digits suffice: the values are rounded to three, and are then exact inputs.
     arithmetic = mpfr.make(20)
     log, exp = (arithmetic.functions[name] for name in ("log", "exp"))
     with arithmetic.context():
         first, last = (log(arithmetic.number(x)) for x in (low, high))
         sizes = [exp(first + (last - first) * k / (count - 1)) for k in range(count)]
     for size in sizes:
-        yield Fraction(decimal(arithmetic.exact(size), _SHOWN))
+        yield Fraction(decimal(arithmetic.exact(size), _DIGITS))
 
 
-_SPREAD = BeforeValidator(lambda given: read_range(given, positive, _evenly))
+_SPREAD = BeforeValidator(lambda value: read_range(value, positive, _space_logarithmically))
 Values = Annotated[tuple[Number, ...], _SPREAD, Field(min_length=1, max_length=200)]
 StepSizes = Annotated[tuple[StepSize, ...], _SPREAD, Field(min_length=1, max_length=200)]
 Schemes = Annotated[tuple[SchemeName, ...], Field(max_length=100)]
 
 
 class OfSchemes(Section):
-    """A section that may name schemes of its own."""
+    """A section that may name its own schemes."""
 
     schemes: Schemes = ()
     """The schemes; the scene's, where it is left out."""
 
     @model_validator(mode="after")
-    def _known(self) -> Self:
+    def _check_names(self) -> Self:
         for name in self.schemes:
             scheme_catalogue.get(name)
-        distinct("schemes", self.schemes)
+        check_distinct("schemes", self.schemes)
         return self
 
 
@@ -110,14 +113,14 @@ class Stability(OfSchemes):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        one_length(self.time, self.steps)
+        check_one_length(self.time, self.steps)
         for h in self.step_sizes:
             self.steps_for(h)
         return self
 
     def steps_for(self, h: Fraction) -> int:
-        """N: as given, or the whole steps of size h that fit into `time`."""
-        return steps_of(self.time, self.steps, h, _MOST_STEPS)
+        """Return N: the number of steps, or the whole steps of size h that fit into `time`."""
+        return count_steps(self.time, self.steps, h, _MAX_STEPS)
 
 
 class LargestStepOver(OfSchemes):
@@ -136,9 +139,9 @@ class LargestStepOver(OfSchemes):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("energy_error", "symplectic_defect"):
-            most = getattr(self, name)
-            if most is not None and most <= 0:
-                raise InputError(name, text(most), "must be greater than 0")
+            limit = getattr(self, name)
+            if limit is not None and limit <= 0:
+                raise InputError(name, text(limit), "must be greater than 0")
         return self
 
 
@@ -151,7 +154,7 @@ class StabilityMap(OfSchemes):
     """Its values; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     step_sizes: StepSizes
     """The step sizes, likewise."""
-    steps: Annotated[int, Field(ge=1, le=_MOST_MAP_STEPS, strict=True)]
+    steps: Annotated[int, Field(ge=1, le=_MAX_MAP_STEPS, strict=True)]
     """The number of steps of each run."""
     initial_value: Start
     """Where the runs start."""
@@ -159,18 +162,18 @@ class StabilityMap(OfSchemes):
     @model_validator(mode="after")
     def _check(self) -> Self:
         cells = len(self.values) * len(self.step_sizes)
-        if cells > _MOST_CELLS:
-            raise InputError("values, step_sizes", cells, f"cells; allowed: {_MOST_CELLS}")
+        if cells > _MAX_CELLS:
+            raise InputError("values, step_sizes", cells, f"cells; allowed: {_MAX_CELLS}")
         return self
 
 
-def _linearly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
+def _space_evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
     return (low + (high - low) * k / (count - 1) for k in range(count))
 
 
 Evenly = Annotated[
     tuple[Number, ...],
-    BeforeValidator(lambda given: read_range(given, rational, _linearly)),
+    BeforeValidator(lambda value: read_range(value, rational, _space_evenly)),
     Field(min_length=1, max_length=200),
 ]
 
@@ -200,16 +203,16 @@ class OrbitMap(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        one_length(self.time, self.steps)
+        check_one_length(self.time, self.steps)
         for name in ("axes", "across", "upwards", "schemes"):
-            distinct(name, getattr(self, name))
+            check_distinct(name, getattr(self, name))
         for scheme in self.schemes:
             scheme_catalogue.get(scheme)
         cells = len(self.across) * len(self.upwards)
-        if cells > _MOST_CELLS:
-            raise InputError("across, upwards", cells, f"cells; allowed: {_MOST_CELLS}")
-        if cells * self.count > _MOST_STEPS:
-            raise InputError("steps", self.count, f"of {cells} cells are more than {_MOST_STEPS}")
+        if cells > _MAX_CELLS:
+            raise InputError("across, upwards", cells, f"cells; allowed: {_MAX_CELLS}")
+        if cells * self.count > _MAX_STEPS:
+            raise InputError("steps", self.count, f"of {cells} cells are more than {_MAX_STEPS}")
         if self.beyond is not None and self.beyond <= 0:
             raise InputError("beyond", text(self.beyond), "must be greater than 0")
         return self
@@ -217,19 +220,20 @@ class OrbitMap(Section):
     @property
     def count(self) -> int:
         """The number N of steps of each orbit."""
-        return steps_of(self.time, self.steps, self.step_size)
+        return count_steps(self.time, self.steps, self.step_size)
 
     def farthest(self, hamiltonian: Hamiltonian) -> Fraction:
-        """Beyond which an orbit has left."""
+        """Return the size of a coordinate beyond which an orbit has left."""
         if self.beyond is not None:
             return self.beyond
         point = point_of(hamiltonian, self.initial_value.q, self.initial_value.p)
-        rest = (x for name, x in point.items() if name not in self.axes)
-        return 10 * max(map(abs, (*rest, *self.across, *self.upwards))) or Fraction(10)
+        others = (x for name, x in point.items() if name not in self.axes)
+        # An orbit that starts at the origin has the bound 10.
+        return 10 * max(map(abs, (*others, *self.across, *self.upwards))) or Fraction(10)
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """InputError where H has no such coordinate."""
+        """Raise InputError where H has no such coordinate."""
         names = hamiltonian.coordinates
-        for given in self.axes:
-            if given not in names:
-                raise InputError("axes", given, f"is no coordinate; allowed: {', '.join(names)}")
+        for name in self.axes:
+            if name not in names:
+                raise InputError("axes", name, f"is no coordinate; allowed: {', '.join(names)}")

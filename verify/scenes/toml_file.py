@@ -1,14 +1,12 @@
-"""A TOML text that may be anybody's, as data: its decimals stay texts, so that they are exact.
+"""Reading of TOML texts from any source as data, in which decimals stay exact, as texts.
 
-`tomllib` takes time and memory as the square of the parts of one dotted key, so that one of many
-parts is refused before it reads.
+`tomllib` takes time and memory as the square of the number of parts of a dotted key; keys with many
+parts are therefore refused before it reads. A text that is not TOML is reported with a hint on the
+line where the reader stopped.
 
-Why a text is not TOML: the mistake in the line where the reader stopped.
-
-On which lines of a TOML text its tables and keys stand, which `tomllib` does not tell.
-
-The text must have been read by `tomllib`: here it is only cut into statements, so that a bracket or
-a `#` in a string, and a value over several lines, mislead nobody.
+The lines of tables and keys, which `tomllib` does not report, are found by cutting a text that it
+has read into statements, so that a bracket or a `#` in a string, or a value over several lines, is
+not misread.
 """
 
 import re
@@ -40,7 +38,7 @@ PIECE = re.compile(
 
 @dataclass
 class Table:
-    """One table of the file: the line of its header, and of each key in it."""
+    """A table of the file: the line of its header, and the line of each key in it."""
 
     line: int
     keys: dict[str, int] = field(default_factory=dict)
@@ -48,12 +46,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Lines:
-    """The tables by name; those of an array of tables in their order. The root is under ""."""
+    """The tables by name, those of an array of tables in their order; the root is under ""."""
 
     tables: dict[str, list[Table]]
 
-    def of(self, name: str, index: int = 0, *keys: str) -> int | None:
-        """The line of the first of these keys that is there, else of the table's header."""
+    def line_of(self, name: str, index: int = 0, *keys: str) -> int | None:
+        """Return the line of the first of these keys that exists, else of the table's header."""
         tables = self.tables.get(name, [])
         if index >= len(tables):
             return self.tables[""][0].keys.get(name)  # written as one value: name = [{…}, …]
@@ -61,42 +59,42 @@ class Lines:
         return next((table.keys[key] for key in keys if key in table.keys), table.line)
 
     def has(self, name: str, index: int, key: str) -> bool:
-        """Whether that table, the root under "", has the key."""
+        """Return True if the table (the root is under "") has the key."""
         tables = self.tables.get(name, [])
         return index < len(tables) and key in tables[index].keys
 
 
 def lines_of(text: str) -> Lines:
-    """The lines, counted from 1, of a text that `tomllib` reads."""
+    """Return the lines, counted from 1, of a text that `tomllib` has read."""
     tables: dict[str, list[Table]] = {"": [Table(1)]}
-    table, inside = tables[""][0], ""
+    table, subtable = tables[""][0], ""
     for line, statement in _statements(text):
         if statement.startswith("["):
-            path = list(_path(statement))
+            path = list(_names_in(statement))
             if len(path) == 1:
-                table, inside = Table(line), ""
+                table, subtable = Table(line), ""
                 tables.setdefault(path[0], []).append(table)
             else:  # [claim.parameters] is a key of the last claim
-                inside = path[1]
+                subtable = path[1]
                 table = tables.setdefault(path[0], [Table(line)])[-1]
-                table.keys.setdefault(inside, line)
-        elif not inside:
-            table.keys.setdefault(next(_path(f"{_key(statement)} = 0")), line)
+                table.keys.setdefault(subtable, line)
+        elif not subtable:
+            table.keys.setdefault(next(_names_in(f"{_key_of_statement(statement)} = 0")), line)
     return Lines(tables)
 
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:
-    """Each header, and each key with its value, with the line that it begins on."""
-    line, begun, depth, parts = 1, 1, 0, ""
+    """Yield each header, and each key with its value, with the line on which it begins."""
+    line, first_line, depth, parts = 1, 1, 0, ""
     header = False
     for piece in _pieces(text.replace("\r\n", "\n") + "\n"):
         if piece == "\n" and (depth == 0 or header):
             if parts.strip():
-                yield begun, parts.strip()
+                yield first_line, parts.strip()
             parts, depth, header = "", 0, False
         elif not piece.startswith("#"):
             if not parts.strip():
-                begun, parts = line, ""
+                first_line, parts = line, ""
                 header = piece == "["
             depth += {"[": 1, "{": 1, "]": -1, "}": -1}.get(piece, 0)
             parts += piece
@@ -107,8 +105,8 @@ def _pieces(text: str) -> Iterator[str]:
     return (piece[0] for piece in PIECE.finditer(text))
 
 
-def _key(statement: str) -> str:
-    """What stands before the = of a key with its value."""
+def _key_of_statement(statement: str) -> str:
+    """Return the key of a statement, the text before its =."""
     key = ""
     for piece in _pieces(statement):
         if piece == "=":
@@ -117,8 +115,8 @@ def _key(statement: str) -> str:
     return key
 
 
-def _path(statement: str) -> Iterator[str]:
-    """The names of a header or of a dotted key, from the outside in."""
+def _names_in(statement: str) -> Iterator[str]:
+    """Yield the names in a header or in a dotted key, from the outside in."""
     value: Any = tomllib.loads(statement)
     while value:
         value = value[0] if isinstance(value, list) else value
@@ -131,14 +129,15 @@ def _path(statement: str) -> Iterator[str]:
 _AT_LINE = re.compile(r"at line (\d+)")
 _BARE = re.compile(r"""\s*([A-Za-z0-9_.-]+)\s*=\s*([^\s"'\[{#][^#,}\]]*)""")
 _QUOTES = frozenset("“”„‘’«»")
-_LONGEST = 40  # characters of what is quoted
+# Characters of a value that is quoted in a message.
+_MAX_QUOTED = 40
 
 
 def toml_mistake(content: str, problem: str) -> str:
-    """The reader's problem, and what to write where the mistake is a known one."""
-    found = _AT_LINE.search(problem)
+    """Return the reader's problem, with a hint where the mistake is a common one."""
+    place = _AT_LINE.search(problem)
     lines = content.splitlines()
-    line = lines[int(found[1]) - 1] if found and 0 < int(found[1]) <= len(lines) else ""
+    line = lines[int(place[1]) - 1] if place and 0 < int(place[1]) <= len(lines) else ""
     hint = _hint(content, line, problem)
     return f"is not TOML: {problem}{hint and '; ' + hint}"
 
@@ -166,24 +165,24 @@ def _hint(content: str, line: str, problem: str) -> str:
     bare = _BARE.match(line)
     if not bare:
         return ""
-    key, value = bare[1], bare[2].strip()[:_LONGEST]
+    key, value = bare[1], bare[2].strip()[:_MAX_QUOTED]
     if value in ("True", "False"):
         return f"write {key} = {value.lower()}"
     return f'write a text in quotation marks: {key} = "{value}"'
 
 
-_DEEPER = f"is nested deeper than {MAX_DEPTH}"
+_TOO_DEEP = f"is nested deeper than {MAX_DEPTH}"
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """The file's data. InputError names the file, and what is wrong."""
+    """Return the file's data; InputError names the file and the problem."""
     return toml_data(read_text(path), str(path))
 
 
 def toml_data(content: str, source: str) -> dict[str, Any]:
-    """The text's data. InputError names the source, and what is wrong."""
+    """Return the text's data; InputError names the source and the problem."""
     if any(token["deep"] for token in PIECE.finditer(content)):
-        raise InputError("file", source, _DEEPER)
+        raise InputError("file", source, _TOO_DEEP)
     try:
         data = tomllib.loads(content, parse_float=str)
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
@@ -194,22 +193,23 @@ def toml_data(content: str, source: str) -> dict[str, Any]:
 
 
 def check_depth(data: Any, name: str, source: str) -> None:
-    """InputError, of a source that is called so, where data are nested too deep."""
+    """Raise InputError, which names the source, where data are nested too deep."""
+    # Level by level, since a recursive walk of hostile data could exhaust the stack.
     level = [data]
     for _ in range(MAX_DEPTH):
         level = [x for v in level if isinstance(v, dict) for x in v.values()] + [
             x for v in level if isinstance(v, list) for x in v
         ]
     if level:
-        raise InputError(name, source, _DEEPER)
+        raise InputError(name, source, _TOO_DEEP)
 
 
 def _check_texts(data: Any, source: str, where: str = "") -> None:
-    """InputError where a key or a text holds a character that a terminal would act on."""
+    """Raise InputError where a key or a text holds a control character of terminals."""
     if isinstance(data, str):
-        if found := CONTROL.search(data):
+        if control := CONTROL.search(data):
             instead = "write a text with a \\ in it between '…'"
-            problem = f"holds U+{ord(found[0]):04X}, a control character; {instead}"
+            problem = f"holds U+{ord(control[0]):04X}, a control character; {instead}"
             raise InputError(f"{source}: {where}", data, problem)
     elif isinstance(data, dict):
         for key, value in data.items():
@@ -220,8 +220,8 @@ def _check_texts(data: Any, source: str, where: str = "") -> None:
             _check_texts(value, source, where)
 
 
-def tables_of(file: str, key: str, given: Any) -> list[Any]:
-    """The tables that stand under the key in a file of that name; InputError where none do."""
-    if not isinstance(given, list):
-        raise InputError(f"{file}: {key}", given, f"write [[{key}]] tables")
-    return given
+def tables_of(file: str, key: str, tables: Any) -> list[Any]:
+    """Return the tables under the key in a file of that name; InputError if they are no list."""
+    if not isinstance(tables, list):
+        raise InputError(f"{file}: {key}", tables, f"write [[{key}]] tables")
+    return tables

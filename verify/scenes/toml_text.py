@@ -1,4 +1,4 @@
-"""A scene as the TOML text that `verify.scenes.scene` reads: the same scene comes back, exactly."""
+"""A scene as a TOML text, from which `verify.scenes.scene` reads exactly the same scene."""
 
 import json
 from collections.abc import Mapping
@@ -9,10 +9,11 @@ from verify.scenes.scene import Scene
 
 
 def scene_text(scene: Scene, *, comment: str = "") -> str:
-    """The scene's TOML, with what it does not ask for left out, under a comment of some lines."""
+    """Return the scene's TOML without defaults, below the lines of a comment."""
     data = scene.model_dump(mode="json", exclude_defaults=True)
     lines = [f"# {without_controls(line)}".rstrip() for line in comment.splitlines()]
     tables = {k: v for k, v in data.items() if _is_table(k, v)}
+    # TOML requires plain keys before the first table.
     lines += [f"{name} = {_value(x)}" for name, x in data.items() if name not in tables]
     for name, x in tables.items():
         for table in x if isinstance(x, list) else [x]:
@@ -22,9 +23,9 @@ def scene_text(scene: Scene, *, comment: str = "") -> str:
 
 
 def _is_table(name: str, value: Any) -> bool:
-    """Whether it is a section of its own, not the mapping of parameters."""
-    whole = isinstance(value, Mapping) and name != "parameters"
-    return whole or (isinstance(value, list) and bool(value) and isinstance(value[0], Mapping))
+    """Return True if the value is a section of its own, not the mapping of parameters."""
+    is_mapping = isinstance(value, Mapping) and name != "parameters"
+    return is_mapping or (isinstance(value, list) and bool(value) and isinstance(value[0], Mapping))
 
 
 def _value(x: Any) -> str:

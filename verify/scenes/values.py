@@ -1,4 +1,4 @@
-"""The values that a scene's keys take: exact numbers, counts, initial values."""
+"""The values of a scene's keys: exact numbers, counts, initial values."""
 
 from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
@@ -10,7 +10,7 @@ from verify import arithmetic as number_systems
 from verify import schemes
 from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.drawable import drawn_by
-from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians import systems
 from verify.hamiltonians.coordinates import MOST_DEGREES
 from verify.scenes.frozen import Frozen
@@ -19,7 +19,7 @@ MAX_STEPS = 10**12
 MAX_DIGITS = 10_000
 AUTO = number_systems.AUTO
 
-# Marks which of two models a table is read as; what names a key leaves it out.
+# Tags of the two models as which a table can be read; messages leave them out of keys.
 OF_ONE, OF_SEVERAL = "«one»", "«several»"
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
@@ -39,60 +39,63 @@ Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 
-def _known_arithmetic(name: str) -> str:
+def _check_arithmetic(name: str) -> str:
     if name != AUTO and name not in number_systems.names():
-        raise unknown(
+        raise unknown_name(
             "arithmetic", name, (AUTO, *number_systems.names()), aliases=number_systems.ALIASES
         )
     return name
 
 
-ArithmeticName = Annotated[str, AfterValidator(_known_arithmetic)]
+ArithmeticName = Annotated[str, AfterValidator(_check_arithmetic)]
 
 
 def auto_for_digits(data: Any) -> Any:
-    """A section's keys, with `arithmetic` auto where digits are asked for and no arithmetic is."""
-    wanted = isinstance(data, dict) and "digits" in data and "arithmetic" not in data
-    return {**data, "arithmetic": AUTO} if wanted else data
+    """Return a section's keys, with `arithmetic` auto where only digits are requested."""
+    needs_auto = isinstance(data, dict) and "digits" in data and "arithmetic" not in data
+    return {**data, "arithmetic": AUTO} if needs_auto else data
 
 
 def read_range(
-    given: Any,
+    value: Any,
     read: Callable[[Any, str], Fraction],
     values: Callable[[Fraction, Fraction, int], Iterable[Fraction]],
 ) -> Any:
-    """A table with from, to and count as the list of `values` that it stands for; else as it is.
+    """Return the `values` that a table with from, to and count stands for; other data unchanged.
 
-    `read`: how its ends are read, by their names.
+    `read`: reads an end by its value and its name.
     """
-    if not isinstance(given, dict):
-        return given
-    if set(given) != {"from", "to", "count"}:
-        raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
-    low, high = read(given["from"], "from"), read(given["to"], "to")
-    count = whole("count", given["count"], 2, 200)
+    if not isinstance(value, dict):
+        return value
+    if set(value) != {"from", "to", "count"}:
+        raise InputError("range", ", ".join(map(str, value)), "allowed: from, to, count")
+    low, high = read(value["from"], "from"), read(value["to"], "to")
+    count = whole("count", value["count"], 2, 200)
     if low >= high:
-        raise InputError("from, to", given["from"], "from must be less than to")
+        raise InputError("from, to", value["from"], "from must be less than to")
     return tuple(values(low, high, count))
 
 
-def one_length(time: Fraction | None, steps: int | None) -> None:
-    """InputError unless one of the two says how long a run is."""
+def check_one_length(time: Fraction | None, steps: int | None) -> None:
+    """Raise InputError unless exactly one of the two gives the length of a run."""
     if (time is None) == (steps is None):
         raise InputError("time, steps", NOT_GIVEN, "give one of the two")
 
 
-def distinct(name: str, given: Collection[object]) -> None:
-    """InputError where one of the values under this key stands twice."""
-    if len(set(given)) < len(given):
-        raise InputError(name, len(given), "one of them stands twice; leave it out")
+def check_distinct(name: str, values: Collection[object]) -> None:
+    """Raise InputError where one of the values under this key occurs twice."""
+    if len(set(values)) < len(values):
+        raise InputError(name, len(values), "one of them stands twice; leave it out")
 
 
-def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = MAX_STEPS) -> int:
-    """N: as given, or T/h rounded down to a whole number; InputError beyond `most`.
+def count_steps(
+    time: Fraction | None, steps: int | None, h: Fraction, most: int = MAX_STEPS
+) -> int:
+    """Return N: `steps`, or T/h rounded down to a whole number; InputError beyond `most`.
 
-    That is the rule wherever a time is given: a run ends at t = N·h, and `rounded_down` says so.
+    This rule holds for every time: a run ends at t = N·h, which `describe_rounding` reports.
     """
+    # Exact rationals: 1 // 0.1 is 10 here, where floats give 9.
     count = steps if time is None else time // h
     if count is None or not 1 <= count <= most:
         raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {most}")
@@ -100,7 +103,7 @@ def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = 
 
 
 def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
-    """N, as it is given or as many whole steps as fit into the time.
+    """Return N: `steps`, or the number of whole steps that fit into the time.
 
     >>> steps_from(None, 1, 0.1), steps_from(None, 1, 0.3)
     (10, 3)
@@ -117,22 +120,24 @@ def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
     return count
 
 
-def rounded_down(time: Fraction | None, step_sizes: Iterable[Fraction]) -> str:
-    """What is said where T/h is not a whole number for some of the h; empty where it is for all.
+def describe_rounding(time: Fraction | None, step_sizes: Iterable[Fraction]) -> str:
+    """Return a sentence on the h for which T/h is not a whole number; "" where there are none.
 
-    >>> rounded_down(Fraction(10), [Fraction(3, 10), Fraction(1, 10)])
+    >>> describe_rounding(Fraction(10), [Fraction(3, 10), Fraction(1, 10)])
     'T/h is rounded down: h = 0.3 gives N = 33, and t = 9.9 at the end'
     """
-    rest = [h for h in dict.fromkeys(step_sizes) if time is not None and time % h]
-    if time is None or not rest:
+    inexact = [h for h in dict.fromkeys(step_sizes) if time is not None and time % h]
+    if time is None or not inexact:
         return ""
-    told = (f"h = {text(h)} gives N = {time // h}, and t = {text(time // h * h)}" for h in rest)
-    return f"T/h is rounded down: {'; '.join(told)} at the end"
+    clauses = (
+        f"h = {text(h)} gives N = {time // h}, and t = {text(time // h * h)}" for h in inexact
+    )
+    return f"T/h is rounded down: {'; '.join(clauses)} at the end"
 
 
 @drawn_by("initial_values")
 class InitialValue(Frozen):
-    """Where a run starts, exactly."""
+    """The exact initial value of a run."""
 
     q: Number
     """The displacement."""
@@ -141,7 +146,7 @@ class InitialValue(Frozen):
 
 
 class InitialState(Frozen):
-    """Where a run in n degrees of freedom starts, exactly."""
+    """The exact initial value of a run in n degrees of freedom."""
 
     q: Several
     """The displacements, q1 … qn."""
@@ -149,13 +154,13 @@ class InitialState(Frozen):
     """The momenta, p1 … pn."""
 
 
-def _which(given: Any) -> str:
-    """Whether a table, or a model, has lists."""
-    q = given.get("q", given.get("p")) if isinstance(given, dict) else getattr(given, "q", None)
+def _count_tag(value: Any) -> str:
+    """Return the tag of a table or a model: of several where it has lists, else of one."""
+    q = value.get("q", value.get("p")) if isinstance(value, dict) else getattr(value, "q", None)
     return OF_SEVERAL if isinstance(q, list | tuple) else OF_ONE
 
 
 Start = Annotated[
     Annotated[InitialValue, Tag(OF_ONE)] | Annotated[InitialState, Tag(OF_SEVERAL)],
-    Discriminator(_which),
+    Discriminator(_count_tag),
 ]

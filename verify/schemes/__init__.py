@@ -3,15 +3,15 @@
 A file of `methods/` defines `SCHEME`, its one Scheme, whose name is the file's; or, for a family,
 `EXAMPLES`, some of the names it answers to, and `make(name)`, which returns the Scheme of that name
 or None. The name of a file is the beginning of the names it answers to; those in `methods/user/`
-answer to texts of the users' own. `ALIASES` are other names that the scheme goes by. Adding a
-scheme is adding one file.
+answer to texts that users write. `ALIASES` are other names of the scheme. Adding a scheme is adding
+one file.
 """
 
 from functools import cache
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import InputError, plain_name, unknown
+from verify.errors import InputError, plain_name, unknown_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,7 +24,7 @@ _USERS = "user"
 
 @cache
 def names() -> tuple[str, ...]:
-    """A name for each scheme; a family is shown by its first members."""
+    """Return a name for each scheme; a family is represented by its first members."""
     return tuple(
         name for file in _FILES.names for name in getattr(_FILES.module(file), "EXAMPLES", [file])
     )
@@ -32,20 +32,21 @@ def names() -> tuple[str, ...]:
 
 @cache
 def get(name: str) -> "Scheme":
-    """The scheme of that name, as `canonical` reads it; InputError where there is none."""
+    """Return the scheme of that name, as `canonical` reads it; InputError where there is none."""
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
+    # Importing every file would load sympy for each scheme: only those whose names fit are tried.
     for file in _candidates(canonical(name)):
-        scheme = _made(file, canonical(name))
+        scheme = _scheme_from_file(file, canonical(name))
         if scheme is not None:
             return scheme
-    own = "; code of your own goes with verify check-integrator" if ".py" in name else ""
-    raise unknown("scheme", name, names(), f", …{own}", aliases())
+    advice = "; code of your own goes with verify check-integrator" if ".py" in name else ""
+    raise unknown_name("scheme", name, names(), f", …{advice}", aliases())
 
 
 @cache
 def family(name: str) -> str:
-    """The family of the scheme of that name: the folder of `methods/` that its file lies in.
+    """Return the family of the scheme of that name: the folder of `methods/` that its file lies in.
 
     Raises InputError where there is no such scheme.
 
@@ -53,20 +54,20 @@ def family(name: str) -> str:
     ('splitting', 'taylor')
     """
     plain = canonical(get(name).name)
-    file = next(file for file in _candidates(plain) if _made(file, plain) is not None)
+    file = next(file for file in _candidates(plain) if _scheme_from_file(file, plain) is not None)
     return _FILES.folder(file).replace("_", "-")
 
 
 @cache
 def aliases() -> "Mapping[str, str]":
-    """Other names that schemes go by, each with the name of its scheme."""
+    """Return other names of schemes, each with the name of its scheme."""
     ours = filter(_is_ours, _FILES.names)
     return {a: file for file in ours for a in getattr(_FILES.module(file), "ALIASES", ())}
 
 
 @cache
 def canonical(name: str) -> str:
-    """The name of the scheme that goes by this one: in any case, with spaces, an alias.
+    """Return the name of the scheme with this alias: in any case, with spaces.
 
     The name itself where there is none, and of a text of the users' own.
 
@@ -76,8 +77,8 @@ def canonical(name: str) -> str:
     if not isinstance(name, str):  # `get` says so
         return name
     plain = plain_name(name)
-    own = [file for file in _FILES.names if plain.startswith(file) and _is_ours(file)]
-    if any(_answers(file, plain) for file in own):
+    files = [file for file in _FILES.names if plain.startswith(file) and _is_ours(file)]
+    if any(_answers(file, plain) for file in files):
         return plain
     return aliases().get(plain, name)
 
@@ -88,19 +89,19 @@ def _is_ours(file: str) -> bool:
 
 def _answers(file: str, name: str) -> bool:
     try:
-        return _made(file, name) is not None
+        return _scheme_from_file(file, name) is not None
     except InputError:  # a member of the family that it cannot make; it will say so
         return True
 
 
 def _candidates(name: str) -> list[str]:
-    """The files that may answer to the name: `lie2` imports `lie.py` and no other."""
+    """Return the files that may answer to the name: `lie2` imports `lie.py` and no other."""
     users = [file for file in _FILES.names if not _is_ours(file)]
     return [*(f for f in _FILES.names if name.startswith(f) and _is_ours(f)), *users]
 
 
-def _made(file: str, name: str) -> "Scheme | None":
-    """What the file makes of the name; None where it does not answer to it."""
+def _scheme_from_file(file: str, name: str) -> "Scheme | None":
+    """Return the scheme that the file has for the name; None where it does not answer to it."""
     module = _FILES.module(file)
     scheme: Scheme | None
     if hasattr(module, "SCHEME"):

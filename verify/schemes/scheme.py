@@ -1,4 +1,4 @@
-"""What an integration scheme is: a name, its claims as data, and how it makes a step map."""
+"""An integration scheme: a name, its claims as data, and the way it makes a step map."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import BySeries
 from verify.schemes.maps import kind_of
-from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.by_formulas import step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
 
 
@@ -22,7 +22,7 @@ class Scheme:
     that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
     −h undoes that of h. `source`: where it is defined.
     `every_h`: the scheme as it is for every H; None where it is known for one H at a time.
-    `formulas`: those of a user's own map, by what they give: p_next and q_next, or p1_next, ….
+    `formulas`: those of a user's own map, by names: p_next and q_next, or p1_next, ….
     `build`: how its map is made, where that is not by `every_h` or by `formulas`; it raises
     InputError for an H that the scheme does not take.
     """
@@ -43,28 +43,28 @@ class Scheme:
 
     @property
     def needs_separable(self) -> bool:
-        """Whether it is known to be for H = T(p) + V(q) only."""
+        """True if the scheme is defined for H = T(p) + V(q) only."""
         return bool(getattr(self.every_h, "separable", False))
 
     @property
     def evaluations(self) -> dict[str, int] | None:
-        """Evaluations of H_p and of H_q in a step, of a scheme that is made of such."""
+        """The evaluations of H_p and of H_q in a step, of a scheme that is made of such."""
         return getattr(self.every_h, "evaluations", None)
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
-        """The scheme's map for H. Raises InputError for an H that it does not take."""
+        """Return the scheme's map for H. Raises InputError for an H that it does not take."""
         return _step_map(self, hamiltonian)
 
 
-# A scene asks for the same map when it is read, when it is proved and when it is run, and what is
-# made of a map is found again by the map. Few, since a map keeps what was derived of it.
+# A scene needs the same map when it is read, proved and run, and results derived from a map are
+# cached by the map. The cache is small, since a map keeps all that was derived from it.
 @lru_cache(maxsize=32)
 def _step_map(scheme: Scheme, hamiltonian: Hamiltonian) -> StepMap:
     if scheme.build is not None:
         return scheme.build(hamiltonian)
     if scheme.formulas:
-        return map_by_formulas(hamiltonian, scheme.formulas)
-    made: StepMap = kind_of(scheme.every_h, scheme.name).build(
+        return step_map_from_formulas(hamiltonian, scheme.formulas)
+    step_map: StepMap = kind_of(scheme.every_h, scheme.name).build(
         scheme.every_h, hamiltonian, scheme.name
     )
-    return made
+    return step_map

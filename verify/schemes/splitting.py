@@ -28,12 +28,13 @@ def splitting(
     nearby: Nearby | None = None,
     nearby_in_time: Nearby | None = None,
 ) -> Scheme:
-    """The scheme that kicks and drifts by these parts of h in turn; every one preserves area.
+    """Return the scheme that kicks and drifts by these parts of h in turn; every one preserves
+    area.
 
     `times`: that of each part, in parts of h; left out, the two clocks' own. `nearby`,
     `nearby_in_time`: see `verify.schemes.conditions.splitting_conditions.Splitting`.
     """
-    own = times if any(x is not None for x in times) else ()
+    clock_times = times if any(x is not None for x in times) else ()
     return Scheme(
         name=name,
         order=order,
@@ -41,13 +42,13 @@ def splitting(
         symmetric=symmetric,
         source=source,
         every_h=Splitting(
-            tuple(parts), times=tuple(own), nearby=nearby, nearby_in_time=nearby_in_time
+            tuple(parts), times=tuple(clock_times), nearby=nearby, nearby_in_time=nearby_in_time
         ),
     )
 
 
 def alternating(first: str, sizes: Iterable[sympy.Expr | Fraction]) -> tuple[Part, ...]:
-    """Kicks and drifts in turn, `first` one of them, of these parts of h."""
+    """Return kicks and drifts in turn, beginning with `first`, of these parts of h."""
     kinds = cycle([first, *(kind for kind in LETTERS if kind != first)])
     return tuple(zip(kinds, map(_exact, sizes), strict=False))
 
@@ -57,15 +58,18 @@ def _exact(size: sympy.Expr | Fraction) -> sympy.Expr | Fraction:
 
 
 def palindrome(first: str, half: Sequence[sympy.Expr | Fraction]) -> tuple[Part, ...]:
-    """As `alternating`, forth and back again; the last of `half` stands once, in the middle."""
+    """Return `alternating`, forth and back again; the last of `half` stands once, in the middle."""
     return alternating(first, [*half, *half[-2::-1]])
 
 
-def composed(first: str, steps: Sequence[sympy.Expr]) -> tuple[Part, ...]:
-    """Störmer–Verlet steps of these parts of h, each half a `first`, the other, half a `first`.
+def compose(first: str, steps: Sequence[sympy.Expr]) -> tuple[Part, ...]:
+    """Return Störmer–Verlet steps of these parts of h, each half a `first`, the other, half a
+    `first`.
 
     Neighbouring halves are one part.
     """
+    # The half parts of neighbouring steps a and b are of the same kind, and make one part (a +
+    # b)/2.
     inner = [
         size
         for step, after in zip(steps, [*steps[1:], None], strict=True)

@@ -6,8 +6,8 @@
     @given(strategies.hamiltonians(separable=True), strategies.initial_values())
     def test_mine(hamiltonian, start): ...
 
-All numbers are exact rationals. Arguments are looked at when a strategy is made: InputError says
-what is wrong with one. `st.from_type` knows the types that are drawn here: see `verify.from_type`.
+All numbers are exact rationals. Arguments are checked when a strategy is built; InputError names a
+bad one. `st.from_type` knows the types that are drawn here: see `verify.from_type`.
 """
 
 from verify.strategies.hamiltonians import KINDS as KINDS

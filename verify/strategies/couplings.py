@@ -1,9 +1,10 @@
 """Terms that couple two degrees of freedom, i and j: of q alone, of p alone, or of both.
 
-Those of q alone or of p alone leave H = T + V; of the others a mixed derivative such as
-∂²H/∂p1∂q2 is not the zero function. What is known of each: whether it is bounded below where its
-coefficient is positive or it is bounded (`confined`), so that H → ∞ in every direction stays so;
-and whether it is bounded on every axis (`flat`), so that an H that is open along one stays so.
+Those of q alone or of p alone leave H = T + V; the others have a mixed derivative such as
+∂²H/∂p1∂q2 that is not the zero function. Two facts are stated of each: it is `confined` where it
+is bounded below, by a positive coefficient or because it is bounded, so that H → ∞ in every
+direction stays so; and `flat` where it is bounded on every axis, so that an H that is open along
+one stays so.
 """
 
 import re
@@ -16,10 +17,10 @@ _VARIABLE = re.compile(r"\b[pqPQ]\b")
 
 
 class Coupling(NamedTuple):
-    """A term with p, q of one degree and P, Q of the other; of which degree its polynomial is.
+    """A term with q, p of one degree of freedom and Q, P of the other.
 
     `numerators`: one is drawn, with the numbers in it. `denominator`: a number is added to it.
-    `positive`: whether the coefficient has to be.
+    `degree`: that of the polynomial. `positive`: the coefficient has to be positive.
     """
 
     kind: str
@@ -31,20 +32,21 @@ class Coupling(NamedTuple):
     confined: bool = False
     flat: bool = True
 
-    def sides(self, d: Drawer) -> tuple[str, str]:
-        """A numerator and a denominator, drawn."""
-        numerator = d.filled(d.pick(self.numerators))
+    def draw_sides(self, d: Drawer) -> tuple[str, str]:
+        """Draw a numerator and a denominator."""
+        numerator = d.fill_braces(d.pick(self.numerators))
         if not self.denominator:
             return numerator, ""
         return numerator, f"{d.whole(1, min(d.limits.size, 9))} + {self.denominator}"
 
-    def term(self, d: Drawer, i: int, j: int) -> str:
-        """The term of degrees i and j, drawn, with its sign."""
-        term, sides = Sum(), self.sides(d)
-        term.add(d.positive() if self.positive else d.signed(), *sides)
-        return signed(numbered(term.written({}), i, j))
+    def draw_term(self, d: Drawer, i: int, j: int) -> str:
+        """Draw the term of degrees of freedom i and j, with its sign."""
+        term, sides = Sum(), self.draw_sides(d)
+        term.add(d.positive() if self.positive else d.nonzero(), *sides)
+        return with_sign(number_variables(term.to_text({}), i, j))
 
 
+# `positive` stands where a term is ≥ 0 and only a positive coefficient keeps H bounded below.
 _COUPLINGS = (
     Coupling("polynomial", True, ("q*Q", "p*P"), degree=2),
     Coupling("polynomial", True, ("(q - Q)**2",), degree=2, positive=True, confined=True,
@@ -72,30 +74,33 @@ _COUPLINGS = (
 def couplings(
     kind: str, degree: int, *, separable: bool, bounded: bool | None
 ) -> Iterator[Coupling]:
-    """Those that an H of the kind may have, of a polynomial up to the degree, the simplest first.
+    """Yield the couplings that an H of the kind may have, the simplest first.
 
-    Of an H that is not of one variable each, those of both variables come first.
+    Polynomial ones are of the given degree at most. Where H need not be separable, those of both
+    q and p come first.
     """
     for each in sorted(_COUPLINGS, key=lambda each: each.separable != separable):
         fits = each.kind in ("polynomial", kind) and each.degree <= degree
+        # Where `bounded` is None any coupling will do; True needs one that keeps H → ∞ in every
+        # direction, False one that is bounded on the axis along which H is open.
         suits = {None: True, True: each.confined, False: each.flat}[bounded]
         if fits and suits and (each.separable or not separable):
             yield each
 
 
-def numbered(text: str, i: int, j: int) -> str:
-    """The text with p and q of degree i, P and Q of degree j.
+def number_variables(text: str, i: int, j: int) -> str:
+    """Return the text with q and p of degree of freedom i, Q and P of degree j.
 
-    >>> numbered("p**2/2 + exp(q - Q)", 1, 2)
+    >>> number_variables("p**2/2 + exp(q - Q)", 1, 2)
     'p1**2/2 + exp(q1 - q2)'
     """
-    return _VARIABLE.sub(lambda found: found[0].lower() + str(j if found[0].isupper() else i), text)
+    return _VARIABLE.sub(lambda match: match[0].lower() + str(j if match[0].isupper() else i), text)
 
 
-def signed(text: str) -> str:
-    """The text as it is added to others.
+def with_sign(text: str) -> str:
+    """Return the text with its sign, to be added to others.
 
-    >>> signed("-q") + signed("p")
+    >>> with_sign("-q") + with_sign("p")
     ' - q + p'
     """
     return f" - {text[1:]}" if text.startswith("-") else f" + {text}"

@@ -1,8 +1,8 @@
-"""What makes a drawn H depend on time: a term in t that is added to it, and that nothing cancels.
+"""Terms in t that make a drawn H depend on time, and that no other term cancels.
 
 The forms are those of a driven oscillator, from a force that grows with t to a mass that changes;
-each is smooth for all real t, and is a function of q and t alone or of p and t alone, so that
-H = T + V stays so.
+each is smooth for all real t, and is a function of q and t alone or of p and t alone, so that a
+separable H = T + V stays separable.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,6 +14,7 @@ from verify.strategies.formulas import Formula
 from verify.strategies.terms import Drawer, Limits, Sum
 
 Form = Sequence[str]  # one is drawn, with the numbers in it
+# For the braces see `Drawer.fill_braces`.
 _FORCES: Sequence[Form] = (
     ("q*t", "q*t**2", "q*t**3"),
     ("q*cos({3}t)", "q*sin({3}t)"),
@@ -22,7 +23,7 @@ _FORCES: Sequence[Form] = (
 
 
 @st.composite
-def driven(
+def driven_formulas(
     draw: st.DrawFn,
     still: st.SearchStrategy[Formula],
     kinds: Sequence[str],
@@ -30,16 +31,21 @@ def driven(
     *,
     linear: bool = False,
 ) -> Formula:
-    """Formulas with such a term beside, which in p and q is of one of the kinds, and of no higher
-    degree than the limits say; `linear`: in q, which what grows faster than that outgrows."""
+    """Draw formulas with one term in t more, of one of the kinds in q and p.
+
+    Its degree is within the limits. `linear`: the term is linear in q, so that an H which grows
+    faster than that stays confining at each t.
+    """
     formula, d, term = draw(still), Drawer(draw, limits), Sum()
-    forms = _FORCES if linear else [*_FORCES, *_others(kinds, limits)]
+    # A confining H outgrows a force that is linear in q, but not a stiffness that changes its
+    # sign.
+    forms = _FORCES if linear else [*_FORCES, *_other_forms(kinds, limits)]
     sign, size = d.pick(("+", "-")), d.positive()
-    term.add(size, d.filled(d.pick(d.pick(forms))))
-    return replace(formula, text=f"{formula.text} {sign} {term.written({})}", timed=True)
+    term.add(size, d.fill_braces(d.pick(d.pick(forms))))
+    return replace(formula, text=f"{formula.text} {sign} {term.to_text({})}", timed=True)
 
 
-def _others(kinds: Sequence[str], limits: Limits) -> Iterator[Form]:
+def _other_forms(kinds: Sequence[str], limits: Limits) -> Iterator[Form]:
     if limits.degree > 1:
         # A stiffness that comes and goes; a kinetic energy that dies out in both directions.
         yield [f"q**{n}*cos({{3}}t)" for n in range(2, min(4, limits.degree) + 1)]

@@ -1,11 +1,11 @@
-"""Hamiltonians as they are drawn from formulas."""
+"""The strategy of Hamiltonians, which parses drawn formulas."""
 
 from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
 from verify.algebra.limits import MAX_EXPONENT
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no, yes_no_either
 from verify.strategies.formulas import KINDS as KINDS
@@ -29,7 +29,7 @@ def hamiltonians(
     degrees: int = 1,
     coupled: bool | None = None,
 ) -> st.SearchStrategy[Hamiltonian]:
-    """Hamiltonians H(p, q) with rational coefficients, short enough to be read; never constant.
+    """Return a strategy of Hamiltonians H(p, q) with rational coefficients, short, never constant.
 
     `kinds`: `polynomial`, `trigonometric` (sin and cos), `exponential` (exp, cosh, sinh),
     `rational` (quotients such as q/(1 + q**2), whose denominators vanish for no real p, q); one of
@@ -71,7 +71,7 @@ def hamiltonians(
         raise InputError("kinds", kinds, f"is not a list of some of: {', '.join(KINDS)}")
     for kind in kinds:
         if kind not in KINDS:
-            raise unknown("kinds", kind, KINDS)
+            raise unknown_name("kinds", kind, KINDS)
     limits = Limits(
         whole("degree", degree, 1, MAX_EXPONENT),
         whole("terms", terms, 1, _MOST_TERMS),

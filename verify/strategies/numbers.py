@@ -1,4 +1,4 @@
-"""Exact numbers: parameters, initial values and step sizes."""
+"""Strategies of exact numbers: parameters, initial values and step sizes."""
 
 import math
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
 from verify.strategies.terms import signed_quotient
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
-_DENOMINATORS = (1, 2, 10, 3, 7, 100)
+_DENOMINATORS = (1, 2, 10, 3, 7, 100)  # decimals, and fractions that no binary format holds
 _LONG = 10**40
 _DIGITS = (1, 2, 5, *range(3, 100))
 
@@ -24,18 +24,18 @@ _DIGITS = (1, 2, 5, *range(3, 100))
 def parameters(
     names_or_hamiltonian: Iterable[str] | Hamiltonian, *, size: int = 9
 ) -> st.SearchStrategy[dict[str, Fraction]]:
-    """A value for each of these names, or for each parameter of H: ±n/d with n, d = 1 … size.
+    """Return a strategy of values for these names, or for H's parameters: ±n/d, n, d = 1 … size.
 
     None is 0, so that no term of H vanishes; H may still be undefined for one, as log(a*q) is for
     a < 0, and then `with_values` says so. Raises InputError for what is not a parameter's name.
     """
-    given = names_or_hamiltonian
-    if isinstance(given, Hamiltonian):
-        names = given.parameters
-    elif isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError("names", given, "is not a list of names, nor a Hamiltonian")
+    source = names_or_hamiltonian
+    if isinstance(source, Hamiltonian):
+        names = source.parameters
+    elif isinstance(source, str) or not isinstance(source, Iterable):
+        raise InputError("names", source, "is not a list of names, nor a Hamiltonian")
     else:
-        names = tuple(given)
+        names = tuple(source)
     for name in names:
         if not isinstance(name, str):
             raise InputError("parameter", name, "is not a name")
@@ -56,7 +56,7 @@ def initial_values(
 def initial_values(
     *, most: Exact = 2, extreme: bool = False, degrees: int = 1
 ) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
-    """(q, p) as exact rationals with |q|, |p| ≤ most: decimals, halves, thirds and sevenths.
+    """Return a strategy of exact (q, p) with |q|, |p| ≤ most: decimals, halves, thirds, sevenths.
 
     `degrees`: of freedom, 1 … 8; for more than one q and p are tuples of so many.
 
@@ -66,8 +66,8 @@ def initial_values(
 
     >>> from hypothesis import find, settings
     >>> same = settings(database=None, derandomize=True)
-    >>> found = find(initial_values(), lambda z: z.q > 1, settings=same)
-    >>> str(found.q), str(found.p)
+    >>> start = find(initial_values(), lambda z: z.q > 1, settings=same)
+    >>> str(start.q), str(start.p)
     ('2', '0')
     """
     numbers = _coordinates(most, yes_no("extreme", extreme))
@@ -77,7 +77,7 @@ def initial_values(
 def starts(
     numbers: st.SearchStrategy[Fraction], degrees: int
 ) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
-    """Initial values whose coordinates are such numbers."""
+    """Return a strategy of initial values whose coordinates are such numbers."""
     if degrees == 1:
         return st.builds(InitialValue, q=numbers, p=numbers)
     of_each = st.tuples(*[numbers] * degrees)
@@ -85,18 +85,19 @@ def starts(
 
 
 def initial_times(*, most: Exact = 2) -> st.SearchStrategy[Fraction]:
-    """t₀ as an exact rational with |t₀| ≤ most, of the kinds of numbers that initial values are.
+    """Return a strategy of exact t₀ with |t₀| ≤ most, of the same kinds as initial values.
 
     Raises InputError for most ≤ 0.
     """
     return _coordinates(most, extreme=False)
 
 
-def _coordinates(asked: Exact, extreme: bool) -> st.SearchStrategy[Fraction]:
-    most = rational(asked, "most")
+def _coordinates(greatest: Exact, extreme: bool) -> st.SearchStrategy[Fraction]:
+    most = rational(greatest, "most")
     if most <= 0:
-        raise InputError("most", asked, "must be greater than 0")
+        raise InputError("most", greatest, "must be greater than 0")
     ordinary = [_multiples(most, d) for d in _DENOMINATORS if most * d >= 1]
+    # Below 1/100 no denominator of the list leaves a multiple but 0: about ten steps are taken.
     ordinary = ordinary or [_multiples(most, math.ceil(10 / most))]
     if not extreme:
         return st.one_of(ordinary)
@@ -113,16 +114,17 @@ def _coordinates(asked: Exact, extreme: bool) -> st.SearchStrategy[Fraction]:
 
 
 def _multiples(most: Fraction, denominator: int) -> st.SearchStrategy[Fraction]:
-    """n/denominator up to ±most; the simplest is 0."""
+    """Return a strategy of n/denominator up to ±most; the simplest is 0."""
     top = math.floor(most * denominator)
     return st.integers(-top, top).map(lambda n: Fraction(n, denominator))
 
 
 def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStrategy[Fraction]:
-    """Step sizes h with least ≤ h ≤ most: decimals of one or two digits, powers of two, thirds of
-    decimals, and the two ends. Arguments such as "1e-300" and "1e300" give extreme ones.
+    """Return a strategy of step sizes h with least ≤ h ≤ most.
 
-    Raises InputError for least ≤ 0, least > most,.
+    They are decimals of one or two digits, powers of two, thirds of decimals, and the two ends.
+    Arguments such as "1e-300" and "1e300" give extreme ones. Raises InputError for least ≤ 0 and
+    for least > most.
 
     >>> from hypothesis import find, settings
     >>> str(find(step_sizes(), lambda h: h < 1, settings=settings(database=None)))
@@ -134,25 +136,27 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
     if low > high:
         raise InputError("least", least, f"is greater than most={high}")
     decades = magnitude(high) - magnitude(low) + 1
-    twos = _binary(high) - _binary(low) + 1
+    twos = _binary_exponent(high) - _binary_exponent(low) + 1
 
     def decimal(index: int) -> Fraction:
+        # Index 0 is the greatest power of ten up to `most`, to which the drawn number shrinks.
         digits, down = divmod(index, decades)
         return Fraction(_DIGITS[digits]) * Fraction(10) ** (magnitude(high) - down)
 
-    def within(h: Fraction) -> Fraction:
+    def clamp(h: Fraction) -> Fraction:
         return min(max(h, low), high)
 
-    # One choice each beside that of the form: the simplest is a decimal.
+    # Each form takes one choice besides that of the form, so that the simplest is a decimal.
     forms = [
         st.integers(0, decades * len(_DIGITS) - 1).map(decimal),
-        st.integers(0, twos - 1).map(lambda n: Fraction(2) ** (_binary(high) - n)),
+        st.integers(0, twos - 1).map(lambda n: Fraction(2) ** (_binary_exponent(high) - n)),
         st.integers(0, decades * 3 - 1).map(lambda n: decimal(n) / 3),
     ]
-    return st.one_of([form.map(within) for form in forms])
+    # A number outside falls on the nearer end, so that no draw is rejected and the ends occur.
+    return st.one_of([form.map(clamp) for form in forms])
 
 
-def _binary(x: Fraction) -> int:
-    """The exponent e of x > 0: 2^e ≤ x < 2^(e + 1)."""
+def _binary_exponent(x: Fraction) -> int:
+    """Return the exponent e of x > 0: 2^e ≤ x < 2^(e + 1)."""
     e = x.numerator.bit_length() - x.denominator.bit_length()
     return e if Fraction(2) ** e <= x else e - 1

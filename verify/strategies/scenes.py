@@ -1,4 +1,4 @@
-"""Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
+"""The strategy of whole scenes: an H, a scheme that takes it, and a run of a few steps."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
 from verify.strategies.formulas import Formula
-from verify.strategies.schemes import named, takers
+from verify.strategies.schemes import schemes_taking, select_schemes
 from verify.strategies.systems import System
 from verify.strategies.terms import Limits
 
@@ -37,8 +37,9 @@ def scenes(
     time_dependent: bool = False,
     degrees: int = 1,
 ) -> st.SearchStrategy[Scene]:
-    """Valid scenes with one scheme and a `[grid]` of one step size, one initial value and at least
-    steps[0] and at most steps[1] steps.
+    """Return a strategy of valid scenes with one scheme and a `[grid]`.
+
+    The grid has one step size, one initial value, and from steps[0] to steps[1] steps.
 
     Each part is drawn from the strategy of the same name in `verify.strategies`, or from the one
     that is given; parameters of a given H that have no value are given one. A scheme that does not
@@ -56,9 +57,9 @@ def scenes(
     Raises InputError for a bad argument when it is called.
     """
     whole("degrees", degrees, 1, MOST_DEGREES)
-    given = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
+    parts = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
              "initial_times": initial_times, "step_sizes": step_sizes}  # fmt: skip
-    for name, strategy in given.items():
+    for name, strategy in parts.items():
         if strategy is not None and not isinstance(strategy, st.SearchStrategy):
             raise InputError(name, strategy, "is not a hypothesis strategy")
     if not isinstance(steps, Sequence) or len(steps) != 2:
@@ -72,101 +73,117 @@ def scenes(
     values = numbers.initial_values(degrees=degrees) if initial_values is None else initial_values
     times = numbers.initial_times() if initial_times is None else initial_times
     sizes = numbers.step_sizes() if step_sizes is None else step_sizes
-    # One number needs no draw, nor may it hang on whether a loaded module has it as a constant.
+    # One number needs no draw: hypothesis also draws constants of loaded modules, so that the
+    # example would depend on what has been imported.
     counts = st.just(least) if least == most else st.integers(least, most)
-    runs = _Runs(st.builds(_grid, counts, sizes, values), times)
+    runs = _Runs(st.builds(_build_grid, counts, sizes, values), times)
     if hamiltonians is not None:
-        return _of_hamiltonians(hamiltonians, schemes, runs)
+        return _scenes_of_hamiltonians(hamiltonians, schemes, runs)
     system = System(degrees, Limits() if degrees == 1 else _SHORT, time_dependent=time_dependent)
     if schemes is not None:
-        return _of_schemes(schemes, system, runs)
-    found = named() if degrees == 1 else [x for x in named() if eta_of(x.name) not in _LONG_MAPS]
-    return _of_system(system, runs, found)
+        return _scenes_of_schemes(schemes, system, runs)
+    choices = (
+        select_schemes()
+        if degrees == 1
+        else [x for x in select_schemes() if eta_of(x.name) not in _LONG_MAPS]
+    )
+    return _scenes_of_system(system, runs, choices)
 
 
 class _Runs(NamedTuple):
-    """What a scene has beside H and the scheme; the times are drawn where H depends on t."""
+    """The parts of a scene besides H and the scheme; times are drawn where H depends on t."""
 
     grids: st.SearchStrategy[Grid]
     times: st.SearchStrategy[Fraction]
 
-    def drawn(self, draw: st.DrawFn, timed: bool) -> dict[str, Any]:
-        """The keys of the scene."""
-        found = {"grid": draw(self.grids)}
-        return found | {"t0": draw(self.times)} if timed else found
+    def draw_keys(self, draw: st.DrawFn, timed: bool) -> dict[str, Any]:
+        """Draw the scene's keys of the run, with t₀ where H depends on t."""
+        keys = {"grid": draw(self.grids)}
+        return keys | {"t0": draw(self.times)} if timed else keys
 
 
-def _grid(steps: int, step_size: Fraction, initial_value: InitialValue | InitialState) -> Grid:
+def _build_grid(
+    steps: int, step_size: Fraction, initial_value: InitialValue | InitialState
+) -> Grid:
     return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
 
 
-def _of_system(system: System, runs: _Runs, found: Sequence[Scheme]) -> st.SearchStrategy[Scene]:
-    of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
-    of_separable = st.sampled_from(found)
+def _scenes_of_system(
+    system: System, runs: _Runs, choices: Sequence[Scheme]
+) -> st.SearchStrategy[Scene]:
+    # A drawn H that is not separable gets only schemes for every H, so that no scene is rejected.
+    of_any = st.sampled_from([scheme for scheme in choices if not scheme.needs_separable])
+    of_separable = st.sampled_from(choices)
     any_formula = _formulas(system)
 
     @st.composite
-    def drawn(draw: st.DrawFn) -> Scene:
+    def draw_scene(draw: st.DrawFn) -> Scene:
         formula = draw(any_formula)
         scheme = draw(of_separable if formula.separable else of_any)
-        return _scene(formula, scheme, runs.drawn(draw, formula.timed))
+        return _build_scene(formula, scheme, runs.draw_keys(draw, formula.timed))
 
-    return drawn()
+    return draw_scene()
 
 
-def _of_schemes(
+def _scenes_of_schemes(
     schemes: st.SearchStrategy[Scheme], system: System, runs: _Runs
 ) -> st.SearchStrategy[Scene]:
     any_formula, separable = (_formulas(replace(system, separable=x)) for x in (None, True))
 
     @st.composite
-    def drawn(draw: st.DrawFn) -> Scene:
+    def draw_scene(draw: st.DrawFn) -> Scene:
         scheme = draw(schemes)
         formula = draw(separable if scheme.needs_separable else any_formula)
-        run = runs.drawn(draw, formula.timed)
+        run = runs.draw_keys(draw, formula.timed)
+        # A scheme of the catalogue takes every such H; one of the user's own may refuse it.
         if scheme.every_h is not None:
-            return _scene(formula, scheme, run)
-        return _fitting(formula.hamiltonian(), scheme, run)
+            return _build_scene(formula, scheme, run)
+        return _fitting_scene(formula.hamiltonian(), scheme, run)
 
-    return drawn()
+    return draw_scene()
 
 
-def _of_hamiltonians(
+def _scenes_of_hamiltonians(
     hamiltonians: st.SearchStrategy[Hamiltonian],
     schemes: st.SearchStrategy[Scheme] | None,
     runs: _Runs,
 ) -> st.SearchStrategy[Scene]:
-    found = named()
+    choices = select_schemes()
 
     @st.composite
-    def drawn(draw: st.DrawFn) -> Scene:
+    def draw_scene(draw: st.DrawFn) -> Scene:
         hamiltonian = draw(hamiltonians)
         if hamiltonian.symbols:
             values = draw(numbers.parameters(hamiltonian.symbols))
             hamiltonian = hamiltonian.with_values(dict(hamiltonian.values) | values)
-        own = st.sampled_from(takers(found, hamiltonian)) if schemes is None else schemes
-        scheme = draw(own)
-        return _fitting(hamiltonian, scheme, runs.drawn(draw, hamiltonian.time_dependent))
+        fitting = (
+            st.sampled_from(schemes_taking(choices, hamiltonian)) if schemes is None else schemes
+        )
+        scheme = draw(fitting)
+        return _fitting_scene(hamiltonian, scheme, runs.draw_keys(draw, hamiltonian.time_dependent))
 
-    return drawn()
+    return draw_scene()
 
 
 def _formulas(system: System) -> st.SearchStrategy[Formula]:
-    """One in three with parameters."""
+    """Return a strategy of formulas, one in three with parameters."""
     bare, with_names = (replace(system, with_parameters=x).formulas() for x in (False, True))
     return st.one_of(bare, bare, with_names)
 
 
-def _scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
-    """What is valid by how it was made: looking at it again would make the step map of each."""
+def _build_scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
+    """Return the scene of drawn parts, without validation.
+
+    It is valid by construction; to validate it would make the step map of each scheme.
+    """
     return Scene.model_construct(
         hamiltonian=formula.text, parameters=dict(formula.parameters), schemes=(scheme.name,), **run
     )
 
 
-def _fitting(hamiltonian: Hamiltonian, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
-    """The scene of parts that others drew; rejected where the scheme does not take H."""
-    if not takers([scheme], hamiltonian):
+def _fitting_scene(hamiltonian: Hamiltonian, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
+    """Return the scene of parts from a user's strategies; reject it where they do not fit."""
+    if not schemes_taking([scheme], hamiltonian):
         reject()
     return Scene(
         hamiltonian=hamiltonian.formula,

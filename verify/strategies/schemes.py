@@ -1,4 +1,4 @@
-"""The schemes of the catalogue, by what they claim and by the H that they take."""
+"""The strategy of schemes, selected by their claims and by the H that they take."""
 
 from collections.abc import Iterable
 
@@ -14,7 +14,7 @@ from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import whole, yes_no_either
 
-_LIE_AS_OFTEN = 3  # as each of the others: the family is what the toolkit is about
+_LIE_AS_OFTEN = 3  # as each of the others: the toolkit was written for this family
 
 
 def schemes(
@@ -26,7 +26,7 @@ def schemes(
     symmetric: bool | None = None,
     order: int | None = None,
 ) -> st.SearchStrategy[Scheme]:
-    """Schemes of the catalogue, or of these names, that claim what is asked for.
+    """Return a strategy of schemes of the catalogue, or of these names, with these claims.
 
     `hamiltonian`: only schemes that take it; those for H = T(p) + V(q) only where it is so. A name
     may be any that `verify.schemes.get` knows: a family's member such as `lie7`, or formulas of
@@ -40,25 +40,25 @@ def schemes(
     Shrinks towards lie1, or the first of `names`. Raises InputError for an unknown name, and where
     no scheme is left.
     """
-    found = named(names)
+    choices = select_schemes(names)
     if hamiltonian is not None and not isinstance(hamiltonian, Hamiltonian):
         raise InputError("hamiltonian", hamiltonian, "is not a Hamiltonian")
-    wanted = {"area_preserving": area_preserving, "explicit": explicit, "symmetric": symmetric}
-    for name, value in wanted.items():
+    claims = {"area_preserving": area_preserving, "explicit": explicit, "symmetric": symmetric}
+    for name, value in claims.items():
         if yes_no_either(name, value) is not None:
-            found = [scheme for scheme in found if getattr(scheme, name) == value]
+            choices = [scheme for scheme in choices if getattr(scheme, name) == value]
     if order is not None:
         whole("order", order, 1)
-        found = [scheme for scheme in found if scheme.order == order]
+        choices = [scheme for scheme in choices if scheme.order == order]
     if hamiltonian is not None:
-        found = takers(found, hamiltonian)
-    if not found:
+        choices = schemes_taking(choices, hamiltonian)
+    if not choices:
         raise InputError("schemes", "none", "no scheme claims all of that and takes that H")
-    return st.sampled_from(found)
+    return st.sampled_from(choices)
 
 
-def named(names: Iterable[str] | None = None) -> list[Scheme]:
-    """The schemes to choose from; one that is to be drawn more often stands there more often."""
+def select_schemes(names: Iterable[str] | None = None) -> list[Scheme]:
+    """Return the schemes of these names, or all; one of weight three stands there three times."""
     if names is None:
         every = catalogue.names()
         family = [name for name in every if eta_of(name)]
@@ -69,10 +69,11 @@ def named(names: Iterable[str] | None = None) -> list[Scheme]:
     return [catalogue.get(name) for name in names]
 
 
-def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
-    """Those of the schemes that take this H."""
+def schemes_taking(candidates: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
+    """Return the schemes that take this H."""
+    # H is examined once for all schemes.
     separable = _is_separable(hamiltonian)
-    return [scheme for scheme in found if _takes(scheme, hamiltonian, separable)]
+    return [scheme for scheme in candidates if _takes(scheme, hamiltonian, separable)]
 
 
 def _takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
@@ -86,16 +87,16 @@ def _takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
 
 
 def separable_for(names: Iterable[str]) -> bool | None:
-    """What `hamiltonians` is to be asked for, so that each scheme of these names takes them."""
+    """Return the `separable` of `hamiltonians` whose H each scheme of these names takes."""
     return True if any(catalogue.get(name).needs_separable for name in names) else None
 
 
 def _is_separable(hamiltonian: Hamiltonian) -> bool:
-    """Whether H = T(p) + V(q); terms of one variable each need no algebra."""
+    """Return True if H = T(p) + V(q); terms of one variable each need no algebra."""
     half = hamiltonian.degrees
     momenta, places = (
-        set(map(symbol, own))
-        for own in (hamiltonian.coordinates[:half], hamiltonian.coordinates[half:])
+        set(map(symbol, coordinates))
+        for coordinates in (hamiltonian.coordinates[:half], hamiltonian.coordinates[half:])
     )
     terms = sympy.Add.make_args(hamiltonian.exact)
     if not any(momenta & term.free_symbols and places & term.free_symbols for term in terms):

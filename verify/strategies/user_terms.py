@@ -1,10 +1,10 @@
 """The terms that make a formula trigonometric, exponential or rational.
 
 Each is drawn as its numerator, its denominator, and whether its coefficient has to be positive.
-What is known of a term where H is to be `confining` (H → ∞ in every direction): it is bounded; or
-it is at most linear in one variable and bounded in the other, so that even powers of both outgrow
-it; or it is ≥ 0. Where H is to be `open` along the half-axis x → s·∞, y = 0, it stays bounded
-above there. Where H is `free`, nothing need be known.
+Where H is to be `confining` (H → ∞ in every direction), a term is bounded; or at most linear in one
+variable and bounded in the other, so that even powers of both outgrow it; or ≥ 0. Where H is to be
+`open` along the half-axis x → s·∞, y = 0, a term stays bounded above there. Where H is `free`, any
+term will do.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ TermShape = tuple[str, str, bool]
 
 @dataclass(frozen=True)
 class TermRequest:
-    """`mixed`: of both variables. An open H is so along x → direction·∞."""
+    """The requested term: of both variables if `mixed`; an open H is so along x → direction·∞."""
 
     shape: Shape
     mixed: bool
@@ -29,46 +29,46 @@ class TermRequest:
     direction: int = 1
 
 
-def trigonometric(d: Drawer, want: TermRequest) -> TermShape:
-    """sin or cos of a multiple of p, q or both."""
+def draw_trigonometric(d: Drawer, want: TermRequest) -> TermShape:
+    """Draw sin or cos of a multiple of q, p or both."""
     function = d.pick(("cos", "sin"))
     if not want.mixed:
         return f"{function}({times(d.inner(), d.pick((want.x, want.y)))})", "", False
     if d.whole(0, 3) == 3:  # it vanishes on both axes
         outer, inner = d.pick((("p", "q"), ("q", "p")))
         return f"{outer}*sin({times(d.inner(), inner)})", "", False
-    return f"{function}({combination(d.inner(), _either(d))})", "", False
+    return f"{function}({combination(d.inner(), _draw_factor(d))})", "", False
 
 
-def exponential(d: Drawer, want: TermRequest) -> TermShape:
-    """exp, cosh or sinh of a multiple, or a bump exp(−x²)."""
+def draw_exponential(d: Drawer, want: TermRequest) -> TermShape:
+    """Draw exp, cosh or sinh of a multiple, or a bump exp(−x²)."""
     bump = d.whole(0, 3) == 3
     if want.mixed:
         if bump:
             return "exp(-p**2 - q**2)", "", False
-        return _mixed_exponential(d, want)
+        return _draw_mixed_exponential(d, want)
     name = d.pick((want.x, want.y))
     if bump:
         return f"exp(-{name}**2)", "", False
-    if want.shape == "open" and name == want.x:
+    if want.shape == "open" and name == want.x:  # exp(−direction·k·x) → 0 along the half-axis
         return f"exp({times(-want.direction * d.inner(), name)})", "", False
     functions = ("exp", "cosh") if want.shape == "confining" else ("exp", "cosh", "sinh")
     function = d.pick(functions)
-    k = _either(d) if function == "exp" else d.inner()
+    k = _draw_factor(d) if function == "exp" else d.inner()
     return f"{function}({times(k, name)})", "", want.shape == "confining"
 
 
-def _mixed_exponential(d: Drawer, want: TermRequest) -> TermShape:
-    if want.shape == "open":
-        along, across = -want.direction * d.inner(), _either(d)
+def _draw_mixed_exponential(d: Drawer, want: TermRequest) -> TermShape:
+    if want.shape == "open":  # on y = 0 the exponent is −direction·k·x, which falls
+        along, across = -want.direction * d.inner(), _draw_factor(d)
         k, m = (along, across) if want.x == "p" else (across, along)
         return f"exp({combination(k, m)})", "", False
     function = d.pick(("exp", "cosh"))
-    return f"{function}({combination(d.inner(), _either(d))})", "", want.shape == "confining"
+    return f"{function}({combination(d.inner(), _draw_factor(d))})", "", want.shape == "confining"
 
 
-def rational(d: Drawer, want: TermRequest) -> TermShape:
-    """Over 1 + x² and the like, with any number ≥ 1 for the 1: no denominator vanishes."""
+def draw_rational(d: Drawer, want: TermRequest) -> TermShape:
+    """Draw a quotient over c + x² or the like with c ≥ 1, so that no denominator vanishes."""
     constant = d.whole(1, min(d.limits.size, 9))
     if not want.mixed:
         name = d.pick((want.x, want.y))
@@ -77,7 +77,7 @@ def rational(d: Drawer, want: TermRequest) -> TermShape:
         case 0:
             return "p*q", f"{constant} + p**2 + q**2", False
         case 1:
-            return "", f"{constant} + ({combination(1, _either(d))})**2", False
+            return "", f"{constant} + ({combination(1, _draw_factor(d))})**2", False
     # y, which vanishes on the axis where H is open, has to stand above.
     x, y = (want.x, want.y) if want.shape == "open" else d.pick((("q", "p"), ("p", "q")))
     exponent = d.whole(1, 2)
@@ -85,15 +85,15 @@ def rational(d: Drawer, want: TermRequest) -> TermShape:
     return power(y, exponent), f"{constant} + {x}**2", positive
 
 
-def _either(d: Drawer) -> int:
-    """±1 … ±3; the simplest is 1."""
+def _draw_factor(d: Drawer) -> int:
+    """Draw ±1, ±2 or ±3; the simplest is 1."""
     index = d.whole(0, 5)
     return -(index // 2 + 1) if index % 2 else index // 2 + 1
 
 
 TERMS_BY_KIND: dict[str, Callable[[Drawer, TermRequest], TermShape]] = {
-    "trigonometric": trigonometric,
-    "exponential": exponential,
-    "rational": rational,
+    "trigonometric": draw_trigonometric,
+    "exponential": draw_exponential,
+    "rational": draw_rational,
 }
 KINDS = ("polynomial", *TERMS_BY_KIND)

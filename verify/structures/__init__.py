@@ -1,7 +1,7 @@
-"""What a step is meant to keep: area in the plane, the symplectic form in n degrees of freedom.
+"""The structures that a step should preserve: area in the plane, the symplectic form in general.
 
-One object a file, and all that is asked of it in that object. What differs between the two is asked
-of it, in place of how many degrees of freedom there are.
+Each is one object in a file of its own. Code asks the object for what differs between the two, and
+not for the number of degrees of freedom.
 """
 
 from verify.structures.area import AREA
@@ -12,5 +12,5 @@ __all__ = ["AREA", "SYMPLECTIC", "Structure", "structure_in"]
 
 
 def structure_in(degrees: int) -> Structure:
-    """What a canonical step keeps in so many degrees of freedom."""
+    """Return the structure that a canonical step preserves in so many degrees of freedom."""
     return AREA if degrees == 1 else SYMPLECTIC

@@ -1,17 +1,22 @@
-"""A structure that a step may keep: how its defect is called, measured and told."""
+"""A structure that a step may preserve: the names and observables of its defect."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Structure:
-    """`state`: how a point is called; `defect`: what one step misses it by; `accumulated`: what N
-    steps do, and `size`: how large that is.
+    """A structure that a step may preserve: area, or the symplectic form.
 
-    `zero`: what the defect is where it vanishes; `vanishes` says so, `identity` in short, and
-    `claim` is what a scheme claims that says so. `of_step`, `of_run`, `over_run`: the observables
-    of a run that are the defect's greatest size, what has accumulated, and the most that it was.
+    `state`: the name of a point; `defect`: by how much one step misses the structure;
+    `accumulated`: the defect of N steps, and `size` its size.
+
+    `zero`: the kind of object that the defect is where it vanishes; `vanishes` is the sentence that
+    it does, `identity` the short form, and `claim` that of a scheme that claims it. `of_step`,
+    `of_run`, `over_run`: the observables of a run for the greatest defect of a step, the
+    accumulated defect, and its greatest value during the run.
     """
+
+    # Both structures have the same fields, so that no caller has to ask for the plane.
 
     name: str
     state: str

@@ -17,7 +17,7 @@ from math import log10
 
 from verify.arithmetic.arb import ball, precision, slope
 from verify.proof.expansion import MOST_ORDERS
-from verify.prose import Formula, Number, Prose, joined, prose, read_prose
+from verify.prose import Formula, Number, Prose, join_prose, prose, read_prose
 from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
@@ -36,7 +36,7 @@ _PLATEAU = Fraction(1, 100)  # a point is above it where its error bound is belo
 
 
 def judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> CriterionResult:
-    """The verdict on one criterion; `runs`: the grid's runs of this scheme, if there are any."""
+    """Return the verdict on one criterion; `runs`: the grid's runs of this scheme, if any."""
     verdict, evidence = _judge(number, proof, runs)
     return CriterionResult(number=number, scheme=proof.scheme, verdict=verdict, evidence=evidence)
 
@@ -48,13 +48,15 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
             return Verdict.REFUTED, proof.reason
         if number <= 2 or proof.area_preserving:  # det J ≡ 1 alone makes no scheme
             return Verdict.UNDECIDED, proof.reason
-        return _measured(number, runs)
+        return _judge_by_slopes(number, runs)
     if proof.area_preserving:
         return Verdict.PROVED, prose("ΔJ ≡ 0 is proved, so ΔJ, MSE and Λ are exactly 0")
     if proof.order is not None:
-        at = joined(", ", (prose(Formula(n), " = ", Number(x)) for n, x in proof.witness.items()))
-        value = prose("; at ", at, " its coefficient is ", Formula(proof.enclosure))
-        where = value if at else Prose()
+        witness = join_prose(
+            ", ", (prose(Formula(n), " = ", Number(x)) for n, x in proof.witness.items())
+        )
+        value = prose("; at ", witness, " its coefficient is ", Formula(proof.enclosure))
+        where = value if witness else Prose()
         if number == 1:
             exact = Formula(f"h^{proof.order}")
             return Verdict.REFUTED, prose("ΔJ has order exactly ", exact, where)
@@ -62,6 +64,8 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
     if number == 1:
         open_ = proof.area_preserving is None
         return Verdict.UNDECIDED if open_ else Verdict.REFUTED, proof.reason
+    # A map that agrees with the flow up to h^m has ΔJ = O(h^(m+1)); None: it agrees as far as terms
+    # were looked at.
     least = (MOST_ORDERS if agreement is None else agreement) + 1
     so_far = prose(", as the map agrees with the exact flow so far")
     return _from_order(number, least, so_far, runs)
@@ -70,25 +74,25 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
 def _from_order(
     number: int, r: int, how: Prose, runs: Sequence[RunResult]
 ) -> tuple[Verdict, Prose]:
-    """Criteria 2–4 from ΔJ = O(h^r) with r ≥ 2, which every consistent map has."""
+    """Judge criteria 2–4 by ΔJ = O(h^r) with r ≥ 2, which every consistent map has."""
     if number == 2:
         return Verdict.PROVED, prose("ΔJ = O(", Formula(f"h^{r}"), ")", how)
     name, order = ("mse", 2 * r) if number == 3 else ("lambda", r - 1)
     quantity = "MSE" if number == 3 else "Λ"
     bound = read_prose(f"{quantity} = O(`h^{order}`), an upper bound")
-    left = [run for run in runs if run.status == "left range"]
-    if left:
+    out_of_range = [run for run in runs if run.status == "left range"]
+    if out_of_range:
         return Verdict.UNDECIDED, prose(
             bound,
             " on every [0, T] on which the exact solution exists; whether it does on the "
-            f"scene's is open, as {len(left)} of {len(runs)} runs leave the range",
+            f"scene's is open, as {len(out_of_range)} of {len(runs)} runs leave the range",
         )
     where = " on every fixed [0, T] on which the exact solution exists"
     return Verdict.PROVED, prose(bound, where, _slopes_sentence(name, runs))
 
 
-def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, Prose]:
-    """By the slopes: criterion 3 asks for more than 1, criterion 4 for more than 0."""
+def _judge_by_slopes(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, Prose]:
+    """Judge by the slopes: criterion 3 requires more than 1, criterion 4 more than 0."""
     name, least = ("mse", 1) if number == 3 else ("lambda", 0)
     slopes = measured_slopes(name, runs)
     if not slopes:
@@ -96,6 +100,7 @@ def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, Prose]:
             f"no proof, and fewer than {_MIN_POINTS} step sizes above the rounding plateau"
         )
     text = prose("measured slope ", _range(slopes), " over the step sizes")
+    # Two standard errors each way, and a margin towards the slope that just fails.
     if all(s - 2 * e > least + _MARGIN for s, e in slopes):
         return Verdict.MEASURED, text
     if any(s + 2 * e <= least + _NOISE for s, e in slopes):
@@ -115,7 +120,10 @@ def _range(slopes: Sequence[tuple[float, float]]) -> Prose:
 
 
 def measured_slopes(name: str, runs: Sequence[RunResult]) -> list[tuple[float, float]]:
-    """Slope and standard error of lg |value| over lg h, for each initial value that allows it."""
+    """Return the slope of lg |value| over lg h with its standard error, for each initial value.
+
+    Initial values with too few points above the rounding plateau are left out.
+    """
     groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
     with precision():
         for run in runs:
@@ -123,6 +131,7 @@ def measured_slopes(name: str, runs: Sequence[RunResult]) -> list[tuple[float, f
             if value is None or Fraction(value.value) == 0:
                 continue
             size = abs(ball(value))
+            # Below the plateau of rounding a value says nothing of the power of h.
             if Fraction(value.bound) <= _PLATEAU * abs(Fraction(value.value)):
                 point = log10(Fraction(run.step_size)), float(size.log() / 2.302585092994046)
                 groups.setdefault((run.start_text("q"), run.start_text("p")), []).append(point)

@@ -1,37 +1,40 @@
-"""What is asked → what is needed: tasks, each once, with reasons; and what is left out and why."""
+"""The plan of some scenes: the tasks they need, each once, with reasons, and what is left out."""
 
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, called, plan_of
+from verify.execution.study import Results, plan_of, scene_name
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.scene import Scene
 from verify.studies.kinds import studies
 
 
 def plan_scenes(scenes: list[Scene]) -> Plan:
-    """The tasks of all scenes; a task that several ask for is done once."""
+    """Plan the tasks of all scenes; a task that several request is done once."""
     return plan_of(scenes, _plan_scene)
 
 
-def found_of(scene: Scene, results: Results) -> dict[str, Any]:
-    """What the studies make of the results of the scene's tasks: a `SceneResult`'s parts."""
-    found: dict[str, Any] = {}
+def collect_findings(scene: Scene, results: Results) -> dict[str, Any]:
+    """Return the studies' parts of a `SceneResult`, from the results of the scene's tasks."""
+    parts: dict[str, Any] = {}
     for study in studies():
-        found |= study.found(scene, results) if study.found else {}
-    return found
+        parts |= study.results_for_scene(scene, results) if study.results_for_scene else {}
+    return parts
 
 
 def _plan_scene(plan: Plan, scene: Scene) -> None:
-    found = studies()
+    every_study = studies()
     for scheme in scene.schemes:
-        preserved = step_map_of(scene.exact_hamiltonian(), scheme).preserves_area
-        for study in found:
+        # Decided once for each scheme: every study asks for it.
+        preserves_area = step_map_of(scene.exact_hamiltonian(), scheme).preserves_area
+        for study in every_study:
             if study.need_of_scheme:
-                study.need_of_scheme(plan, scene, scheme, preserved)
-    for study in found:
+                study.need_of_scheme(plan, scene, scheme, preserves_area)
+    for study in every_study:
         if study.need:
             study.need(plan, scene)
-    for section in sorted((x for study in found for x in study.sections), key=lambda x: x.place):
-        if not section.asked(scene):
-            plan.leave_out(f"{called(scene)}: {section.what}", section.why_not)
+    for section in sorted(
+        (x for study in every_study for x in study.sections), key=lambda x: x.place
+    ):
+        if not section.is_requested(scene):
+            plan.leave_out(f"{scene_name(scene)}: {section.what}", section.why_not)

@@ -35,7 +35,7 @@ from tests.helpers.processes.worker_functions import (
 from verify.errors import InputError, PlaceError
 from verify.execution import cluster as clusters
 from verify.execution import executors
-from verify.execution.cluster import connected
+from verify.execution.cluster import connect
 from verify.execution.execute import execute
 from verify.execution.executors import THIS_PROCESS, FunctionCall, Placement, open_place, results_of
 from verify.execution.machine import machine
@@ -251,7 +251,7 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def refused(address: str) -> str:
     begun = time.monotonic()
-    with pytest.raises(InputError) as caught, connected(address):
+    with pytest.raises(InputError) as caught, connect(address):
         pass
     assert time.monotonic() - begun < 8
     assert str(caught.value).startswith("cluster=tcp://127.0.0.1")

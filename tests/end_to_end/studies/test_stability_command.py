@@ -6,7 +6,7 @@ import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
 from tests.paths import ROOT
-from verify.commands.shared.input import target
+from verify.commands.shared.input import load_target
 
 SCENE = """
 system = "duffing"
@@ -82,7 +82,7 @@ SMALL = ("free", "pushed", "zero", "quartic_sizes")
 def test_the_extreme_scenes_end_in_the_verdicts_that_are_right(
     capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
-    assert name in {scene.name for scene in target("extreme")[1]}
+    assert name in {scene.name for scene in load_target("extreme")[1]}
     path = ROOT / "reports" / "suites" / "extreme" / f"{name}.toml"
     status, out, err = here(capsys, "stability", str(path), "--json")
     assert (status, err) == (0, "")

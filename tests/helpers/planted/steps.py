@@ -60,8 +60,8 @@ def with_term(true: StepMap, place: int, power: int, term: Term) -> StepMap:
         with _of_field(algebra, alone):
             added = algebra.slopes(start, Fraction(0), [place])
         for _ in range(power):  # each is h times what was added before
-            added = [algebra.moved(algebra.nothing, [Fraction(1)], added)]
-        result[place] = algebra.between(result[place], added[0], Fraction(1))
+            added = [algebra.move(algebra.nothing, [Fraction(1)], added)]
+        result[place] = algebra.add_share(result[place], added[0], Fraction(1))
         return result
 
     return replace(true, step=changes, conditions=(), known_order=lambda: None)

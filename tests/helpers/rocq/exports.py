@@ -10,7 +10,7 @@ from typing import Any
 
 from tests.helpers.rocq.two_names import with_square
 from verify.commands.main import cli
-from verify.proof.assistant.export import Exported, exported
+from verify.proof.assistant.export import ExportedFile, export_certificate
 from verify.proof.certificates.file import FORMAT
 
 _EVERY = "--every-hamiltonian"
@@ -144,14 +144,14 @@ def proved(asked: list[str]) -> dict[str, Any]:
 
 
 @cache
-def export(name: str, *, stands_alone: bool = False) -> Exported:
+def export(name: str, *, stands_alone: bool = False) -> ExportedFile:
     """That certificate's export, by default for what stands beside the theory."""
     return export_of(certificate(name), stands_alone=stands_alone)
 
 
-def export_of(data: dict[str, Any], *, stands_alone: bool = False) -> Exported:
+def export_of(data: dict[str, Any], *, stands_alone: bool = False) -> ExportedFile:
     """The export of a certificate with these entries."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "certificate.json"
         path.write_text(json.dumps(data), encoding="utf-8")
-        return exported(path, stands_alone=stands_alone)
+        return export_certificate(path, stands_alone=stands_alone)

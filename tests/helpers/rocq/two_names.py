@@ -34,13 +34,13 @@ def _cofactors(data: dict[str, Any]) -> dict[str, Any]:
     entries = read({**data, "cofactors": {}})
     assert not isinstance(entries, tuple)
     asked = Identities(entries)  # type: ignore[arg-type]
-    made, relations = [f.name for f in asked.given.functions], asked.relations
-    names = [*reversed(made), *asked.given.coordinates, "t", *asked.given.parameters]
+    made, relations = [f.name for f in asked.entries.functions], asked.relations
+    names = [*reversed(made), *asked.entries.coordinates, "t", *asked.entries.parameters]
     numbered = [(made.index(n), relations[n]) for n in reversed(made) if n in relations]
     reducer = Reducer(names, numbered)
     return {
         what: {made[k]: _written(factor) for k, factor in reducer.factors(gap)}
-        for what, gap in asked.gaps()
+        for what, gap in asked.residuals()
         if gap
     }
 

@@ -11,9 +11,9 @@ from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.studies.separation.chain import Chain
-from verify.studies.separation.links import separated_chains
+from verify.studies.separation.links import separate_chains
 from verify.studies.separation.stepper.run import Stopped
 from verify.studies.separation.stepper.trail import Link, Links
 
@@ -43,8 +43,8 @@ class AreaChains:
 
 
 def area_chains(*asked: Any, **more: Any) -> AreaChains:
-    """Those of `separated_chains`, which takes the same arguments, in the plane."""
-    chains = alone(separated_chains(*asked, **more))
+    """Those of `separate_chains`, which takes the same arguments, in the plane."""
+    chains = run_alone(separate_chains(*asked, **more))
     (plain,), (closed,) = chains.plain, chains.closed_form or (None,)
     return AreaChains(plain, closed, chains.arithmetic, chains.seconds)
 

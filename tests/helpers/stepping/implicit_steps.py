@@ -15,7 +15,7 @@ from mpmath.ctx_mp import MPContext
 
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import arithmetic as number_systems
-from verify.arithmetic.number_system import interpreted
+from verify.arithmetic.number_system import interpret
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
 from verify.schemes import get
@@ -30,7 +30,9 @@ TABLEAUS = {
 }
 # Of order 3, and not area-preserving.
 _RADAU = (sympy.Rational(3, 4), sympy.Rational(1, 4))
-RADAU = ImplicitTableau.of(((sympy.Rational(5, 12), sympy.Rational(-1, 12)), _RADAU), _RADAU)
+RADAU = ImplicitTableau.from_numbers(
+    ((sympy.Rational(5, 12), sympy.Rational(-1, 12)), _RADAU), _RADAU
+)
 NONLINEAR = {
     "pendulum": "p**2/2 - cos(q)",
     "duffing": "p**2/2 + q**2/2 + q**4/4",
@@ -45,7 +47,7 @@ def planted(tableau: ImplicitTableau, i: int, j: int, error: sympy.Rational) -> 
     """With an error in a_ij; in b_j for i beyond the rows."""
     rows = [list(row) for row in (*tableau.rows, tableau.weights)]
     rows[i][j] += error
-    return ImplicitTableau.of(rows[:-1], rows[-1])
+    return ImplicitTableau.from_numbers(rows[:-1], rows[-1])
 
 
 def places(tableau: ImplicitTableau) -> list[tuple[int, int]]:
@@ -164,7 +166,7 @@ def counted(made: StepMap, arithmetic: str, digits: int, z: Pair, h: Fraction, c
     own = number_systems.get(arithmetic, digits)
 
     def compiled(source: str, name: str, scope: Mapping[str, Any]) -> Callable[..., Any]:
-        return interpreted(source, name, {**scope, "range": counting})
+        return interpret(source, name, {**scope, "range": counting})
 
     looked_at = replace(own, compile=compiled)
     function = Writer(made, looked_at, frozenset(), False).kernel().function

@@ -97,14 +97,14 @@ class _Numbers(StepAlgebra[Any]):
         p, q = (x + y for x, y in zip(self.z, changes, strict=True))
         return [self.stepper.slopes[k](p, q, self.h) for k in places]
 
-    def moved(self, change: Any, weights: Sequence[Any], slopes: Sequence[Any]) -> Any:
+    def move(self, change: Any, weights: Sequence[Any], slopes: Sequence[Any]) -> Any:
         pairs = zip(weights, slopes, strict=True)
         return change + self.h * sum(self.stepper.number(w) * k for w, k in pairs)
 
-    def between(self, x: Any, y: Any, share: Fraction) -> Any:
+    def add_share(self, x: Any, y: Any, share: Fraction) -> Any:
         return x + self.stepper.number(share) * y
 
-    def solved(self, count: int, right: Callable[..., list[Any]]) -> list[Any]:
+    def solve(self, count: int, right: Callable[..., list[Any]]) -> list[Any]:
         near = gmpy2.exp10(-self.stepper.digits - 3)
         values = [self.nothing] * count
         for _ in range(_MOST_ITERATIONS):

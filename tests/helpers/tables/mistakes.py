@@ -16,7 +16,7 @@ from tests.helpers.tables.by_series import gap
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.tables import kinds
-from verify.integrators.tables.told import TableClaim
+from verify.integrators.tables.table_claim import TableClaim
 from verify.schemes.printed.printed_numbers import unit_of
 from verify.verdict import Verdict
 

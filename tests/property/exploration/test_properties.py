@@ -26,6 +26,6 @@ def test_a_property_holds_of_drawn_scenes(name: str, scenes: SearchStrategy[Scen
     @settings(drawn(12), suppress_health_check=[HealthCheck.too_slow])
     @given(scenes)
     def holds(scene: Scene) -> None:
-        asked.holds(Sample.of(scene))
+        asked.holds(Sample.from_scene(scene))
 
     holds()

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.oscillators import digits_of, element, mpf, numbers, oscillator, rates, turned
-from verify.flows.closed_orbit import at_rest, closed_orbit, shifts
+from verify.flows.closed_orbit import closed_orbit, is_equilibrium, shifts
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average, bounded_part
 from verify.hamiltonians.canonical_field import canonical_field
@@ -177,8 +177,8 @@ def test_an_equilibrium_is_one_by_algebra_however_near_another_point_is(
     text = f"(p - ({p}))**2/2 + (q - ({q}))**2 + ({slope})*(q - ({q}))**3 + cos(p - ({p}))"
     hamiltonian = Hamiltonian.parse(text)
     field, _ = canonical_field(hamiltonian)
-    assert at_rest(hamiltonian, field, (p, q + beside)) == (beside == 0)
-    assert not at_rest(hamiltonian, field, (p + 1, q))
+    assert is_equilibrium(hamiltonian, field, (p, q + beside)) == (beside == 0)
+    assert not is_equilibrium(hamiltonian, field, (p + 1, q))
     if beside == 0:
         orbit = closed_orbit(hamiltonian, (p, q), 15, 8)
         assert (orbit.kind, orbit.period, len(orbit.points)) == ("equilibrium", None, 1)

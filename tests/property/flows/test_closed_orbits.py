@@ -21,7 +21,7 @@ times = st.builds(lambda n, k: Fraction(n, 10**k), st.integers(1, 400), st.integ
 
 def forget() -> None:
     exact_orbit.cache_clear()
-    module._closed_orbit.cache_clear()
+    module._cached_closed_orbit.cache_clear()
 
 
 def alone(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
@@ -72,13 +72,13 @@ def test_a_closed_one_is_searched_once_and_others_each_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen: list[Fraction] = []
-    search = OrbitSearch.integrated
+    search = OrbitSearch.integrate
 
     def noting(self: OrbitSearch) -> ExactOrbit:
         seen.append(self.arithmetic.exact(self.time))
         return search(self)
 
-    monkeypatch.setattr(OrbitSearch, "integrated", noting)
+    monkeypatch.setattr(OrbitSearch, "integrate", noting)
     pendulum, zero = Hamiltonian.parse("p**2/2 - cos(q)"), Fraction(0)
     forget()
     for time in (3, 100, 50, 200, 4, 7):  # a period is 6.7: some are too short for it

@@ -48,8 +48,8 @@ def done(
     own = arithmetic.get("fixed", digits)
     courses = [run.run_in_turn(own, tangent=tangent) for run in all_runs]
     if not in_lockstep:
-        return [lockstep.alone(course) for course in courses]
-    ended = dict(lockstep.together(iter(courses), len(courses)))
+        return [lockstep.run_alone(course) for course in courses]
+    ended = dict(lockstep.run_together(iter(courses), len(courses)))
     return [ended[k].result() for k in range(len(courses))]
 
 
@@ -128,9 +128,9 @@ def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
 
     monkeypatch.setattr(engine, "step_together", noting)
     loop = f"    for k in range(steps):\n{LOOPS[called_for]}    return steps, x\n"
-    kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 112, {})
+    kernel = engine.compile_source("def f(steps: 'int', x: 'wide'):\n" + loop, 112, {})
     state = (engine.Fixed(1, 112),)
-    ways = [engine.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
+    ways = [engine.Walk(5 + k % 2, 3, (), state, later_steps=10 * k) for k in range(2 * LANES + 2)]
     pending = [lockstep.Pending(kernel, way) for way in ways]
     waiting = pending
     with path(IN_LANES[0]):
@@ -165,7 +165,7 @@ def test_lanes_are_compiled_for_long_work_only(
 ) -> None:
     """Or where that was done before: what is kept is used at once."""
     monkeypatch.setenv(code_cache.VARIABLE, str(tmp_path / "kernels"))
-    monkeypatch.setattr(paths, "forced", lambda: False)
+    monkeypatch.setattr(paths, "forced_path", lambda: False)
     few = runs("duffing")
     steps = sum(run.steps for run in few)
     monkeypatch.setattr(engine, "_WORTH_COMPILING", 3 * steps // 2)
@@ -198,10 +198,10 @@ def test_a_lane_that_takes_its_neighbours_place_is_caught(monkeypatch: pytest.Mo
 def test_an_unknown_way_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(paths.VARIABLE, "avx1024")
     with pytest.raises(InputError, match=r"VERIFY_LANES.*avx512, avx2, portable, off"):
-        paths.chosen()
+        paths.choose_path()
     monkeypatch.setattr(processor, "features", dict)
     monkeypatch.setenv(paths.VARIABLE, "avx512")
     with pytest.raises(InputError, match="no such instructions"):
-        paths.chosen()
+        paths.choose_path()
     monkeypatch.delenv(paths.VARIABLE)
-    assert paths.chosen() is None
+    assert paths.choose_path() is None

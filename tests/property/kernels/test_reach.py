@@ -277,7 +277,7 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     anew(monkeypatch)
-    monkeypatch.setattr(engine, "_compiled", engine._compiled.__wrapped__)
+    monkeypatch.setattr(engine, "_cached_function", engine._cached_function.__wrapped__)
     monkeypatch.setenv(VARIABLE, OFF)
     monkeypatch.setattr(OneOrbit, "_require", lambda self, condition: None)
     assert wrong_kernel_runs()

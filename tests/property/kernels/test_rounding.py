@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import polynomials, rationals, trigonometric
-from verify.arithmetic.arb import bounds, in_reach, rational_ball
+from verify.arithmetic.arb import bounds, is_representable, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
@@ -98,7 +98,7 @@ class Tried:
             } | {n: Rounded(rational_ball(x) + around, flint.arb(0)) for n, x in self.state.items()}
             rounding = rounding_of(self.arithmetic)
             found = analyse(self.kernel.lowering.program, [*self.ops], given, rounding)
-            if found is None or not all(in_reach(x.error) for x in found.values()):
+            if found is None or not all(is_representable(x.error) for x in found.values()):
                 return None  # a bound that is too large to be a number is none
             return {i: bounds(x.error)[1] for i, x in found.items()}
 
@@ -118,7 +118,9 @@ class Tried:
             for i, true in self.true().items():
                 apart = abs(true - rational_ball(self.values[i]))
                 counted = count(self.ops[i], abs(true))
-                if in_reach(apart) and in_reach(counted):  # else they are no numbers here
+                if is_representable(apart) and is_representable(
+                    counted
+                ):  # else they are no numbers here
                     made[i] = bounds(apart)[0], bounds(counted)[1]
         return made
 

@@ -130,7 +130,7 @@ def test_a_delta_j_that_vanishes_as_far_as_it_is_looked_at_is_left_open(
     """Kicks and drifts preserve area, but Taylor coefficients do not show that all vanish."""
     parts = [("kick", size), ("drift", Fraction(1)), ("kick", 1 - size)]
     shears = [(kind, sympy.Rational(x.numerator, x.denominator)) for kind, x in parts]
-    proof = proof_of(SeriesAlone(StageEquations.of_shears(shears)), claimed, area)
+    proof = proof_of(SeriesAlone(StageEquations.from_shears(shears)), claimed, area)
     order = 2 if size == Fraction(1, 2) else 1
     assert (proof.order, proof.area_preserving, proof.convergence_order) == (None, None, order)
     assert proof.verdict is (Verdict.REFUTED if order < claimed else Verdict.UNDECIDED)

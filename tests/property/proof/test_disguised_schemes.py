@@ -28,7 +28,9 @@ def tableau(rows: list[list[Fraction]], weights: list[Fraction]) -> ImplicitTabl
     def exact(x: Fraction) -> sympy.Rational:
         return sympy.Rational(x.numerator, x.denominator)
 
-    return ImplicitTableau.of([[exact(x) for x in r] for r in rows], [exact(x) for x in weights])
+    return ImplicitTableau.from_numbers(
+        [[exact(x) for x in r] for r in rows], [exact(x) for x in weights]
+    )
 
 
 @drawn(3)

@@ -67,5 +67,5 @@ def test_the_leading_coefficient_is_the_limit_of_delta_j(
         assume(abs(expected) > mpmath.mpf(10) ** -6)
         assert abs(limit + expected) > mpmath.mpf(10) ** -30, "the other sign"
         if eta % 2 == 0:
-            potential = potential_of_lie(JetFlow.over(jets), eta).divergence
+            potential = potential_of_lie(JetFlow.from_jets(jets), eta).divergence
             assert abs(limit - at(jets, along_flow(jets, potential), hamiltonian, point)) < 1e-30

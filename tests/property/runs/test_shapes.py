@@ -16,9 +16,9 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.a_posteriori import certify
-from verify.runs.estimated import resolved
+from verify.runs.estimated import resolve
 from verify.runs.run import run
 
 SEEDS = range(12)
@@ -77,7 +77,7 @@ def test_what_is_certified_or_estimated_holds_the_true_value(name: str, seed: in
             assert_within(found, certified, true)
         if arithmetic.bits < 30:
             continue  # an estimate asks for runs that have some digits
-        estimated = alone(resolved(kernel_run, arithmetic, outcome, 5))
+        estimated = run_alone(resolve(kernel_run, arithmetic, outcome, 5))
         if estimated.status == "finished":
             pairs = estimated.values.items()
             assert_within({n: x for n, (x, _) in pairs}, {n: y for n, (_, y) in pairs}, true)

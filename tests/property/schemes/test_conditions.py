@@ -16,7 +16,7 @@ from tests.helpers.symmetry import palindromic, prove_symmetry
 from verify.algebra.embedding import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.symmetry import by_series
+from verify.proof.symmetry import judge_symmetry
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.residue import decimal_of
@@ -114,7 +114,7 @@ def test_the_first_power_of_h_that_a_step_back_leaves_is_found(
     formulas = f"p + ({size})*h**{power}*({force})", "q + h*p**0*0"
     hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2")
     step_map = by_formulas(hamiltonian, *formulas)
-    found = by_series(step_map, most)
+    found = judge_symmetry(step_map, most)
     if power % 2 == 0 and power <= most:
         assert (found.verdict, found.power) == (Verdict.REFUTED, power)
         assert f"O(h^{power})" in found.reason

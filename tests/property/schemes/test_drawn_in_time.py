@@ -21,7 +21,7 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.symmetry import by_series
+from verify.proof.symmetry import judge_symmetry
 from verify.runs.run import run
 from verify.schemes import get
 from verify.strategies.hamiltonians import hamiltonians
@@ -192,9 +192,9 @@ def test_lie2_is_of_order_3_with_the_divergence_as_its_coefficient(made: Hamilto
 def test_by_series_the_step_back_begins_at_the_later_time(made: Hamiltonian) -> None:
     """And a clock that stands still is not symmetric, where the force changes."""
     for scheme in ("stormer-verlet", "position-verlet"):
-        assert by_series(get(scheme).step_map(made), 3).verdict is Verdict.UNDECIDED
+        assert judge_symmetry(get(scheme).step_map(made), 3).verdict is Verdict.UNDECIDED
     still = get("position-verlet, clock frozen").step_map(Hamiltonian.parse("p**2/2 + q*t"))
-    assert by_series(still, 3).verdict is Verdict.REFUTED
+    assert judge_symmetry(still, 3).verdict is Verdict.REFUTED
 
 
 @few

@@ -103,7 +103,7 @@ def test_implicit_symplectic_euler_solves_its_equations(
 @pytest.mark.parametrize("name", names())
 def test_a_scheme_has_one_name_and_no_other(name: str) -> None:
     for file in schemes._FILES.names:
-        made = schemes._made(file, name)
+        made = schemes._scheme_from_file(file, name)
         assert made is None or made.name == name
     for said in (f" {name} ", name.upper(), name.capitalize()):
         assert get(said).name == name

@@ -15,7 +15,7 @@ from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
 from verify.schemes.conditions.words.words import (
     STEPS,
     Word,
-    joined,
+    concatenate,
     letters,
     lyndon,
     weight,
@@ -33,7 +33,7 @@ def times(x: Series, y: Series, most: int) -> dict[Word, Fraction]:
     for a, m in x.items():
         for b, n in y.items():
             if weight(a + b) <= most:
-                word = joined(a, b)
+                word = concatenate(a, b)
                 found[word] = found.get(word, Fraction(0)) + m * n
     return found
 

@@ -20,7 +20,7 @@ from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of, prove
 from verify.schemes import get
 from verify.schemes.maps.parts import parts_of
-from verify.schemes.maps.step_map import grouped
+from verify.schemes.maps.step_map import group_by_powers
 from verify.verdict import Verdict
 
 quick = drawn(14)
@@ -98,7 +98,7 @@ def test_the_parts_of_a_map_are_its_derivatives_and_its_powers_of_h(
     assert part.forms is not None
     assert set(part.forms) == set(known)
     for n in range(2 * part.degree + 2):
-        coefficient = part.form(n).at(0, 1)
+        coefficient = part.form(n).entry(0, 1)
         assert sympy.expand(ring.expression(coefficient) - known.get(n, 0)) == 0
     whole = part.series(part.degree)
     assert whole is not None
@@ -120,7 +120,7 @@ def test_the_parts_of_a_map_are_its_derivatives_and_its_powers_of_h(
     assert (step_map.implicit, step_map.in_stages) == (False, False)
     assert step_map.has_closed_form
     assert step_map.closed is step_map.flat is step_map.written_defect is part
-    shown = grouped(ring, part.elements[0])
+    shown = group_by_powers(ring, part.elements[0])
     assert sympy.expand(shown - step[0]) == 0
     series = step_map.series(5)
     assert series is not None

@@ -25,7 +25,7 @@ from verify.schemes.conditions.coloured_trees import (
     symmetry,
     vertices,
 )
-from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.elementary_differentials import Differentials, cancels
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.tree_conditions import MOST_ORDER, TreeConditions, gaps_of, trees
@@ -68,7 +68,7 @@ def test_elementary_differentials_add_up_to_the_flow(order: int, separable: bool
     jets = Jets(order + 1, separable=separable)
     own = Differentials(jets)
     for part, name in enumerate("pq"):
-        terms = (own.of(t)[part] * monotone(t).numerator for t in trees(order))
+        terms = (own.differential(t)[part] * monotone(t).numerator for t in trees(order))
         assert sum(terms, jets.zero) == lie_derivatives(jets, name, order)[-1]
 
 
@@ -88,7 +88,7 @@ def test_only_what_cancels_for_every_h_is_taken_for_nothing(
     if other is not None:
         gaps[other] = gaps.get(other, one * 0) + one / 7
     own = Differentials(Jets(5, separable=separable))
-    assert cancel(numbers.ring, gaps, own) is (other is None)
+    assert cancels(numbers.ring, gaps, own) is (other is None)
 
 
 numbers = st.builds(Fraction, st.integers(-2, 3), st.integers(1, 3))
@@ -112,7 +112,9 @@ def tableau_of(rows: list[list[Fraction]], weights: list[Fraction]) -> ImplicitT
     def exact(x: Fraction) -> sympy.Rational:
         return sympy.Rational(x.numerator, x.denominator)
 
-    return ImplicitTableau.of([[exact(x) for x in r] for r in rows], [exact(x) for x in weights])
+    return ImplicitTableau.from_numbers(
+        [[exact(x) for x in r] for r in rows], [exact(x) for x in weights]
+    )
 
 
 def weighted(rows: list[list[Fraction]], tree: Tree, at: int) -> Fraction:

@@ -23,7 +23,7 @@ from verify.proof.plane.growth_law import GrowthLaw, growth_law
 from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 from verify.studies.growth import prediction as growth
-from verify.studies.growth.prediction import average_of, predictions
+from verify.studies.growth.prediction import compute_average, predict_runs
 
 TIME = 6
 STEP_SIZES = tuple(Fraction(1, n) for n in (25, 50, 100, 400))
@@ -72,13 +72,13 @@ def remainders(case: Case) -> list[float] | None:
     """(measured − predicted log(1 + Λ)) / h^order for each step size; None: no closed orbit."""
     formula, scheme, q, p = case
     hamiltonian = Hamiltonian.parse(formula)
-    mean = average_of(hamiltonian, scheme, q=q, p=p, digits=15)
+    mean = compute_average(hamiltonian, scheme, q=q, p=p, digits=15)
     if mean.average is None:
         return None
     runs = runs_of(case)
     if any(each.status != "finished" for each in runs):
         return None
-    found = predictions(hamiltonian, mean, runs)
+    found = predict_runs(hamiltonian, mean, runs)
     with mpmath.workdps(40):
         gaps = []
         for h, each in zip(STEP_SIZES, found, strict=True):
@@ -204,8 +204,8 @@ def caught(
 
 
 def relative(result: RunResult, hamiltonian: Hamiltonian) -> float:
-    mean = average_of(hamiltonian, result.scheme, q=result.q, p=result.p, digits=15)
-    (found,) = predictions(hamiltonian, mean, [result])
+    mean = compute_average(hamiltonian, result.scheme, q=result.q, p=result.p, digits=15)
+    (found,) = predict_runs(hamiltonian, mean, [result])
     assert found.difference is not None
     return abs(float(found.difference.value))
 

@@ -18,7 +18,7 @@ from verify.errors import InputError
 
 
 def domain(text: str) -> Domain:
-    return Domain.of(read(text)[1])
+    return Domain.from_requirements(read(text)[1])
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def defined(text: str, point: dict[str, Fraction]) -> bool:
 def test_a_formula_is_defined_exactly_in_its_domain(text: str, point: dict[str, Fraction]) -> None:
     assume("pi" not in text)  # tan(π) is not 0 in digits
     try:
-        found = Domain.of(read(text, point)[1])
+        found = Domain.from_requirements(read(text, point)[1])
     except InputError:
         return
     inside = found.contains(point)
@@ -115,13 +115,13 @@ def test_domains_meet_in_what_both_ask_for() -> None:
     assert EVERYWHERE & both == both
     assert not EVERYWHERE
     assert str(both.prose) == "p > 0, q > 0"
-    assert (both & Domain.of((), "in words")).texts == ("p > 0", "q > 0", "in words")
+    assert (both & Domain.from_requirements((), "in words")).texts == ("p > 0", "q > 0", "in words")
 
 
 def test_a_value_that_is_put_in_lies_in_the_domain_or_is_refused() -> None:
     from verify.algebra.formula import symbol
 
     asked = domain("delta**2/delta*sqrt(q - delta)")
-    assert asked.replaced({symbol("delta"): parse("2")}).texts == ("q - 2 >= 0",)
+    assert asked.substitute({symbol("delta"): parse("2")}).texts == ("q - 2 >= 0",)
     with pytest.raises(InputError, match="delta = 0: is outside of delta != 0"):
-        asked.replaced({symbol("delta"): parse("0")})
+        asked.substitute({symbol("delta"): parse("0")})

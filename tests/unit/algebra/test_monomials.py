@@ -73,7 +73,7 @@ def test_a_polynomial_beyond_the_longest_text_is_refused_as_before() -> None:
 
 
 def test_a_polynomial_hamiltonian_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    hamiltonian._of_formula.cache_clear()
+    hamiltonian._parse_formula.cache_clear()
     monkeypatch.setattr(hamiltonian, "parse", None)
     found = Hamiltonian.parse("p**2/2 + 123*q**4/456 - p*q")
     monkeypatch.undo()

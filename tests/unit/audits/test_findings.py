@@ -9,11 +9,11 @@ import pytest
 from tests.paths import ROOT
 from verify.audits import libraries as others
 from verify.audits.findings.confirmed import (
-    Changed,
     Description,
     NotConfirmedError,
-    _shown,
-    changed,
+    TableCorrection,
+    _confirm_table,
+    change_entries,
     confirm,
     descriptions,
     entry_of,
@@ -52,8 +52,8 @@ def test_every_description_is_read_and_has_plain_words() -> None:
 @pytest.mark.parametrize(
     ("name", "table"), TABLES, ids=[f"{n}-{k}" for k, (n, _) in enumerate(TABLES)]
 )
-def test_each_table_shows_the_mistake_and_the_mend(name: str, table: Changed) -> None:
-    shown = _shown(table)
+def test_each_table_shows_the_mistake_and_the_mend(name: str, table: TableCorrection) -> None:
+    shown = _confirm_table(table)
     assert all(x.below(shown.claimed) for x in shown.printed)
     assert bool(shown.mended) is bool(table.changes)
 
@@ -139,23 +139,27 @@ def test_a_description_that_is_none_is_named(tmp_path: Path, old: str, new: str,
 
 
 def test_a_right_table_and_a_mend_that_mends_nothing_are_not_told() -> None:
-    right = Changed(id="GSL/gsl_odeiv2_step_rk4", kind="order")
+    right = TableCorrection(id="GSL/gsl_odeiv2_step_rk4", kind="order")
     with pytest.raises(NotConfirmedError, match="do not show it"):
-        _shown(right)
-    wrong = Changed(id="GeometricIntegrators.jl/TableauRK42", kind="order", changes={"a.4.3": "3"})
+        _confirm_table(right)
+    wrong = TableCorrection(
+        id="GeometricIntegrators.jl/TableauRK42", kind="order", changes={"a.4.3": "3"}
+    )
     with pytest.raises(NotConfirmedError, match="its order is not 4"):
-        _shown(wrong)
+        _confirm_table(wrong)
     for changes in ({"a.4.9": "2"}, {"nonsense": "1"}, {"times": "right"}):
-        other = Changed(id="GeometricIntegrators.jl/TableauRK42", kind="order", changes=changes)
+        other = TableCorrection(
+            id="GeometricIntegrators.jl/TableauRK42", kind="order", changes=changes
+        )
         with pytest.raises(NotConfirmedError):
-            _shown(other)
+            _confirm_table(other)
     with pytest.raises(InputError, match="none of the printed tables"):
         entry_of("GSL/nothing")
 
 
 def test_changes_are_made_in_a_copy() -> None:
     entry = entry_of("GeometricIntegrators.jl/TableauRK42")
-    other = changed(entry, {"a.4.3": "2"})
+    other = change_entries(entry, {"a.4.3": "2"})
     assert entry != other
     assert entry == entry_of("GeometricIntegrators.jl/TableauRK42")
 

@@ -13,8 +13,8 @@ from verify.audits import libraries as others
 from verify.audits import printed_libraries
 from verify.audits import report as others_report
 from verify.audits.claims import claims_of
-from verify.audits.libraries.nodepy import _order_method, claimed
-from verify.audits.methods.integrator import Compared, FloatStep, ReleasedIntegrator
+from verify.audits.libraries.nodepy import _order_method, claimed_orders
+from verify.audits.methods.integrator import Comparison, FloatStep, ReleasedIntegrator
 from verify.audits.methods.measured import finding
 from verify.audits.report import make_integrators_report
 from verify.verdict import Verdict
@@ -77,7 +77,7 @@ def leaves() -> Any:
 
 
 def breaks_off() -> Any:
-    yield ReleasedIntegrator("first", "by hand", "nowhere", Compared("it is itself", fails))
+    yield ReleasedIntegrator("first", "by hand", "nowhere", Comparison("it is itself", fails))
     yield from others.get("literature").integrators()
     raise ValueError("cannot convert NaN to integer ratio")
 
@@ -152,9 +152,9 @@ def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPat
     pytest.importorskip("scipy")
     from importlib.metadata import version
 
-    assert others.installed("scipy") == version("scipy")
+    assert others.installed_version("scipy") == version("scipy")
     hide(monkeypatch)
-    assert others.installed("scipy") is None
+    assert others.installed_version("scipy") is None
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPat
     ],
 )
 def test_orders_are_read_from_the_names_of_nodepy(key: str, name: str, orders: Any) -> None:
-    assert claimed(key, name) == orders
+    assert claimed_orders(key, name) == orders
 
 
 @pytest.mark.parametrize(
@@ -212,7 +212,7 @@ def test_tables_of_scipy_have_their_orders() -> None:
 
 def test_heyokas_taylor_step_is_lie_eta() -> None:
     found = integrators("heyoka")["Taylor and lieη"].method
-    assert isinstance(found, Compared)
+    assert isinstance(found, Comparison)
     verdict, evidence, rows = found.compare()
     assert verdict is Verdict.MEASURED, evidence
     assert len(rows) > 3

@@ -62,7 +62,7 @@ def test_quotients_in_a_table_stay_exact() -> None:
     found = judge_order(off, 4)
     assert found.digits is False
     assert found.nearest is not None
-    code = reproductions.of_digits(off, found.nearest, 4)
+    code = reproductions.write_digits_program(off, found.nearest, 4)
     printed, nearest = (float(line.split()[-1]) for line in ran(code).splitlines())
     assert nearest < 1e-35 < 1e-20 < printed
     assert float(ran(code.replace("F(7)/F(25)", "7/25")).split()[-1]) > 1e-20, "so would floats"
@@ -70,14 +70,14 @@ def test_quotients_in_a_table_stay_exact() -> None:
 
 @pytest.mark.parametrize("code", [VERLET, HEUN])
 def test_a_steps_order_is_shown(code: str) -> None:
-    shown = eval(ran(reproductions.of_order(code, (Fraction(1), Fraction(1, 2)), 4)))  # noqa: S307
+    shown = eval(ran(reproductions.write_order_program(code, (Fraction(1), Fraction(1, 2)), 4)))  # noqa: S307
     assert all(abs(slope - 3) < 0.6 for _, slope in shown)
 
 
 def test_an_area_that_is_kept_and_one_that_is_not_are_shown() -> None:
     point = Fraction(1), Fraction(1, 2)
     kept, lost = (
-        [abs(found - 1) for _, found in eval(ran(reproductions.of_area(code, point)))]  # noqa: S307
+        [abs(found - 1) for _, found in eval(ran(reproductions.write_area_program(code, point)))]  # noqa: S307
         for code in (VERLET, HEUN)
     )
     assert max(kept) < 1e-5
@@ -85,4 +85,4 @@ def test_an_area_that_is_kept_and_one_that_is_not_are_shown() -> None:
 
 
 def test_where_no_step_is_given_nothing_is_shown() -> None:
-    assert reproductions.of_order("", (Fraction(1), Fraction(1)), 4) == ""
+    assert reproductions.write_order_program("", (Fraction(1), Fraction(1)), 4) == ""

@@ -8,8 +8,8 @@ import pytest
 
 from verify.audits.claims import claims_of
 from verify.audits.methods.integrator import FloatStep, ReleasedIntegrator
-from verify.audits.methods.scripted import AGAIN, EACH, Driven, Problem, scripted
-from verify.audits.methods.tabled import tabled, text
+from verify.audits.methods.scripted import AGAIN, EACH, Driver, Problem, drive_problems
+from verify.audits.methods.tabled import table_integrator, text
 from verify.audits.printed_libraries import files
 from verify.audits.second.look import at_step, at_table
 from verify.integrators.tables.check import read_tables
@@ -40,7 +40,7 @@ def test_a_right_table_is_not_shown_to_be_wrong() -> None:
     assert some
     for entry, order in some:
         look = at_table(entry, "order", order)
-        assert not look.shown, (entry.name, look.said)
+        assert not look.confirms, (entry.name, look.sentence)
         assert all(x.order is None or x.order >= order for x in look.slopes), entry.name
 
 
@@ -61,7 +61,9 @@ NEAR_HARMONIC = {
 @pytest.mark.parametrize("order", NEAR_HARMONIC)
 def test_a_method_that_is_right_on_the_harmonic_oscillator_alone_is_caught(order: int) -> None:
     sizes = NEAR_HARMONIC[order].split()
-    made = tabled("near", "splitting", "", "nowhere", order=order, first="kick", sizes=sizes)
+    made = table_integrator(
+        "near", "splitting", "", "nowhere", order=order, first="kick", sizes=sizes
+    )
     (claim,) = (c for c in claims_of(made, "mine", "mine") if c.kind == "order")
     assert claim.verdict is Verdict.REFUTED
     assert claim.severity == "wrong order"
@@ -88,7 +90,7 @@ def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.Monke
         "a": [[], ["1/2"], ["0", "1/2"], ["0", "0", "1"]],
         "b": ["1/6", "1/3", "1/3", "1/6"],
     }
-    right, wrong = (tabled("RK4", "runge-kutta", "", "", order=n, **rk4) for n in (4, 5))
+    right, wrong = (table_integrator("RK4", "runge-kutta", "", "", order=n, **rk4) for n in (4, 5))
     assert [c.verdict for c in claims_of(wrong, "mine", "mine")] == [Verdict.REFUTED]
     monkeypatch.setattr(look, "claimed_of", lambda entry, kind: 4)
     (claim,) = claims_of(wrong, "mine", "mine")
@@ -98,8 +100,8 @@ def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.Monke
     assert claim.verdict is Verdict.PROVED
 
 
-def verlet(late: float = 0.0, drop: float = 0.0) -> Driven:
-    return Driven(
+def verlet(late: float = 0.0, drop: float = 0.0) -> Driver:
+    return Driver(
         "import numpy as np",
         f"""\
 t = t + {late} * h
@@ -111,8 +113,8 @@ p = p + h / 2 * (1 - {drop}) * force(t + (1 - {late}) * h, q)
     )
 
 
-def judged(driven: Driven, order: int) -> list[tuple[str, Verdict, str]]:
-    made = scripted("mine", driven, "", "nowhere", order, None)
+def judged(driven: Driver, order: int) -> list[tuple[str, Verdict, str]]:
+    made = drive_problems("mine", driven, "", "nowhere", order, None)
     return [(c.source, c.verdict, c.severity or "") for x in made for c in claims_of(x, "m", "m")]
 
 
@@ -142,7 +144,7 @@ def test_an_order_that_is_claimed_too_high_is_refuted_of_steps() -> None:
 
 def test_a_step_that_is_wrong_at_one_problem_alone_is_not_refuted() -> None:
     """The second problem is asked before anything is held against a library."""
-    plain = next(scripted("mine", verlet(), "", "nowhere", 3, None, EACH[:1]))
+    plain = next(drive_problems("mine", verlet(), "", "nowhere", 3, None, EACH[:1]))
     right = plain.method
     assert isinstance(right, FloatStep)
 
@@ -151,12 +153,12 @@ def test_a_step_that_is_wrong_at_one_problem_alone_is_not_refuted() -> None:
 
     other = FloatStep(right.hamiltonian, exact, right.points, right.ladder)
     told = ReleasedIntegrator("mine", "", "", right, 3, None, "", other)
-    assert not at_step(told, 3).shown
+    assert not at_step(told, 3).confirms
     (claim,) = claims_of(told, "m", "m")
     assert claim.verdict is Verdict.UNDECIDED
 
 
-@pytest.mark.parametrize("problem", [*EACH, *AGAIN.values()], ids=lambda x: x.said)
+@pytest.mark.parametrize("problem", [*EACH, *AGAIN.values()], ids=lambda x: x.description)
 def test_the_lines_of_a_problem_are_its_force(problem: Problem) -> None:
     names: dict[str, Any] = {}
     exec(f"import numpy as np\n{problem.force}", names)  # noqa: S102 - our own

@@ -16,7 +16,9 @@ def rational(*rows: str) -> ImplicitTableau:
     """The last row has the weights."""
     numbers = [[Rational(x) for x in row.split()] for row in rows]
     count = len(numbers[-1])
-    return ImplicitTableau.of([[*r, *[S.Zero] * count][:count] for r in numbers[:-1]], numbers[-1])
+    return ImplicitTableau.from_numbers(
+        [[*r, *[S.Zero] * count][:count] for r in numbers[:-1]], numbers[-1]
+    )
 
 
 RK4 = rational("0", "1/2", "0 1/2", "0 0 1", "1/6 1/3 1/3 1/6")
@@ -26,7 +28,7 @@ LAWSON = rational(
     "0", "1/2", "3/16 1/16", "0 0 1/2", "0 -3/16 3/8 9/16", "1/7 4/7 6/7 -12/7 8/7",
     "7/90 0 16/45 2/15 16/45 7/90",
 )  # fmt: skip
-MISPRINTED = ImplicitTableau.of(
+MISPRINTED = ImplicitTableau.from_numbers(
     [*LAWSON.rows[:2], (Rational(1, 8), Rational(1, 8), *LAWSON.rows[2][2:]), *LAWSON.rows[3:]],
     LAWSON.weights,
 )
@@ -62,12 +64,12 @@ def test_claims_that_are_wrong_are_refuted() -> None:
 def test_a_coefficient_that_is_off_in_its_twelfth_digit_is_refuted() -> None:
     rows = [list(row) for row in GAUSS4.rows]
     rows[0][1] += Rational(1, 10**12)
-    off = ImplicitTableau.of(rows, GAUSS4.weights)
+    off = ImplicitTableau.from_numbers(rows, GAUSS4.weights)
     assert verdicts(ExactTableau(off), 4, True) == [Verdict.REFUTED, Verdict.REFUTED]
 
 
 def test_floats_hold_up_to_their_rounding() -> None:
-    rounded = ImplicitTableau.of(
+    rounded = ImplicitTableau.from_numbers(
         [[Rational(*float(x).as_integer_ratio()) for x in row] for row in LAWSON.rows],
         [Rational(*float(x).as_integer_ratio()) for x in LAWSON.weights],
     )
@@ -79,7 +81,7 @@ def test_floats_hold_up_to_their_rounding() -> None:
 def test_missing_digits_are_undecided_and_not_refuted() -> None:
     rows = [list(row) for row in RK4.rows]
     rows[1][0] += Rational(1, 10**10)
-    few = ImplicitTableau.of(rows, RK4.weights)
+    few = ImplicitTableau.from_numbers(rows, RK4.weights)
     assert verdicts(ExactTableau(few, rounded=True), 4, None) == [Verdict.UNDECIDED]
 
 
@@ -93,6 +95,6 @@ def test_a_misprinted_row_is_repaired() -> None:
 
 def test_irrational_coefficients_are_exact() -> None:
     gamma = (3 + sqrt(3)) / 6
-    sdirk = ImplicitTableau.of([[gamma, 0], [1 - 2 * gamma, gamma]], [S.Half, S.Half])
+    sdirk = ImplicitTableau.from_numbers([[gamma, 0], [1 - 2 * gamma, gamma]], [S.Half, S.Half])
     assert order_of(sdirk, 3).order == 3
     assert symplecticity(sdirk).holds is False

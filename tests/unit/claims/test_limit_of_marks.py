@@ -7,13 +7,13 @@ import pytest
 
 from verify import effort
 from verify.claims.findings import Findings
-from verify.claims.judging import judged
+from verify.claims.judging import judge_claim
 from verify.claims.kinds import models
 from verify.claims.quantified import marks_for_hamiltonian
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.checked import small_checker
-from verify.proof.checked.proved import DEFECT, Proved
+from verify.proof.checked.proved import DEFECT, ProvedStatement
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
@@ -36,7 +36,7 @@ def claim(scheme: str, kind: str = "area_preserving", **keys: Any) -> Any:
 def judge(formula: str, scheme: str) -> ClaimResult:
     marks_for_hamiltonian.cache_clear()
     scene = Scene(hamiltonian=formula, schemes=(scheme,), name="made")
-    return judged(claim(scheme), {"made": scene}, {}, NOTHING)
+    return judge_claim(claim(scheme), {"made": scene}, {}, NOTHING)
 
 
 def test_a_verdict_comes_without_a_mark_that_would_not_end() -> None:
@@ -64,13 +64,15 @@ def test_a_certificate_that_is_not_made_in_time_gives_no_mark_and_the_next_is_tr
             len(str(1))
         return {}
 
-    from verify.proof.certificates.every import of_every
+    from verify.proof.certificates.every import certify_every
     from verify.proof.every import prove_every
 
     proof = prove_every("symplectic-euler")
-    makers = (never, lambda: of_every(proof))
+    makers = (never, lambda: certify_every(proof))
     scheme = get("symplectic-euler")
-    proved = Proved(scheme, DEFECT, True, every=True, timed=False, degrees=1, certificates=makers)
+    proved = ProvedStatement(
+        scheme, DEFECT, True, every=True, timed=False, degrees=1, certificates=makers
+    )
     marks = list(small_checker.marks(proved))
     assert len(marks) == (0 if ending else 1)  # what is refused gives none; what is not made, next
 
@@ -80,7 +82,9 @@ def test_the_mark_is_there_where_it_is_made_in_time(monkeypatch: pytest.MonkeyPa
     marks_for_hamiltonian.cache_clear()
     assert any("small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT))
     marks_for_hamiltonian.cache_clear()
-    monkeypatch.setattr(small_checker, "limited", lambda *of: effort.limited(*of, most=10))
+    monkeypatch.setattr(
+        small_checker, "limit_effort", lambda *of: effort.limit_effort(*of, most=10)
+    )
     assert not any(
         "small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT)
     )

@@ -144,9 +144,9 @@ def test_orders_are_judged_by_what_is_known(
     known: ProvedOrder, exactly: Any, at_least: Any
 ) -> None:
     for r, verdict in exactly.items():
-        assert order(r, "lie2").judge_known(known).verdict is verdict
+        assert order(r, "lie2").judge_proved(known).verdict is verdict
     for r, verdict in at_least.items():
-        assert order(r, "lie2", at_least=True).judge_known(known).verdict is verdict
+        assert order(r, "lie2", at_least=True).judge_proved(known).verdict is verdict
 
 
 def test_area_is_judged_by_what_is_known() -> None:

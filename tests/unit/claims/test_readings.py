@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.claim import Standing
-from verify.scenes.results.statement import Outcome, counted, outcome_of, statements_of
+from verify.scenes.results.statement import Outcome, describe_counts, outcome_of, statements_of
 from verify.verdict import Verdict
 
 HEAD = 'title = "A paper"\n[defaults]\nscheme = "lie2"\nsystem = "harmonic"\nkind = "order"\n'
@@ -87,7 +87,7 @@ def test_readings_have_the_texts_of_their_statement_and_are_counted_with_it(
         ("a", Outcome.HOLDS, ("a", "b")),
         ("c", Outcome.REFUTED, ("c",)),
     ]
-    assert counted(statements, found) == (
+    assert describe_counts(statements, found) == (
         "2 statements of the paper, in 3 readings: 1 holds as meant, 1 is refuted in every "
         "reading; 1 more claim is ours"
     )
@@ -103,7 +103,7 @@ def test_misprints_of_what_holds_as_meant_are_counted(written: Callable[..., Pat
     )
     check = prepare(load_claims(path))
     results = check.run(Store(None), where=THIS_PROCESS)
-    assert counted(check.statements(results), results) == (
+    assert describe_counts(check.statements(results), results) == (
         "3 statements of the paper, in 5 readings: 2 hold as meant, 1 of them with a misprint, 1 "
         "is refuted in every reading"
     )

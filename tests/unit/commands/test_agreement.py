@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from verify.commands.shared.proofs import agreement, agreement_json
+from verify.commands.shared.proofs import agreement_json, describe_agreement
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove
@@ -22,16 +22,16 @@ def test_an_order_that_is_shown_to_be_no_higher_is_known(scheme: str, order: int
         prove(get(scheme).step_map(HENON), get(scheme)),
         prove_every(scheme, degrees=2),
     ):
-        assert agreement(found) == f"up to h^{order}"
+        assert describe_agreement(found) == f"up to h^{order}"
         told = {"convergence_order": order, "convergence_order_known": True}
         assert agreement_json(found) == told
         least = replace(found, convergence_decided=False)
-        assert agreement(least) == f"up to h^{order}; whether further is not decided"
+        assert describe_agreement(least) == f"up to h^{order}; whether further is not decided"
         assert agreement_json(least) == told | {"convergence_order_known": False}
 
 
 def test_what_agrees_in_all_that_was_looked_at_has_no_known_order() -> None:
     free = Hamiltonian.parse("p**2/2")
     found = prove(get("lie2").step_map(free), get("lie2"))
-    assert agreement(found) == "in all powers of h that were looked at"
+    assert describe_agreement(found) == "in all powers of h that were looked at"
     assert agreement_json(found) == {"convergence_order": None, "convergence_order_known": False}

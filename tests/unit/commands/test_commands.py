@@ -29,5 +29,5 @@ def test_a_folder_with_a_title_is_a_suite(tmp_path: Path, monkeypatch: pytest.Mo
     (folder / "title.txt").write_text("Mine\n")
     assert given.suites() == {"mine": "Mine"}
     (folder / "one.toml").write_text('system = "duffing"\nschemes = ["lie2"]\n')
-    title, scenes, claims = given.target("mine")
+    title, scenes, claims = given.load_target("mine")
     assert (title, [scene.name for scene in scenes], claims) == ("Mine", ["one"], None)

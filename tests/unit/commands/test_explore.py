@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands.explore import _explored
+from verify.commands.explore import _explore
 from verify.execution.executors import ANYWHERE
 from verify.exploration import explore
 from verify.exploration.explore import Exploration
@@ -39,5 +39,5 @@ def test_what_fails_now_or_still_is_the_exit_status(
 ) -> None:
     report = ExploreReport(seed=0, examples=1, properties=(), failures=failures, again=earlier)
     monkeypatch.setattr(explore, "explore", lambda *_, **__: report)
-    answer = _explored(ASKED, {}, tmp_path, None, ANYWHERE)
+    answer = _explore(ASKED, {}, tmp_path, None, ANYWHERE)
     assert (answer.failed, answer.problem) == (failed, None)

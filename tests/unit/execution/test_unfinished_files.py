@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands.shared.destinations import keepable
+from verify.commands.shared.destinations import ensure_keepable
 from verify.execution.execute import Store
 from verify.execution.executors import Placement, open_place
 from verify.files import clear_unfinished, write_atomically
@@ -63,7 +63,7 @@ def killed_while_it_writes(path: Path) -> None:
 def test_what_a_killed_process_was_writing_is_cleared_by_the_next_command(tmp_path: Path) -> None:
     killed_while_it_writes(tmp_path / "result.json")
     assert [path.name[:13] for path in tmp_path.iterdir()] == [".result.json."]
-    keepable(tmp_path)
+    ensure_keepable(tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -80,5 +80,5 @@ def test_what_a_process_is_writing_and_what_is_no_such_file_is_left(tmp_path: Pa
     ]
     for name in names:
         (tmp_path / name).write_text("{}")
-    keepable(tmp_path)
+    ensure_keepable(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == set(names)

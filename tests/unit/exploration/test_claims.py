@@ -73,10 +73,10 @@ def test_a_claim_on_a_run_is_asked_of_the_drawn_run(tmp_path: Path) -> None:
     text = CLAIMS.partition("[[claim]]")[0] + CLAIMS[CLAIMS.index('[[claim]]\nid = "small"') :]
     (claim,) = claims_of(tmp_path, text)
     scene = sample_scene(SampleSpace(schemes=("lie2",), degree=3), 5, 0)
-    assert claim_property(claim).holds(Sample.of(scene))
+    assert claim_property(claim).holds(Sample.from_scene(scene))
     (zero,) = claims_of(tmp_path, text.replace("1e300", "0"))
     with pytest.raises(Violation):
-        claim_property(zero).holds(Sample.of(scene))
+        claim_property(zero).holds(Sample.from_scene(scene))
 
 
 OF_EVERY = (
@@ -168,7 +168,7 @@ steps = 5
 q = 1
 p = 0
 """
-    sample = Sample.of(
+    sample = Sample.from_scene(
         scene_from(
             {
                 "hamiltonian": "p**2/2 + q**4/4",
@@ -225,4 +225,4 @@ def test_a_claim_of_a_theorem_is_refused(tmp_path: Path) -> None:
 def test_a_claim_keeps_its_own_scheme(tmp_path: Path) -> None:
     (text, *_) = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "fourth')])
     scene = sample_scene(SampleSpace(schemes=("lie1",)), 5, 0)
-    assert claim_property(text).holds(Sample.of(scene)), "of lie2, though lie1 was drawn"
+    assert claim_property(text).holds(Sample.from_scene(scene)), "of lie2, though lie1 was drawn"

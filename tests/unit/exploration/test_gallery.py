@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.constructed.galleries import at, gallery, shown
-from verify.commands.hunt import _command, _when, _write_scenes
+from verify.commands.hunt import _describe_loss, _format_command, _write_scenes
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.exploration.gallery import gallery as gallery_of
@@ -61,9 +61,11 @@ def test_a_run_that_does_not_end_is_shown_by_the_hunts_own() -> None:
 def test_the_command_makes_the_same_hunt_again() -> None:
     drawn = SampleSpace(kinds=("polynomial",), degree=4, schemes=("lie1", "p_next = p; q_next = q"))
     asked = Hunt(measure="growth", seed=3, examples=10, steps=50)
-    assert _command(asked) == ("verify explore --maximise growth --examples 10 --seed 3 --steps 50")
+    assert _format_command(asked) == (
+        "verify explore --maximise growth --examples 10 --seed 3 --steps 50"
+    )
     object.__setattr__(asked, "drawn", drawn)
-    assert _command(asked).endswith(
+    assert _format_command(asked).endswith(
         "--steps 50 --scheme lie1 --scheme 'p_next = p; q_next = q' --kind polynomial --degree 4"
     )
 
@@ -74,10 +76,10 @@ def test_where_nothing_of_lambda_is_known_neither_part_is_said_to_be_the_larger(
     asked = Hunt(measure="digits-lost", seed=1, examples=1, steps=2)
     found = HuntResult(worst=(Worst(value=1.0, scene=text),), examples=1)
     (each,) = gallery_of(asked, found, Store(None), where=THIS_PROCESS).scenes
-    assert _when(each) == "over 200 steps no digit of a part of Λ is known but 0"
+    assert _describe_loss(each) == "over 200 steps no digit of a part of Λ is known but 0"
     lies = HuntResult(worst=(Worst(value=1.0, scene=_text("p**2/2 + q**2/2")),), examples=1)
     (other,) = gallery_of(asked, lies, Store(None), where=THIS_PROCESS).scenes
-    assert _when(other) == "over 200 steps truncation is the larger part of Λ"
+    assert _describe_loss(other) == "over 200 steps truncation is the larger part of Λ"
 
 
 def test_scenes_of_an_earlier_hunt_do_not_stay(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
 from verify.exploration import hunting, island_search
-from verify.exploration.different_scenes import by_shape, different, scene_of
+from verify.exploration.different_scenes import scene_of, select_by_shape, select_different
 from verify.exploration.hunting import Hunt, hunt
 from verify.exploration.island_search import neighbours
 from verify.exploration.measures import MEASURES, Measure
@@ -66,7 +66,7 @@ def test_a_planted_worst_scene_is_found(plant: Plant) -> None:
     plant(near("1.37", "-0.74"))  # tenths are drawn: hundredths are found by the local search
     worst = search(task()).worst[0]
     assert worst.value == pytest.approx(9)
-    found = Sample.of(scene_of(worst))
+    found = Sample.from_scene(scene_of(worst))
     assert found.place == (Fraction("-0.74"), Fraction("1.37"))
 
 
@@ -74,14 +74,14 @@ def test_without_the_local_search_it_is_not_found(
     plant: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plant(near("1.37", "-0.74"))
-    monkeypatch.setattr(island_search, "_refined", lambda _: None)
+    monkeypatch.setattr(island_search, "_refine", lambda _: None)
     assert search(task()).worst[0].value < 2
 
 
 def test_what_is_out_of_bounds_is_not_found(plant: Plant) -> None:
     plant(near("2.5", "0"))
     worst = search(task()).worst[0]
-    assert Sample.of(scene_of(worst)).point["q"] == 2
+    assert Sample.from_scene(scene_of(worst)).point["q"] == 2
 
 
 @pytest.mark.left_to_ci
@@ -162,7 +162,7 @@ def _text(formula: str) -> str:
 def test_one_of_each_shape_is_kept() -> None:
     formulas = ["p**2/2 + q**2/2", "3*q**2 - p**2", "p**2/2 + q**4", "p*q", "q/(p**2 + 6)",
                 "2*q/(3*p**2 + 12)", "cos(2*q)", "cos(3*q)", "sin(q)"]  # fmt: skip
-    found = by_shape([Worst(value=0.0, scene=_text(f)) for f in formulas])
+    found = select_by_shape([Worst(value=0.0, scene=_text(f)) for f in formulas])
     kept = [each.scene.split('"')[1] for each in found]
     assert kept == [formulas[i] for i in (0, 2, 3, 4, 6, 8)]
 
@@ -178,7 +178,7 @@ def test_a_scene_that_is_another_one_again_is_not_kept() -> None:
         (5.74, worst.replace("lie2", "euler"), True),  # another scheme
         (5.1, again, True),  # less bad
     ]
-    kept = different([Worst(value=value, scene=scene) for value, scene, _ in found])
+    kept = select_different([Worst(value=value, scene=scene) for value, scene, _ in found])
     assert [each.scene for each in kept] == [scene for _, scene, stays in found if stays]
 
 

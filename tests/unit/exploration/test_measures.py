@@ -14,7 +14,9 @@ from verify.studies.separation.stepper.trail import Trail
 
 def sample(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:
     grid = {"steps": steps, "step_sizes": [h], "initial_values": [{"q": q, "p": p}]}
-    return Sample.of(scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x"))
+    return Sample.from_scene(
+        scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x")
+    )
 
 
 def test_growth_of_the_oscillator_is_its_closed_form() -> None:
@@ -38,8 +40,8 @@ def test_rounding_share_is_that_of_a_separation() -> None:
 
 def test_what_is_below_its_own_error_bound_is_not_hunted() -> None:
     trail = (Fraction(1, 10**30), Fraction(0))
-    assert _greatest(Trail.of(trail), Fraction(1, 10**29)) == 0
-    assert _greatest(Trail.of(trail), Fraction(1, 10**32)) == Fraction(1, 10**30)
+    assert _greatest(Trail.from_values(trail), Fraction(1, 10**29)) == 0
+    assert _greatest(Trail.from_values(trail), Fraction(1, 10**32)) == Fraction(1, 10**30)
 
 
 def test_digits_lost_is_the_error_of_a_float64_loop() -> None:

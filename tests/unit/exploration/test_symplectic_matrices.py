@@ -6,9 +6,9 @@ import pytest
 
 from verify.exploration.oracles.symplectic_matrices import (
     Exact,
-    cycled,
-    exchanged,
-    of_places,
+    coordinate_change,
+    cyclic_shift,
+    exchange_of_p_and_q,
     symplectic,
 )
 
@@ -25,7 +25,7 @@ def form_of(matrix: Exact) -> Exact:
 
 
 @every_n
-@pytest.mark.parametrize("make", [symplectic, of_places])
+@pytest.mark.parametrize("make", [symplectic, coordinate_change])
 def test_what_a_seed_chooses_is_symplectic(make: Callable[[int, int], Exact], n: int) -> None:
     chosen = [make(seed, n) for seed in range(40)]
     assert all(form_of(matrix) == omega(n) for matrix in chosen)
@@ -37,7 +37,7 @@ def test_what_a_seed_chooses_is_symplectic(make: Callable[[int, int], Exact], n:
 @every_n
 def test_places_are_moved_by_places_alone(n: int) -> None:
     for seed in range(40):
-        matrix = of_places(seed, n)
+        matrix = coordinate_change(seed, n)
         assert not any(matrix[a, n + b] or matrix[n + a, b] for a in range(n) for b in range(n))
 
 
@@ -47,6 +47,6 @@ def test_two_shears_mix_p_and_q_in_the_plane() -> None:
 
 @every_n
 def test_degrees_are_put_in_order_and_p_and_q_exchanged(n: int) -> None:
-    assert form_of(cycled(n)) == omega(n)
-    assert form_of(exchanged(n)) == omega(n) * -1
-    assert cycled(3)[1, 0] == cycled(3)[0, 2] == cycled(3)[4, 3] == 1
+    assert form_of(cyclic_shift(n)) == omega(n)
+    assert form_of(exchange_of_p_and_q(n)) == omega(n) * -1
+    assert cyclic_shift(3)[1, 0] == cyclic_shift(3)[0, 2] == cyclic_shift(3)[4, 3] == 1

@@ -9,7 +9,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import quotient
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import Written, defined_values, functions_at
+from verify.flows.functions import ElementCode, defined_values, functions_at
 
 BITS_LOST = Fraction(1, 10**37)  # of 40 digits
 Slopes = Callable[..., tuple[Fraction, ...]]
@@ -41,10 +41,10 @@ def by_hand(slopes: Slopes, z: Sequence[Fraction], time: Fraction, count: int) -
     return [(a + b + h * c) / 2 for a, b, c in zip(x, before, at(x, count), strict=True)]
 
 
-def written(name: str) -> Written:
+def written(name: str) -> ElementCode:
     names, formulas, _ = CASES[name]
     ring, elements = embed([parse(x) for x in formulas], names)
-    return Written.of(mpfr.make(40), [(ring, x) for x in elements], names)
+    return ElementCode.from_elements(mpfr.make(40), [(ring, x) for x in elements], names)
 
 
 def apart(name: str, slopes: Slopes, time: Fraction, count: int) -> Fraction:
@@ -53,7 +53,7 @@ def apart(name: str, slopes: Slopes, time: Fraction, count: int) -> Fraction:
     z = [Fraction(k + 2, 7) for k in range(len(names))]
     with arithmetic.context():
         given = [arithmetic.number(x) for x in (*z, time)]
-        found = written(name).gragg_rule()(*given, count)
+        found = written(name).build_gragg_rule()(*given, count)
     true = by_hand(slopes, z, time, count)
     return max(abs(arithmetic.exact(a) - b) for a, b in zip(found, true, strict=True))
 

@@ -236,7 +236,7 @@ def nothing_remembered() -> None:
 
 
 def forget() -> None:
-    module._along_flow.cache_clear()
+    module._closed_form_evaluator.cache_clear()
     module._motions.cache_clear()
 
 

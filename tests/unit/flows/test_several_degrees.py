@@ -10,7 +10,7 @@ from verify.flows.solution import Solution, exact_solution, numerical_solution, 
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
-from verify.hamiltonians.uncoupled import uncoupled
+from verify.hamiltonians.uncoupled import uncouple
 
 KEPLER = systems.get("kepler").hamiltonian({"mu": 1})
 HENON = systems.get("henon-heiles").hamiltonian({})
@@ -101,7 +101,7 @@ def test_a_collision_is_told() -> None:
 
 def test_parts_that_are_not_coupled_are_the_planes() -> None:
     whole = Hamiltonian.parse("p1**2/2 - cos(q1) + p2**2/2 + q2**4/4 + p3*q4 + p4*q3")
-    parts = uncoupled(whole)
+    parts = uncouple(whole)
     assert [names for _, names in parts] == [("p1", "q1"), ("p2", "q2"), ("p3", "p4", "q3", "q4")]
     start = point_of(whole, ["1", "1/2", "1", "0"], ["0", "1/3", "0", "1"])
     found = solution_from(whole, start, Fraction(3), DIGITS)

@@ -7,7 +7,7 @@ import mpmath
 import pytest
 from flint import arb
 
-from verify.arithmetic.arb import around
+from verify.arithmetic.arb import make_ball
 from verify.arithmetic.exact import plain
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
@@ -18,7 +18,7 @@ from verify.flows.solution import NOT_KNOWN, Solution, exact_solution, leaves_by
 from verify.hamiltonians import systems
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.known_flows import closed_form, named, potential
+from verify.hamiltonians.known_flows import closed_form, named_systems, potential
 from verify.hamiltonians.motion import Motion, exactly
 
 DUFFING = "p**2/2 + q**2/2 + delta*q**4/4"
@@ -96,10 +96,10 @@ def test_a_long_time_keeps_h_within_its_enclosure(formula: str, time: str) -> No
         assert found.enclosed
         with working_precision(500):
             before = energy(formula, arb(exactly(Fraction(p))), arb(exactly(Fraction(q))))
-            after = energy(formula, *(around(x, found.bound) for x in (found.p, found.q)))
+            after = energy(formula, *(make_ball(x, found.bound) for x in (found.p, found.q)))
             assert after.overlaps(before)
-            wrong = around(found.p + 100 * found.bound, found.bound)
-            off = energy(formula, wrong, around(found.q, found.bound))
+            wrong = make_ball(found.p + 100 * found.bound, found.bound)
+            off = energy(formula, wrong, make_ball(found.q, found.bound))
             assert not off.overlaps(before), "the control: a state outside of its bound"
 
 
@@ -139,11 +139,13 @@ def test_a_known_flow_is_recognised_in_other_words(formula: str, system: str) ->
     for x, y in zip((found.p, found.q), map(flow.arithmetic.exact, z), strict=True):
         assert abs(x - y) < Fraction(1, 10**28)
     if system:
-        assert system in {n.system.formula for n in named(hamiltonian)} or potential(hamiltonian)
+        assert system in {n.system.formula for n in named_systems(hamiltonian)} or potential(
+            hamiltonian
+        )
 
 
 def test_the_parameters_are_read_off() -> None:
-    (found,) = named(Hamiltonian.parse("p**2/2 + 2*(1 - exp(-3*q/2))**2"))
+    (found,) = named_systems(Hamiltonian.parse("p**2/2 + 2*(1 - exp(-3*q/2))**2"))
     assert (found.system.name, dict(found.values)) == ("morse", {"D": 2, "a": Fraction(3, 2)})
 
 

@@ -16,7 +16,7 @@ from verify.algebra.formula import parse
 from verify.algebra.where_positive import sign_everywhere
 from verify.arithmetic.compiled import native
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.trace import Tape
 from verify.pages.markdown.markup import tree
 from verify.pages.markdown.mathml_to_tex import tex
@@ -132,7 +132,7 @@ def test_code_that_calls_it_is_traced_as_it() -> None:
         return p - h * math.asinh(q), q + h * np.arcsinh(p)
 
     tape = Tape()
-    p, q = copied(step, tape)(*(tape.symbol(name) for name in "pqh"))
+    p, q = copy_function(step, tape)(*(tape.symbol(name) for name in "pqh"))
     assert {"asinh"} == {node.operation for node in tape.nodes} - {
         "symbol", "number", "multiply", "subtract", "add",
     }  # fmt: skip
@@ -151,7 +151,7 @@ def test_it_is_exported(language: str) -> None:
     program = program_of(
         get("lie2").step_map(Hamiltonian.parse(H)), "lie2", "step", writer.RESERVED
     )
-    text = writer.written(program)
+    text = writer.render(program)
     assert {"python": "math.asinh(q)", "latex": r"\operatorname{asinh}"}.get(
         language, "asinh(q)"
     ) in text

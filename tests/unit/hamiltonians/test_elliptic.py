@@ -60,7 +60,7 @@ INVARIANTS = [(1, 0), (1, 1), (-1, 1), (4, -1), (0, 1), (0, -2), (12, 8), (12, -
 
 
 def made(g2: int, g3: int) -> Weierstrass:
-    return Weierstrass.of(fmpq(g2), fmpq(g3), fmpq(g2**3 - 27 * g3**2))
+    return Weierstrass.from_invariants(fmpq(g2), fmpq(g3), fmpq(g2**3 - 27 * g3**2))
 
 
 @pytest.mark.parametrize(("g2", "g3"), INVARIANTS)

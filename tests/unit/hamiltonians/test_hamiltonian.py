@@ -66,7 +66,7 @@ def test_so_is_any(text: str) -> None:
     except InputError:
         return
     # What was written may ask for more: p/p is 1 where p is not 0.
-    assert Hamiltonian.parse(made.formula) == replace(made, written=EVERYWHERE)
+    assert Hamiltonian.parse(made.formula) == replace(made, text_domain=EVERYWHERE)
 
 
 @pytest.mark.parametrize(

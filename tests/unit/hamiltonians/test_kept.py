@@ -19,7 +19,7 @@ from tests.helpers.imports import NAMES, rooms_of
 from tests.paths import ROOT
 from tests.unit.test_imports import GROUND, edges_of
 from verify import strategies
-from verify.algebra.ring_record import record_of, recorded
+from verify.algebra.ring_record import record_of, ring_from_record
 from verify.arithmetic.exact import text
 from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
@@ -27,7 +27,7 @@ from verify.hamiltonians import kept, systems
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.kept import kept_or_read
+from verify.hamiltonians.kept import load_or_read
 
 NUMBER = count()
 FORMULAS = [
@@ -65,14 +65,14 @@ def twice(formula: str, **values: str) -> tuple[Hamiltonian, Hamiltonian]:
         return Hamiltonian.parse(formula, values)
 
     source = f"formula {formula}, test {next(NUMBER)}"
-    found = [kept_or_read(source, values, read) for _ in range(2)]
+    found = [load_or_read(source, values, read) for _ in range(2)]
     assert is_read(found[0])
     return found[0], found[1]
 
 
 def anew(hamiltonian: Hamiltonian) -> CanonicalField:
     """Its field, in a ring that is shared with nobody."""
-    ring, energy, _ = hamiltonian.embedded()
+    ring, energy, _ = hamiltonian.embed_in_ring()
     return CanonicalField(ring, hamiltonian.coordinates, energy)
 
 
@@ -89,14 +89,14 @@ def of_field(field: CanonicalField) -> list[object]:
 
 
 def recorded_field(record: Any) -> CanonicalField:
-    ring, energy = recorded(record)
+    ring, energy = ring_from_record(record)
     return CanonicalField(ring, PLANE, energy)
 
 
 def same(one: Hamiltonian, other: Hamiltonian) -> None:
     assert not is_read(other)
     names = ("formula", "values", "parameters", "coordinates", "time_dependent", "symbols", "texts")
-    for name in (*names, "planar", "degrees", "domain", "written"):
+    for name in (*names, "planar", "degrees", "domain", "text_domain"):
         assert getattr(one, name) == getattr(other, name), name
     assert repr(one) == repr(other)
     assert of_field(anew(one)) == of_field(anew(other))
@@ -189,7 +189,7 @@ def test_other_values_another_text_and_other_code_are_read(monkeypatch: pytest.M
         def read(_: object) -> Hamiltonian:
             return Hamiltonian.parse(formula, values)
 
-        return kept_or_read(formula, values, read)
+        return load_or_read(formula, values, read)
 
     formula = "p**2/2 + delta*q**4/4"
     for source, value in ((formula, "1"), (formula, "1/2"), (formula + " ", "1")):
@@ -212,7 +212,7 @@ def test_bad_input_is_refused_each_time(cache: Path) -> None:
 
 def test_what_is_damaged_is_read_again(cache: Path) -> None:
     def found() -> Hamiltonian:
-        return kept_or_read("formula p*q", {}, lambda _: Hamiltonian.parse("p*q"))
+        return load_or_read("formula p*q", {}, lambda _: Hamiltonian.parse("p*q"))
 
     assert [is_read(found()), is_read(found())] == [True, False]
     (path,) = cache.iterdir()

@@ -18,7 +18,7 @@ from tests.helpers.programs.judged import judged
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.foreign.called import of_library
+from verify.integrators.foreign.called import step_of_library
 from verify.integrators.measures.survey import Request, places_of_field
 from verify.integrators.places.units import Field, units_of
 from verify.integrators.results import Claims, Finding
@@ -43,7 +43,7 @@ def test_euler_in_kilometres_and_seconds_is_of_order_1_and_not_symplectic() -> N
 
 def test_so_it_is_in_c(tmp_path: Path) -> None:
     path = library(tmp_path, "step.c", steps.EULER_OF_EARTH, "-lm")
-    found = judged(of_library(f"{path}:step", 2, DOUBLE, 60), BOTH, hamiltonian=steps.EARTH)
+    found = judged(step_of_library(f"{path}:step", 2, DOUBLE, 60), BOTH, hamiltonian=steps.EARTH)
     assert (found.verdict, found.convergence_order, found.symplectic) == ("REFUTED", 1, False)
 
 
@@ -118,7 +118,7 @@ def test_every_scale_of_h_is_looked_at(
     for number, verdict in ((right, "MEASURED"), (wrong, "REFUTED")):
         texts = {"force": force.format(number), "velocity": velocity.format(number)}
         path = library(tmp_path, f"{verdict}.c", IN_C.format(**texts), "-lm")
-        function = of_library(f"{path}:step", 1, DOUBLE, 60)
+        function = step_of_library(f"{path}:step", 1, DOUBLE, 60)
         assert judged(function, BOTH, hamiltonian=energy).verdict == verdict
 
 
@@ -138,7 +138,7 @@ def test_a_constant_that_is_wrong_in_its_seventh_digit_is_none_that_was_rounded(
     tmp_path: Path, factor: str, verdict: str
 ) -> None:
     source = IN_C.format(force=f"-sin(q)*(1 + {factor})", velocity="p")
-    function = of_library(f"{library(tmp_path, 'step.c', source, '-lm')}:step", 1, DOUBLE, 60)
+    function = step_of_library(f"{library(tmp_path, 'step.c', source, '-lm')}:step", 1, DOUBLE, 60)
     found = judged(function, BOTH)
     assert found.verdict == verdict, found.reason
     noted = any("h^1 only, as the rounding of a coefficient" in str(x) for x in found.notes)
@@ -188,7 +188,7 @@ def test_velocities_of_three_bodies_in_c_are_named(tmp_path: Path) -> None:
         "p1**2/4 + p2**2/6 + p3**2/10 + (q1**2 + (q2 - q1)**2 + (q3 - q2)**2 + q3**2)/2"
         " + (q1**4 + q2**4 + q3**4)/4"
     )
-    found = judged(of_library(f"{path}:step", 3, DOUBLE, 60), BOTH, hamiltonian=energy)
+    found = judged(step_of_library(f"{path}:step", 3, DOUBLE, 60), BOTH, hamiltonian=energy)
     assert found.verdict == "REFUTED"
     note = "in momenta p = m·v, m = (2, 3, 5), it is of order 2 and symplectic"
     assert note in map(str, found.notes)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
-from verify.integrators.user_code.repeated import changed, kept_by
+from verify.integrators.user_code.repeated import changed_names, read_kept_state
 
 
 @pytest.fixture(autouse=True)
@@ -40,15 +40,15 @@ SEEN: list[tuple[Callable[..., Any], str]] = [
 
 @pytest.mark.parametrize(("function", "name"), SEEN)
 def test_a_call_is_seen_to_leave_something(function: Callable[..., Any], name: str) -> None:
-    before = kept_by(function)
-    assert changed(before, kept_by(function)) == []
+    before = read_kept_state(function)
+    assert changed_names(before, read_kept_state(function)) == []
     function(0.5, 0.25)
-    assert name in changed(before, kept_by(function))
+    assert name in changed_names(before, read_kept_state(function))
 
 
 @pytest.mark.parametrize("function", pure_maps.MAPS)
 def test_a_function_of_its_arguments_leaves_nothing(function: Callable[..., Any]) -> None:
     function(0.5, 0.25)
-    before = kept_by(function)
+    before = read_kept_state(function)
     function(0.25, 0.5)
-    assert changed(before, kept_by(function)) == []
+    assert changed_names(before, read_kept_state(function)) == []

@@ -8,7 +8,7 @@ from tests.helpers.programs import remembering_steps as steps
 from tests.helpers.programs import user_steps as own_steps
 from tests.helpers.programs.judged import judged as found_of
 from verify.integrators.results import Claims
-from verify.integrators.user_code.repeated import changed, kept_by
+from verify.integrators.user_code.repeated import changed_names, read_kept_state
 
 
 @pytest.mark.parametrize("period", [2, 37, 100, 500])
@@ -99,7 +99,7 @@ def test_an_error_that_floats_alone_see_is_no_part_of_a_proof() -> None:
 
 
 def test_what_is_kept_is_known_by_name() -> None:
-    before = kept_by(steps.turning)
-    assert changed(before, kept_by(steps.turning)) == []
+    before = read_kept_state(steps.turning)
+    assert changed_names(before, read_kept_state(steps.turning)) == []
     steps.turning(0.1, 0.2, 0.1)
-    assert changed(before, kept_by(steps.turning)) == ["TURN"]
+    assert changed_names(before, read_kept_state(steps.turning)) == ["TURN"]

@@ -6,7 +6,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from verify.integrators.probes.agreement import _made
+from verify.integrators.probes.agreement import _evaluate_node
 
 MP = mpmath.mp.clone()
 MP.dps = 40
@@ -28,7 +28,7 @@ def test_each_inputs_error_is_magnified_by_the_slope(name: str, place: tuple[flo
     node, small = SimpleNamespace(operation=name, value=None), 1e-7
     for off in ([small, 0.0], [0.0, small / 3], [small, small / 3]):
         errors = off[: len(values)]
-        value, error = _made(node, list(zip(values, errors, strict=True)), {})  # type: ignore[arg-type]
+        value, error = _evaluate_node(node, list(zip(values, errors, strict=True)), {})  # type: ignore[arg-type]
         exact = function(*(MP.mpf(x) for x in values))
         assert value == pytest.approx(float(exact), rel=1e-14)
         signs = [(a, b) for a in (1, -1) for b in (1, -1)]
@@ -43,9 +43,9 @@ def test_each_inputs_error_is_magnified_by_the_slope(name: str, place: tuple[flo
 @pytest.mark.parametrize("power", [-3, -1, 2, 3, 7])
 def test_a_power_is_rounded_as_often_as_it_may_be_multiplied(power: int) -> None:
     node, (x, e) = SimpleNamespace(operation="power", value=power), (1.3, 1e-7)
-    value, error = _made(node, [(x, e)], {})  # type: ignore[arg-type]
+    value, error = _evaluate_node(node, [(x, e)], {})  # type: ignore[arg-type]
     assert value == pytest.approx(x**power)
     slope = abs(power * x ** (power - 1)) * e
     assert slope <= error == pytest.approx(slope, rel=1e-5)
-    _, alone = _made(node, [(x, 0.0)], {})  # type: ignore[arg-type]
+    _, alone = _evaluate_node(node, [(x, 0.0)], {})  # type: ignore[arg-type]
     assert 2.0**-54 * abs(power * value) <= alone <= 2.0**-50 * abs(power * value)

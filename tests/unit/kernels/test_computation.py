@@ -19,7 +19,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.statements import EXTREMES, TANGENT
-from verify.kernels.step.computation import Observed, computed, step_map_of
+from verify.kernels.step.computation import Observed, computation_of, step_map_of
 from verify.kernels.step.program import Evaluator, Program, _nest
 from verify.scenes import observables
 from verify.schemes import get
@@ -37,7 +37,7 @@ EXPLICIT = ["lie1", "lie2", "lie3"]
 def written(program: Program) -> tuple[object, ...]:
     """All that a program is."""
     lists = [*program.ops], [*program.static], [*program.depth], [*program.loops]
-    return (*lists, program.cost, dict(program._known), dict(program._special))
+    return (*lists, program.cost, dict(program._index_of), dict(program._special))
 
 
 @drawn(60)
@@ -123,7 +123,7 @@ def in_order(evaluator: Evaluator, x: Poly, order: tuple[int, ...], name: str) -
     """The sum with p and q, or q and p, by Horner's or Estrin's rule."""
     ring, program = evaluator.ring, evaluator.program
     used = ring.generators_in(x)
-    at = {g.name: (g.index, evaluator.at(g)) for g in used}
+    at = {g.name: (g.index, evaluator.index_of_generator(g)) for g in used}
     present = [n for n in STATE if n in at]
     places = [at[n][0] for n in present]
     static = {i for n, (i, _) in at.items() if n not in STATE}
@@ -132,7 +132,7 @@ def in_order(evaluator: Evaluator, x: Poly, order: tuple[int, ...], name: str) -
     if not chosen:
         return terms[0][1] if terms else program.constant(Fraction(0))
     values = [at[present[k]][1] for k in chosen]
-    return evaluator._sum(_nest(terms, chosen), values, 0, getattr(evaluator, name))
+    return evaluator._sum_nest(_nest(terms, chosen), values, 0, getattr(evaluator, name))
 
 
 # -- what is shared -------------------------------------------------------------------------------
@@ -158,8 +158,8 @@ def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
     asked = Observed(pipelined=False, scaled=False, tangent=False, needs=frozenset({"delta_j"}))
     one, two = (build(TaylorSeries(2), MIXED) for _ in range(2))
-    assert computed(one, asked) is computed(one, asked)
-    assert computed(one, asked) is not computed(two, asked)
+    assert computation_of(one, asked) is computation_of(one, asked)
+    assert computation_of(one, asked) is not computation_of(two, asked)
     assert step_map_of(MIXED, "lie2") is step_map_of(MIXED, "lie2")
 
 
@@ -177,8 +177,8 @@ def test_elements_that_were_read_once_have_the_same_balls(h: Hamiltonian, scheme
         for at in (Fraction(1, 3), Fraction(5, 2)):
             box = {n: rational_ball(at) + flint.arb(0, 0.01) for n in ("p", "q", "h")}
             expected = enclose_all(step.ring, elements, box)
-            assert made.over(box) is not None
-            assert list(map(str, made.over(box) or ())) == list(map(str, expected or ()))
+            assert made.enclose_over(box) is not None
+            assert list(map(str, made.enclose_over(box) or ())) == list(map(str, expected or ()))
 
 
 def test_where_an_element_may_be_undefined_there_are_no_balls() -> None:
@@ -186,5 +186,5 @@ def test_where_an_element_may_be_undefined_there_are_no_balls() -> None:
     made = Enclosures(step.ring, [step.elements[0]])
     with working_precision(96):
         box: Mapping[str, flint.arb] = {n: flint.arb(0, 1) for n in VARIABLES}
-        assert made.over(box) is None
-        assert made.over({**box, "q": flint.arb(3, 1)}) is not None
+        assert made.enclose_over(box) is None
+        assert made.enclose_over({**box, "q": flint.arb(3, 1)}) is not None

@@ -7,7 +7,7 @@ import flint
 import pytest
 
 from verify.kernels.step.program import Op, Program
-from verify.kernels.step.program_algebra import eliminated
+from verify.kernels.step.program_algebra import eliminate
 
 
 def run(program: Program, inputs: dict[str, Fraction]) -> list[Fraction]:
@@ -53,7 +53,7 @@ def test_the_solution_is_that_of_the_system(size: int, seed: int) -> None:
     matrix = [[value(f"m{i}{j}") for j in range(size)] for i in range(size)]
     right = [value(f"r{i}") for i in range(size)]
     twice = [[at, program.add(at, at)] for at, _ in right]
-    rows, pivots = eliminated(program, [[at for at, _ in row] for row in matrix], twice)
+    rows, pivots = eliminate(program, [[at for at, _ in row] for row in matrix], twice)
     values = run(program, inputs)
     for column, factor in ((0, 1), (1, 2)):
         solved = [values[row[column]] for row in rows]

@@ -76,7 +76,7 @@ def binary(low: int, high: int) -> st.SearchStrategy[Fraction]:
 def delta_j(text: str) -> tuple[Program, int]:
     step_map = get("lie2").step_map(Hamiltonian.parse(text))
     writer = Writer(step_map, COARSE, frozenset({"lambda"}), compensated=False)
-    return writer.program, writer.made.outputs["dj"]
+    return writer.program, writer.computation.outputs["dj"]
 
 
 @drawn(100)

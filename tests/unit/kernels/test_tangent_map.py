@@ -22,7 +22,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.a_posteriori import square_of_norm
 from verify.runs.step_rounding import StepRounding
 
@@ -50,7 +50,7 @@ def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, 
     walk = ChunkedLoop(kernel_run, kernel, arithmetic, limits[: len(kernel.limits)], shift)
     for step in range(kernel_run.steps + 1):
         if step:
-            (after,) = alone(walk._advance(1))
+            (after,) = run_alone(walk._advance(1))
             walk.state, walk.done = after, step
             walk._note()
         yield {n: walk._exact(x) for n, x in zip(kernel.state_names, walk.state, strict=True)}

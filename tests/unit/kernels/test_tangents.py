@@ -24,7 +24,7 @@ from tests.helpers.stepping.steps_in_degrees import (
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step import newton
-from verify.kernels.step.computation import Observed, computed
+from verify.kernels.step.computation import Observed, computation_of
 from verify.kernels.step.lowering import Lowering
 from verify.schemes import get
 
@@ -77,7 +77,7 @@ CASES = [
 
 def slopes_of(text: str, name: str) -> list[Fraction]:
     """J − 1 at `POINT`, row by row, by the step's program."""
-    made = computed(get(name).step_map(Hamiltonian.parse(text)), ASKED)
+    made = computation_of(get(name).step_map(Hamiltonian.parse(text)), ASKED)
     arithmetic, names = mpfr.make(DIGITS), made.coordinates
     roots = [x for row in made.slopes for x in row]
     lowering = Lowering(made.program, arithmetic.functions, guard=arithmetic.guard)

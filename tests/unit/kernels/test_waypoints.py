@@ -25,7 +25,7 @@ def added(calls: list[tuple[int, int]], steps: int, carried: Array) -> Array:
 def asked(known: Waypoints, carried: Array, steps: int) -> list[tuple[int, int]]:
     """(steps, points) of each call; the result is that of a way without a stop."""
     calls: list[tuple[int, int]] = []
-    found = known.followed(carried, steps, lambda n, z: added(calls, n, z))
+    found = known.advance_points(carried, steps, lambda n, z: added(calls, n, z))
     assert np.array_equal(found, carried + steps)
     return sorted(calls)
 
@@ -97,9 +97,9 @@ def test_a_map_after_another_one_has_the_bits_that_it_has_alone(
         )  # fmt: skip
         return list(made(q=q, p=p).values())
 
-    many_points.waypoints.cache_clear()
+    many_points.waypoints_of.cache_clear()
     alone = states(LONG)
-    many_points.waypoints.cache_clear()
+    many_points.waypoints_of.cache_clear()
     states(SHORT)
     assert all(map(np.array_equal, states(LONG), alone))
 
@@ -113,8 +113,8 @@ def test_other_step_sizes_are_other_ways() -> None:
         )
         return np.asarray(made(q=q, p=p)["q"])
 
-    many_points.waypoints.cache_clear()
+    many_points.waypoints_of.cache_clear()
     small, large = ends(Fraction(1, 100)), ends(Fraction(1, 50))
-    many_points.waypoints.cache_clear()
+    many_points.waypoints_of.cache_clear()
     assert np.array_equal(ends(Fraction(1, 50)), large)
     assert not np.array_equal(small, large)

@@ -3,7 +3,7 @@
 from typing import Any
 
 from tests.unit.pages.test_page import claim, proof, real, report, scene
-from verify.pages.answers import Answer, answers
+from verify.pages.answers import Answer, answer_questions
 from verify.pages.page import page_view, render
 from verify.prose import read_prose
 from verify.scenes.causes import Cause
@@ -16,7 +16,7 @@ KEEPS = {"scheme": "symplectic-euler", "area_preserving": True, "order": None, "
 
 
 def answered(made: Report) -> dict[str, Answer]:
-    found = answers(made, page_view(made).claims)
+    found = answer_questions(made, page_view(made).claims)
     return {each.question: each for each in found}
 
 
@@ -32,13 +32,13 @@ def statements(*readings: tuple[str, Verdict, str], **more: Any) -> Report:
 def test_the_theory_is_what_is_said_of_every_h() -> None:
     found = answered(statements(("A", P, ""), ("B", R, ""), ("B", P, ""), ("C", R, "mine")))
     (line,) = found["Is the theory right?"].lines
-    assert line.said == (
+    assert line.sentence == (
         "Of 2 statements on every H, 1 holds as meant, 1 holds in some readings and none is "
         "refuted in every reading."
     )
     found = answered(statements(("A", P, ""), ("B", R, ""), ("B", R, "")))
     (line,) = found["Is the theory right?"].lines
-    assert line.said == (
+    assert line.sentence == (
         "Of 2 statements on every H, 1 holds as meant and 1 is refuted in every reading:"
     )
     assert line.links == (("B", "claim-c1"),)
@@ -51,7 +51,7 @@ def test_what_explains_several_statements_stands_first_with_a_link_to_each() -> 
     )
     question, *_ = answered(made).values()
     assert question.question == "What is wrong, and why?"
-    assert [(line.said, line.links) for line in question.lines] == [
+    assert [(line.sentence, line.links) for line in question.lines] == [
         ("It is 1/N.", (("B", "claim-c1"), ("C", "claim-c2"))),
     ]
     assert "What is wrong, and why?" in render(made)
@@ -67,10 +67,10 @@ def test_a_scheme_preserves_area_only_where_every_proof_says_so() -> None:
         statements=statements_of((claim(statement_id="A", scene=""),)),
     )
     lie2, euler = answered(made)["Is area preserved?"].lines
-    assert lie2.said == (
+    assert lie2.sentence == (
         "lie2: no; ΔJ = (3*a*p*q)*h**3 + O(h**4) (My oscillator); det J ≡ 1 (Other)"
     )
-    assert euler.said == "symplectic-euler: yes, det J ≡ 1 is proved"
+    assert euler.sentence == "symplectic-euler: yes, det J ≡ 1 is proved"
 
 
 def test_of_a_long_leading_term_its_order_is_told() -> None:
@@ -92,7 +92,8 @@ def test_a_refuted_table_is_linked() -> None:
     assert tables.lines
     (line,) = tables.lines
     assert (
-        line.said == "None of the 2 printed values is the lg MSE from any of the 2 initial values:"
+        line.sentence
+        == "None of the 2 printed values is the lg MSE from any of the 2 initial values:"
     )
     assert [name for name, _ in line.links] == ["Table 9"]
     assert 'class="answers"' in render(real())
@@ -100,8 +101,8 @@ def test_a_refuted_table_is_linked() -> None:
 
 def test_of_a_few_proofs_alone_the_formula_is_told_and_of_many_the_page_below_says_more() -> None:
     few, many = (report(tuple(scene(proofs=(proof(),)) for _ in range(n))) for n in (1, 4))
-    (only,) = answers(few, ())
+    (only,) = answer_questions(few, ())
     assert only.question == "Is area preserved?"
-    assert not answers(many, ())
+    assert not answer_questions(many, ())
     assert 'class="answers"' not in render(many)
-    assert not answers(report((scene(proofs=()),)), ()), "no proof, no question"
+    assert not answer_questions(report((scene(proofs=()),)), ()), "no proof, no question"

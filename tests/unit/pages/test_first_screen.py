@@ -103,7 +103,7 @@ def test_the_reading_that_holds_stands_before_the_others_of_its_statement() -> N
     made = read(("a", "A", R), ("x", "X", P), ("b", "A", P), ("c", "A", Verdict.UNDECIDED))
     found = page_view(made).claims
     assert [c.result.id for c in found] == ["b", "a", "c", "x"]
-    assert [c.again for c in found] == [False, True, True, False]
+    assert [c.is_later_reading for c in found] == [False, True, True, False]
     assert [c.outcome for c in found] == ["3 readings: holds in some", "", "", ""]
     page = render(made)
     assert page.count("It is A.") == 1

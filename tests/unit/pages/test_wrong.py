@@ -2,7 +2,7 @@
 
 from tests.unit.pages.test_page import claim, report
 from verify.pages.page import page_view, render
-from verify.pages.wrong import wrong_of
+from verify.pages.wrong import find_mistakes
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -22,28 +22,28 @@ GIVEN = (
 
 
 def test_it_is_told_by_library_and_kind_and_digits_are_counted_alone() -> None:
-    found = wrong_of(page_view(report(claims=GIVEN)).claims)
+    found = find_mistakes(page_view(report(claims=GIVEN)).claims)
     assert found is not None
     (beta,) = found.libraries
     assert beta.name == "beta 2.0"
-    told = [(m.severity, [c.result.source for c in m.named], m.more) for m in beta.mistakes]
+    told = [(m.severity, [c.result.source for c in m.claims], m.more_count) for m in beta.mistakes]
     assert told == [("wrong clock", ["Verlet"], 0), ("wrong order", ["Verlet", "Ruth"], 0)]
     assert found.digits == (("gamma 3.0", 1),)
-    assert found.right == ("alpha 1.0",)
+    assert found.faultless == ("alpha 1.0",)
 
 
 def test_of_many_methods_some_are_named_and_each_once() -> None:
     many = tuple(judged(f"x/{k}", "x 1", f"m{k % 9}", "wrong order") for k in range(12))
-    found = wrong_of(page_view(report(claims=many)).claims)
+    found = find_mistakes(page_view(report(claims=many)).claims)
     assert found is not None
     (mistake,) = found.libraries[0].mistakes
-    assert [c.result.source for c in mistake.named] == [f"m{k}" for k in range(6)]
-    assert mistake.more == 3
+    assert [c.result.source for c in mistake.claims] == [f"m{k}" for k in range(6)]
+    assert mistake.more_count == 3
 
 
 def test_without_severities_there_is_no_such_table() -> None:
     plain = (claim(verdict=Verdict.REFUTED), claim(id="b"))
-    assert wrong_of(page_view(report(claims=plain)).claims) is None
+    assert find_mistakes(page_view(report(claims=plain)).claims) is None
     assert 'id="wrong"' not in render(report(claims=plain))
     assert 'id="telling"' in render(report(claims=plain))
 

@@ -18,7 +18,7 @@ from verify.papers.lie_derivative_scheme import (
     matrix_vector,
     two_norm,
 )
-from verify.papers.lie_derivative_scheme.convergence import _lengthened
+from verify.papers.lie_derivative_scheme.convergence import _length_grows
 from verify.papers.lie_derivative_scheme.criteria import area, connections
 from verify.papers.lie_derivative_scheme.criteria_examples import (
     COMPENSATED,
@@ -36,8 +36,8 @@ PLANTED: list[tuple[Callable[..., Check], Any]] = [
     (triangle.difference, "ac"),
     (triangle.difference, "bc"),
     (matrices.product_of_determinants, -1),
-    (matrices.of_the_field, 1),
-    (matrices.where_it_rests, 2),
+    (matrices.derivative_of_the_field, 1),
+    (matrices.derivative_at_rest, 2),
     (matrices.stretching, 2),
     (sums.geometric, 1),
     (sums.bound_of_eq_11, 2),
@@ -46,11 +46,11 @@ PLANTED: list[tuple[Callable[..., Check], Any]] = [
     (sums.compensated_changes, 1),
     (matrix_vector.euler, 1),
     (matrix_vector.stays_linear, 1),
-    (developables.contracted, 2),
+    (developables.contraction, 2),
     (developables.legendre, -1),
     (developables.radial, 1),
     (developables.ruled_hessian, -1),
-    (developables.compared, 1),
+    (developables.comparison, 1),
     (families.moves_by_a_constant, "c*p**2 + d*q"),
     (families.by_acceleration, 2),
     (families.twice, 3),
@@ -58,7 +58,7 @@ PLANTED: list[tuple[Callable[..., Check], Any]] = [
     (determinant._spirals, 2),
     (shrinks_to, 1),
     (turns_to_and_fro, -1),
-    (_lengthened, 2),
+    (_length_grows, 2),
 ]
 
 
@@ -100,4 +100,4 @@ def test_formulas_are_the_same_by_algebra_and_not_by_their_text() -> None:
     assert same("x", [(P + Q) ** 2 - P**2 - 2 * P * Q - Q**2], ("p", "q")).holds
     found = same("x", [P - P, P - Q], ("p", "q"))
     assert not found.holds
-    assert found.shown == "`p - q`"
+    assert found.value == "`p - q`"

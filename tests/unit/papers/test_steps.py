@@ -7,14 +7,14 @@ import pytest
 from verify.papers import check_theorem, names
 from verify.papers.argument import Step, checks_of, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.prose import Display, Formula
 from verify.verdict import Verdict
 
 ONE, TWO, THREE = (Check(name, True, "0") for name in ("one", "two", "three"))
 RUN = Check("a run", True, "0", NUMBERS)
 BALL = Check("a ball", True, "0", BALLS)
-THEOREM = Shipped("Product", "product_near_one")
+THEOREM = ShippedTheorem("Product", "product_near_one")
 _MARK = re.compile(
     r"(exact algebra|exact numbers|enclosures), rows? [0-9–]+( and [0-9–]+)*|"
     r"Rocq, \w+\.\w+(, \w+\.\w+)*"

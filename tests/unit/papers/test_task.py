@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.judging import add_claims, judged
+from verify.claims.judging import add_claims, judge_claim
 from verify.claims.kinds.theorem import TheoremClaim
 from verify.execution.execute import Store, execute
 from verify.execution.keeping import NOTHING
@@ -31,8 +31,8 @@ def test_what_is_kept_is_what_was_found(name: str, tmp_path: Path) -> None:
     kept = execute(plan, again)
     assert again.taken == 1
     assert [*first.values()] == [*kept.values()] == [check_theorem(name)]
-    without = judged(claim(name), {}, {}, store)
-    assert judged(claim(name), {}, kept, store) == without
+    without = judge_claim(claim(name), {}, {}, store)
+    assert judge_claim(claim(name), {}, kept, store) == without
     assert without.verdict is check_theorem(name).verdict
 
 
@@ -41,5 +41,5 @@ def test_the_verdict_is_that_of_the_result() -> None:
     found = task.compute(NOTHING)
     assert isinstance(found, Argument)
     planted = found.model_copy(update={"verdict": Verdict.UNDECIDED, "evidence": prose("planted")})
-    judgement = judged(claim(NAMES[0]), {}, {task.key: planted}, store)
+    judgement = judge_claim(claim(NAMES[0]), {}, {task.key: planted}, store)
     assert (judgement.verdict, str(judgement.evidence)) == (Verdict.UNDECIDED, "planted")

@@ -13,7 +13,7 @@ from tests.helpers.lie_derivatives import along_flow, lie_derivatives
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
 from verify.algebra.series.jets import Jets
-from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.algebra.series.power_series import Derivatives, Series, expand_at
 from verify.errors import InputError
 from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
@@ -111,8 +111,8 @@ def test_a_shifted_derivative_is_taylors_formula() -> None:
     h = sympy.Symbol("h")
     moved = CUBIC.diff(P).subs({P: P + h + 2 * h**2, Q: Q - 3 * h + h**3}, simultaneous=True)
     expected = sympy.Poly(sympy.expand(moved), h).all_coeffs()[::-1]
-    moves = [(name, Series.of(jets, x, 3)) for name, x in (("p", dp), ("q", dq))]
-    for n, x in enumerate(at_moved(Derivatives(jets, jets.h(1, 0)), moves, 3).coefficients):
+    moves = [(name, Series.from_coefficients(jets, x, 3)) for name, x in (("p", dp), ("q", dq))]
+    for n, x in enumerate(expand_at(Derivatives(jets, jets.h(1, 0)), moves, 3).coefficients):
         assert at(jets, x, CUBIC) == sympy.expand(expected[n])
 
 
@@ -175,7 +175,7 @@ def test_linear_algebra_finds_what_the_formula_says(eta: int) -> None:
     found = telescopes(jets, leading)
     assert found.holds is (eta % 2 == 0)
     if found.holds:
-        by_formula = potential_of_lie(JetFlow.over(jets), eta).divergence
+        by_formula = potential_of_lie(JetFlow.from_jets(jets), eta).divergence
         assert along_flow(jets, found.potential) == leading == along_flow(jets, by_formula)
 
 
@@ -186,7 +186,7 @@ def test_one_coefficient_more_no_longer_telescopes() -> None:
     found = telescopes(jets, changed)
     assert not found.holds
     assert "dimension" in found.reason
-    assert along_flow(jets, potential_of_lie(JetFlow.over(jets), 2).divergence) != changed
+    assert along_flow(jets, potential_of_lie(JetFlow.from_jets(jets), 2).divergence) != changed
 
 
 def test_a_hidden_derivative_is_found() -> None:
@@ -198,7 +198,7 @@ def test_a_hidden_derivative_is_found() -> None:
 
 def test_odd_schemes_have_no_potential_formula() -> None:
     with pytest.raises(ValueError, match="odd"):
-        potential_of_lie(JetFlow.over(Jets(4)), 1)
+        potential_of_lie(JetFlow.from_jets(Jets(4)), 1)
 
 
 # -- other schemes --------------------------------------------------------------------------------

@@ -70,8 +70,8 @@ def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     jets, names = every.form.ring, [*hamiltonian.coordinates, *(["t"] if timed else [])]
     assert isinstance(jets, JetsInDegrees)
     for a, b in product(range(2), range(2, 4)):
-        ours = in_numbers(jets, every.form.at(a, b), hamiltonian.exact)
-        theirs = at_point(leading.ring.expression(leading.at(a, b)), names)
+        ours = in_numbers(jets, every.form.entry(a, b), hamiltonian.exact)
+        theirs = at_point(leading.ring.expression(leading.entry(a, b)), names)
         assert ours == theirs
 
 
@@ -117,7 +117,9 @@ def test_a_wrong_potential_is_not_accepted(monkeypatch: pytest.MonkeyPatch) -> N
 
     def wrong(flow: Any, eta: int) -> TwoForm:
         form = right(flow, eta)
-        return TwoForm.of(form.ring, form.names, lambda a, b: form.at(a, b) * (2 - (a == 1)))
+        return TwoForm.from_entries(
+            form.ring, form.names, lambda a, b: form.entry(a, b) * (2 - (a == 1))
+        )
 
     monkeypatch.setattr(every_by_series, "potential_of_lie", wrong)
     assert prove_every("lie2", degrees=2).telescopes is None
@@ -159,7 +161,10 @@ def test_what_is_too_much_is_one_line(scheme: str, degrees: int, words: str) -> 
 def test_derivatives_of_h_are_what_sympy_finds() -> None:
     names, energy = ["p1", "p2", "q1", "q2"], parse(PAIR)
     jets = JetsInDegrees(names, 4)
-    x = jets.first("p1") * jets.of((1, 0, 1, 0)) + jets.variable("q2") * jets.first("q2") ** 2
+    x = (
+        jets.first("p1") * jets.derivative((1, 0, 1, 0))
+        + jets.variable("q2") * jets.first("q2") ** 2
+    )
     p1, q1, q2 = map(symbol, ("p1", "q1", "q2"))
     same = energy.diff(p1) * energy.diff(p1, q1) + q2 * energy.diff(q2) ** 2
     for name in names:

@@ -14,7 +14,7 @@ from verify.claims.kinds import models
 from verify.errors import InputError
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof import every
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.every import certify_every
 from verify.proof.every import prove_every
 from verify.verdict import Verdict
 
@@ -169,7 +169,7 @@ def test_explicit_stages_have_the_order_that_the_prover_in_n_degrees_has(
     of_t = [x for x in leading.free_symbols if x.name.endswith("t")]
     assert of_t
     assert sympy.expand(leading.subs(dict.fromkeys(of_t, 0)) - without) == 0
-    assert of_every(found)
+    assert certify_every(found)
 
 
 @pytest.mark.parametrize(

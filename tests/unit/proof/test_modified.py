@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.plane.modified import one as modified
 from verify.proof.plane.modified import one as module
-from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judge_equation
 from verify.proof.plane.modified.field import Vector
 from verify.proof.plane.modified.one import modified_of
 from verify.schemes.maps.parts import parts_of
@@ -207,10 +207,12 @@ def test_the_divergence_holds_for_the_parameters_that_are_told() -> None:
 
 def test_what_is_not_decided_is_said() -> None:
     result = found(DUFFING, "stormer-verlet")
-    open_term = Term(1, "p", "q", None, None, None, "p", found=None)
+    open_term = Term(1, "p", "q", None, None, None, "p", divergence_element=None)
     terms = (result.terms[0], open_term, *result.terms[2:])
-    left = judged(ModifiedEquation("s", DUFFING, 4, terms, True, None, result.where), None)
+    left = judge_equation(ModifiedEquation("s", DUFFING, 4, terms, True, None, result.where), None)
     assert (left.verdict, left.reach) == (Verdict.UNDECIDED, 0)
     assert "not decided" in str(left.reason)
     judged_as = schemes.get("stormer-verlet")
-    assert judged(left, judged_as).verdict is Verdict.UNDECIDED, "whether its order is missed"
+    assert judge_equation(left, judged_as).verdict is Verdict.UNDECIDED, (
+        "whether its order is missed"
+    )

@@ -80,7 +80,7 @@ def test_the_leading_form_is_that_of_the_step(formula: str, scheme: str) -> None
     assert found.order is not None
     own = defect(STEPS[scheme], ENERGIES[formula], numbers(start(formula)), H)
     for (a, b), entry in own.items():
-        expected = value(form.ring, form.at(a, b), formula)
+        expected = value(form.ring, form.entry(a, b), formula)
         assert abs(entry / H**found.order - expected) < 1e-6, (a, b)
     assert max(abs(x) for x in own.values()) > H ** (found.order + 1), "it does not vanish"
 

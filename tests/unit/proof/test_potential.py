@@ -71,7 +71,7 @@ def test_a_wrong_formula_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> Non
 
     def twice(flow: Any, eta: int) -> TwoForm:
         form = true(flow, eta)
-        return TwoForm.of(form.ring, form.names, lambda a, b: 2 * form.at(a, b))
+        return TwoForm.from_entries(form.ring, form.names, lambda a, b: 2 * form.entry(a, b))
 
     monkeypatch.setattr(potential, "potential_of_lie", twice)
     assert found("p**2/2 - cos(q)", "lie2")[2].holds is None

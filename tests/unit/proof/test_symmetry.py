@@ -4,7 +4,7 @@ import pytest
 
 from tests.helpers.symmetry import WITNESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.symmetry import by_series
+from verify.proof.symmetry import judge_symmetry
 from verify.schemes import get
 from verify.verdict import Verdict
 
@@ -22,7 +22,7 @@ def test_a_step_that_is_not_symmetric_is_refuted_at_the_power_where_it_differs(
 ) -> None:
     """Steps of ±h that are off by d h^(r + 1) and d (−h)^(r + 1) leave 2 d h^(r + 1) for odd r,
     and for even r nothing but the next power."""
-    found = by_series(get(scheme).step_map(Hamiltonian.parse(formula)), 6)
+    found = judge_symmetry(get(scheme).step_map(Hamiltonian.parse(formula)), 6)
     assert (found.verdict, found.power) == (Verdict.REFUTED, power)
     assert f"O(h^{power})" in str(found.reason)
 
@@ -30,5 +30,5 @@ def test_a_step_that_is_not_symmetric_is_refuted_at_the_power_where_it_differs(
 @pytest.mark.parametrize("formula", [WITNESS, IN_TIME])
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "implicit-midpoint"])
 def test_of_a_symmetric_step_nothing_is_refuted_nor_proved(scheme: str, formula: str) -> None:
-    found = by_series(get(scheme).step_map(Hamiltonian.parse(formula)), 5)
+    found = judge_symmetry(get(scheme).step_map(Hamiltonian.parse(formula)), 5)
     assert (found.verdict, found.power) == (Verdict.UNDECIDED, None)

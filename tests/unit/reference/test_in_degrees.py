@@ -15,8 +15,8 @@ from tests.helpers.constructed.reference import made, put, repaired
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
-from verify.reference.check.check import Checked, check
-from verify.reference.compare.compare import Compared, compare
+from verify.reference.check.check import CheckResult, check
+from verify.reference.compare.compare import Comparison, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
 from verify.reference.compare.submitted import has_degrees, read
@@ -56,7 +56,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found
 
 
-def look(folder: Path, share: float = 1.0) -> Checked:
+def look(folder: Path, share: float = 1.0) -> CheckResult:
     return check(folder, share=share, seed=1)
 
 
@@ -272,7 +272,7 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
     return path
 
 
-def compared(folder: Path, table: Path, **given: str) -> Compared:
+def compared(folder: Path, table: Path, **given: str) -> Comparison:
     ours = load(folder, "heiles", planar=False)
     return compare(ours, read(table, ours, {"scheme": "lie2", **given}, {}))
 

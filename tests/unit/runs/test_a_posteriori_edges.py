@@ -146,7 +146,7 @@ def test_a_constant_is_off_by_what_its_number_is(made: Arithmetic, value: Fracti
 def test_beyond_the_domain_of_the_map_there_is_no_bound_of_its_second_derivatives() -> None:
     """log q + log 1/q has the derivative 0 everywhere, and no value where q < 0."""
     scheme = "p_next = p + h*(log(q) + log(1/q)); q_next = q + h*p"
-    found = Derivatives.of(Hamiltonian.parse(FREE), scheme, volume=True, form=False)
+    found = Derivatives.from_scheme(Hamiltonian.parse(FREE), scheme, volume=True, form=False)
     assert found is not None
 
     def second(low: str, high: str) -> Any:

@@ -11,7 +11,7 @@ from tests.helpers.run_bounds import ctx, drawn
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.a_posteriori import certify
 from verify.runs.digits_on_demand import METHOD_OF_W, difference_of_w
 from verify.runs.run import run
@@ -49,7 +49,7 @@ def test_the_bound_of_a_short_run_holds_and_is_near_the_error(
         return
     assert outcome.done == steps
     certificate = certify(kernel_run, own, outcome)
-    near = alone(difference_of_w(kernel_run, own, outcome))
+    near = run_alone(difference_of_w(kernel_run, own, outcome))
     if near is None:  # errors grow too fast for a certificate with so many digits
         assert certificate is None or W not in certificate
         return
@@ -68,7 +68,7 @@ def test_a_mistake_of_w_that_a_loose_bound_would_hide_is_outside() -> None:
     kernel_run, own = started(HENON, "lie2", "1/100", 1000), arithmetic.get("mpfr", 33)
     outcome = kernel_run.run(own, tangent=True)
     near, certificate = (
-        alone(difference_of_w(kernel_run, own, outcome)),
+        run_alone(difference_of_w(kernel_run, own, outcome)),
         certify(kernel_run, own, outcome),
     )
     assert near is not None

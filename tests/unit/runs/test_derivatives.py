@@ -60,10 +60,10 @@ def bounds_of(formula: str, order: int, box: dict[str, flint.arb], h: Fraction) 
         fixed = {"h": rational_ball(h)}
         made: Any
         if hamiltonian.planar:
-            made = Derivatives.of(hamiltonian, scheme, volume=True, form=False)
+            made = Derivatives.from_scheme(hamiltonian, scheme, volume=True, form=False)
             form = ()
         else:
-            made = Derivatives.of(hamiltonian, scheme, volume=True, form=True)
+            made = Derivatives.from_scheme(hamiltonian, scheme, volume=True, form=True)
             form = made.form(fixed, box)
         found = {"second": made.second(fixed, box), "gradient": made.gradient(fixed, box)}
         found |= dict(zip(("size", "slope"), form, strict=False))

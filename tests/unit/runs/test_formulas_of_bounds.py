@@ -61,7 +61,7 @@ def certificate(noted: Noted) -> _Certificate:
     """A certificate of a run that noted this."""
     made = object.__new__(_Certificate)
     zero = Rounded(flint.arb(0), flint.arb(0))
-    # ‖of_matrix‖ is of one entry alone, and the greatest of_entry of two.
+    # The rounding of the matrix is of one entry alone, and the greatest of an entry of two.
     values = {"dm": zero, "dw_1": zero, "dw_2": zero, "de": zero}
 
     def adding(size: flint.arb, x: Rounded) -> flint.arb:
@@ -89,13 +89,13 @@ def certificate(noted: Noted) -> _Certificate:
         ),
         values={"mse": of_mpf(noted.squares), "energy_error_max": of_mpf(noted.risen)},
         rounding=SimpleNamespace(
-            fixed=dict,
+            constants=dict,
             box=lambda margin, last=False: {"widened": margin, "last": last},
-            adding=adding,
+            error_of_addition=adding,
             kernel=SimpleNamespace(matrix=["m"]),
         ),
         steps=noted.steps,
-        seen={name: ball(x) for name, x in noted.seen.items()},
+        records={name: ball(x) for name, x in noted.seen.items()},
         names=names,
         unit=ball(noted.unit),
         scale=ball(noted.scale),
@@ -117,7 +117,7 @@ def bounds_of(noted: Noted) -> dict[str, Real]:
         made = certificate(noted)
         orbit = made.orbit()
         assert orbit is not None
-        made.error, made.summed = orbit
+        made.error, made.error_sum = orbit
         found = {"state": orbit[0], "path": orbit[1]}
         found |= {name: bound(made).abs_upper() for name, bound in ALL.items()}
         return {name: number(x) for name, x in found.items()}
@@ -191,20 +191,24 @@ def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:
     """Y > 1, E > max ‖M‖, and an error of W of more than 3 max ‖M‖², each alone."""
     zero, one = flint.arb(0), flint.arb(1)
     motion = form_bound.Motion(steps=10, least=one, rate=zero, top=one, path=one)
-    small = dict.fromkeys(("summed", "second", "size", "slope", "of_matrix", "of_entry"), zero)
+    small = dict.fromkeys(
+        ("error_sum", "second", "size", "slope", "matrix_rounding", "entry_rounding"), zero
+    )
 
     def bound(**more: Any) -> flint.arb:
-        return form_bound.of_form(motion, **small | {n: flint.arb(x) for n, x in more.items()})
+        return form_bound.bound_total_defect(
+            motion, **small | {n: flint.arb(x) for n, x in more.items()}
+        )
 
     assert bound() == 0
-    assert bound(summed=0.49, second=1).is_finite()
-    assert not bound(summed=0.51, second=1).is_finite()
-    assert bound(of_matrix=0.99).is_finite()
-    assert not bound(of_matrix=1.01).is_finite()
-    assert bound(of_entry=0.29).is_finite()
-    assert not bound(of_entry=0.31).is_finite()
+    assert bound(error_sum=0.49, second=1).is_finite()
+    assert not bound(error_sum=0.51, second=1).is_finite()
+    assert bound(matrix_rounding=0.99).is_finite()
+    assert not bound(matrix_rounding=1.01).is_finite()
+    assert bound(entry_rounding=0.29).is_finite()
+    assert not bound(entry_rounding=0.31).is_finite()
     fast = replace(motion, rate=flint.arb(0.6))  # e^Q Q > 1
-    assert not form_bound.of_form(fast, **small).is_finite()
+    assert not form_bound.bound_total_defect(fast, **small).is_finite()
 
 
 # -- the inverse of M --------------------------------------------------------------------------

@@ -285,14 +285,14 @@ def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
 ) -> None:
     # An H of this test's own, so that no other test has compiled its kernel.
     fresh = Hamiltonian.parse("p**2/2 + a*q**2/2 + b*q**6/96 + 71*q**2/1931")
-    compiled, compile_one = [], float64._compiled
+    compiled, compile_one = [], float64._compile_now
 
     def count(*args: Any) -> Any:
         compiled.append(compile_one(*args))
         return compiled[-1]
 
     monkeypatch.setattr(float64, "_REPAID", 0)
-    monkeypatch.setattr(float64, "_compiled", count)
+    monkeypatch.setattr(float64, "_compile_now", count)
     for h in ("0.01", "0.02", "1/7", "3e-3"):
         for a, b in ((1, 1), ("1/3", -2), (-1, "0.5")):
             run(

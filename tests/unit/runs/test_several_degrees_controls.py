@@ -78,14 +78,14 @@ def test_a_row_that_is_left_out_is_caught(monkeypatch: Patch) -> None:
 def test_a_defect_without_the_rounding_of_its_matrix_is_caught(
     name: str, digits: int, monkeypatch: Patch
 ) -> None:
-    own: Callable[..., flint.arb] = form_bound.of_form
+    own: Callable[..., flint.arb] = form_bound.bound_total_defect
     zero = flint.arb(0)
 
     def lying(motion: Any, **given: Any) -> flint.arb:
-        nothing = {"second": zero, "slope": zero, "of_matrix": zero, "of_entry": zero}
+        nothing = {"second": zero, "slope": zero, "matrix_rounding": zero, "entry_rounding": zero}
         return own(motion, **given | nothing)
 
-    monkeypatch.setattr(form_bound, "of_form", lying)
+    monkeypatch.setattr(form_bound, "bound_total_defect", lying)
     assert outside(name, digits, NEAR) == {"symplectic_defect"}
 
 

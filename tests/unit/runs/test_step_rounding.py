@@ -48,7 +48,7 @@ def test_an_addition_loses_half_a_unit_of_a_sum_of_which_either_part_may_be_the_
         size, inside, error, unit = some(), some(), some(), some()
         with working_precision(PRECISION):
             made = bare(arithmetic=SimpleNamespace(absolute=absolute), unit=ball(unit))
-            found = made.adding(ball(size), Rounded(ball(-inside), ball(error)))
+            found = made.error_of_addition(ball(size), Rounded(ball(-inside), ball(error)))
         true = error if absolute else error + (size + inside + error) * unit
         assert abs(number(found) / true - 1) < CLOSE
 
@@ -63,13 +63,13 @@ def test_a_step_of_the_tangent_map_loses_what_its_products_and_sums_do(size: int
         change = [program.input(f"approx(v{k})", static=False) for k in range(entries)]
         read = [(some(), some() * ctx.ldexp(1, -45)) for _ in range(entries)]
         tangent = SimpleNamespace(
-            program=program, change=change, needed=list(range(entries)),
+            program=program, change=change, main_values=list(range(entries)),
             lowering=Lowering(program, (), "t"),
         )  # fmt: skip
         made = bare(kernel=SimpleNamespace(tangent=tangent), names=range(size))
         with working_precision(PRECISION):
             main = {k: Rounded(ball(x), ball(lost)) for k, (x, lost) in enumerate(read)}
-            found = made.of_tangent(main)
+            found = made.tangent_error(main)
             assert found is not None
         errors = [lost + (x + lost) * unit + ctx.ldexp(1, -96) for x, lost in read]
         error = ctx.sqrt(sum(e * e for e in errors))

@@ -17,7 +17,7 @@ QUADRATIC = Hamiltonian.parse("(p1**2 + p2**2)/2 + q1**2 + q1*q2 + q2**2")
 
 def proved(hamiltonian: Hamiltonian, scheme: str) -> set[str]:
     asked = names(planar=hamiltonian.planar)
-    found = runs.proved(step_map_of(hamiltonian, scheme), asked, Fraction(1, 10), 10, 20)
+    found = runs.prove_observables(step_map_of(hamiltonian, scheme), asked, Fraction(1, 10), 10, 20)
     assert set(map(tuple, found.values())) <= {(0, 0)}
     return {*found}
 

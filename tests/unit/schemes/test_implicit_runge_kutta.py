@@ -21,7 +21,7 @@ from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.studies.stability.linear import of_map
+from verify.studies.stability.linear import stability_of_map
 from verify.studies.stability.nearby_linear import linear_stability
 from verify.verdict import Verdict
 
@@ -198,7 +198,7 @@ def test_gauss_methods_are_stable_for_every_step_size(name: str) -> None:
 
 def test_radau_is_stable_everywhere_and_loses_area() -> None:
     harmonic = systems.get("harmonic").hamiltonian({"omega": 1})
-    found = of_map("radau", implicit_map(harmonic, RADAU))
+    found = stability_of_map("radau", implicit_map(harmonic, RADAU))
     assert found.interval is sympy.oo
     assert found.delta_j != 0
     y = sympy.Symbol("y", positive=True)
@@ -210,7 +210,7 @@ def test_radau_is_stable_everywhere_and_loses_area() -> None:
 def test_an_error_in_a_coefficient_makes_the_oscillator_gain_or_lose_area() -> None:
     harmonic = systems.get("harmonic").hamiltonian({"omega": 1})
     wrong = planted(TABLEAUS["gauss4"], 0, 1, sympy.Rational(1, 10**11))
-    found = of_map("gauss4", implicit_map(harmonic, wrong))
+    found = stability_of_map("gauss4", implicit_map(harmonic, wrong))
     assert found.delta_j != 0
     at_one = Fraction(str(sympy.N(found.delta_j.subs(sympy.Symbol("y", positive=True), 1), 30)))
     assert Fraction(1, 10**14) < abs(at_one) < Fraction(1, 10**10)

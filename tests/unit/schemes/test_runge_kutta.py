@@ -277,4 +277,6 @@ def test_a_run_is_the_one_by_hand_within_its_bound(
 
 @every_system
 def test_the_bounds_of_a_run_need_no_closed_form(text: str) -> None:
-    assert Derivatives.of(Hamiltonian.parse(text), "rk4", volume=True, form=False) is not None
+    assert (
+        Derivatives.from_scheme(Hamiltonian.parse(text), "rk4", volume=True, form=False) is not None
+    )

@@ -38,7 +38,7 @@ from verify.schemes.conditions.splitting_conditions import (
 from verify.schemes.conditions.words.words import lyndon, text
 from verify.schemes.methods.splitting import blanes_moan4
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import alternating, composed, palindrome
+from verify.schemes.splitting import alternating, compose, palindrome
 from verify.verdict import Verdict
 
 TINY, SMALL = sympy.Rational(1, 10**11), sympy.Rational(1, 10**6)
@@ -217,7 +217,7 @@ def test_the_printed_digits_of_blanes_and_moan_alone_have_order_4_to_15_digits_o
 
 @pytest.mark.parametrize("steps", [(1, -1, 1), (sympy.Rational(1, 3),) * 3])
 def test_other_compositions_of_three_verlet_steps_have_order_2(steps) -> None:
-    proof = proof_of(made("yoshida4", list(composed("kick", sympy.sympify(list(steps))))))
+    proof = proof_of(made("yoshida4", list(compose("kick", sympy.sympify(list(steps))))))
     assert (proof.verdict, proof.convergence_order) == (Verdict.REFUTED, 2)
 
 

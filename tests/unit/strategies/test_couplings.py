@@ -24,7 +24,7 @@ every_coupling = pytest.mark.parametrize(
 
 
 def drawn(coupling: Coupling) -> list[tuple[str, str]]:
-    return fuzzed(st.composite(lambda draw: coupling.sides(Drawer(draw, Limits())))(), 6)
+    return fuzzed(st.composite(lambda draw: coupling.draw_sides(Drawer(draw, Limits())))(), 6)
 
 
 def values(sides: tuple[str, str], axes: bool) -> list[mpmath.mpf]:

@@ -10,9 +10,9 @@ from verify import Hamiltonian, InputError
 from verify import strategies as s
 from verify.algebra.formula import symbol
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.hamiltonians.uncoupled import uncoupled
+from verify.hamiltonians.uncoupled import uncouple
 from verify.scenes.values import InitialState
-from verify.strategies.couplings import couplings, numbered
+from verify.strategies.couplings import couplings, number_variables
 from verify.strategies.formulas import KINDS
 
 every_n = pytest.mark.parametrize("degrees", [2, 3])
@@ -34,10 +34,10 @@ def test_separable_is_what_was_asked_for(degrees: int, separable: bool) -> None:
 
 def test_coupled_and_not_is_what_was_asked_for() -> None:
     for h in fuzzed(s.hamiltonians(degrees=2, terms=2, coupled=True), 10):
-        assert len(uncoupled(h)) == 1, h
+        assert len(uncouple(h)) == 1, h
     for h in fuzzed(s.hamiltonians(degrees=3, terms=2, coupled=False), 10):
-        assert len(uncoupled(h)) == 3, h
-    either = [len(uncoupled(h)) for h in fuzzed(s.hamiltonians(degrees=2, terms=2), 40)]
+        assert len(uncouple(h)) == 3, h
+    either = [len(uncouple(h)) for h in fuzzed(s.hamiltonians(degrees=2, terms=2), 40)]
     assert 8 < either.count(1) < 36
 
 
@@ -117,4 +117,4 @@ def test_a_coupling_has_two_degrees_and_the_asked_properties() -> None:
 
 
 def test_degrees_are_numbered_in_names_alone() -> None:
-    assert numbered("exp(-p**2) + sin(2*q)*P", 3, 12) == "exp(-p3**2) + sin(2*q3)*p12"
+    assert number_variables("exp(-p**2) + sin(2*q)*P", 3, 12) == "exp(-p3**2) + sin(2*q3)*p12"

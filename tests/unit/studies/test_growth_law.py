@@ -14,7 +14,7 @@ from verify.proof.plane.growth_law import NoLawError, growth_law
 from verify.runs.run import run
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.run import RunResult
-from verify.studies.growth.prediction import average_of, predictions
+from verify.studies.growth.prediction import compute_average, predict_runs
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 SKEW = Hamiltonian.parse("p**2/2 + q**2/2 + q**3/5 + p*q**2/4 + p**4/8")
@@ -23,7 +23,7 @@ SKEW = Hamiltonian.parse("p**2/2 + q**2/2 + q**3/5 + p*q**2/4 + p**4/8")
 def shown(element: tuple[Any, Any] | None) -> str:
     assert element is not None
     ring, x = element
-    return str(ring.factored(x))
+    return str(ring.as_product(x))
 
 
 def ran(hamiltonian: Hamiltonian, scheme: str, **changes: Any) -> RunResult:
@@ -32,7 +32,7 @@ def ran(hamiltonian: Hamiltonian, scheme: str, **changes: Any) -> RunResult:
 
 
 def mean(hamiltonian: Hamiltonian, scheme: str, **changes: Any) -> AverageResult:
-    return average_of(hamiltonian, scheme, **{"q": "1.5", "p": 0, "digits": 12, **changes})
+    return compute_average(hamiltonian, scheme, **{"q": "1.5", "p": 0, "digits": 12, **changes})
 
 
 # -- the law --------------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ def test_where_there_is_no_average_there_is_a_reason_and_nothing_is_predicted(
     assert (found.orbit, found.average, found.period) == ("undecided", None, None)
     assert reason in found.reason
     result = ran(hamiltonian, scheme, steps=5, **at)
-    assert predictions(hamiltonian, found, [result]) == ()
+    assert predict_runs(hamiltonian, found, [result]) == ()
 
 
 @pytest.mark.parametrize("digits", [0, 201, True, 1.5])
@@ -149,7 +149,7 @@ def test_an_average_is_the_same_after_a_round_trip_through_json() -> None:
 
 def test_the_parts_add_up_to_the_logarithm_of_what_is_predicted() -> None:
     result = ran(PENDULUM, "lie2")
-    (found,) = predictions(PENDULUM, mean(PENDULUM, "lie2"), [result])
+    (found,) = predict_runs(PENDULUM, mean(PENDULUM, "lie2"), [result])
     total = mpmath.mpf(found.boundary.value) + mpmath.mpf(found.secular.value)
     assert mpmath.expm1(total) == pytest.approx(float(found.predicted.value), rel=1e-9)
     assert found.measured == result.values["lambda"]
@@ -163,14 +163,14 @@ def test_runs_without_an_end_point_or_without_lambda_are_left_out() -> None:
     whole, average = ran(PENDULUM, "lie2"), mean(PENDULUM, "lie2")
     for name in ("p", "q", "lambda"):
         values = {n: v for n, v in whole.values.items() if n != name}
-        assert predictions(PENDULUM, average, [whole.model_copy(update={"values": values})]) == ()
-    assert len(predictions(PENDULUM, average, [whole, whole])) == 2
+        assert predict_runs(PENDULUM, average, [whole.model_copy(update={"values": values})]) == ()
+    assert len(predict_runs(PENDULUM, average, [whole, whole])) == 2
 
 
 def test_at_an_equilibrium_only_the_secular_part_is_left() -> None:
     """Λ = (1 + h⁴/4)^N − 1, predicted as exp(N h⁴/4) − 1."""
     result = ran(PENDULUM, "lie2", q=0, step_size="0.1", steps=10_000)
-    (found,) = predictions(PENDULUM, mean(PENDULUM, "lie2", q=0), [result])
+    (found,) = predict_runs(PENDULUM, mean(PENDULUM, "lie2", q=0), [result])
     assert float(found.boundary.value) == 0
     assert float(found.secular.value) == pytest.approx(0.25, rel=1e-12)
     assert float(found.measured.value) == pytest.approx((1 + 1e-4 / 4) ** 10_000 - 1, rel=1e-9)
@@ -181,7 +181,7 @@ def test_at_an_equilibrium_only_the_secular_part_is_left() -> None:
 def test_where_the_run_left_the_orbit_the_difference_says_so_and_nothing_breaks() -> None:
     """lie1 gains energy without end: at h T = 20 its law is far from what it was proved for."""
     result = ran(PENDULUM, "lie1", q="0.5", step_size="0.04", steps=12_500)
-    (found,) = predictions(PENDULUM, mean(PENDULUM, "lie1", q="0.5"), [result])
+    (found,) = predict_runs(PENDULUM, mean(PENDULUM, "lie1", q="0.5"), [result])
     assert found.difference is not None
     assert abs(float(found.difference.value)) > 1
 
@@ -190,7 +190,7 @@ def test_on_a_quadratic_hamiltonian_the_law_is_that_of_the_closed_form() -> None
     """lie2 on the harmonic oscillator: ΔJ = h⁴/4 everywhere."""
     harmonic = Hamiltonian.parse("p**2/2 + q**2/2")
     result = ran(harmonic, "lie2", steps=1000, digits=17, arithmetic="mpfr")
-    (found,) = predictions(harmonic, mean(harmonic, "lie2"), [result])
+    (found,) = predict_runs(harmonic, mean(harmonic, "lie2"), [result])
     h, steps = mpmath.mpf("0.01"), 1000
     assert float(found.boundary.value) == 0
     assert float(found.secular.value) == pytest.approx(float(steps * h**4 / 4), rel=1e-12)

@@ -11,7 +11,7 @@ from verify.scenes.results.report import SceneResult
 from verify.studies import plan as module
 from verify.studies.kinds import studies
 from verify.studies.kinds.proofs import proof_task
-from verify.studies.plan import found_of, plan_scenes
+from verify.studies.plan import collect_findings, plan_scenes
 
 OTHERS = {"name", "title", "hamiltonian", "parameters", "source", "time", "proofs", "criteria"}
 
@@ -25,7 +25,9 @@ def test_no_two_have_one_place() -> None:
 
 def test_each_part_of_a_scenes_result_is_one_studys(tmp_path: Path) -> None:
     scene = load(tmp_path, HEAD)
-    parts = Counter(k for each in studies() if each.found for k in each.found(scene, {}))
+    parts = Counter(
+        k for each in studies() if each.results_for_scene for k in each.results_for_scene(scene, {})
+    )
     assert set(parts.values()) == {1}
     optional = {n for n, field in SceneResult.model_fields.items() if not field.is_required()}
     assert set(parts) <= set(SceneResult.model_fields) - OTHERS
@@ -40,11 +42,11 @@ def test_a_study_that_is_found_is_planned_and_shown(
         99,
         (Section(99, "what is new", "the scene has no [new]", lambda scene: False),),
         need=lambda plan, scene: plan.need(proof_task(scene, "rk4"), "new"),
-        found=lambda scene, results: {"new": len(results)},
+        results_for_scene=lambda scene, results: {"new": len(results)},
     )
     before = plan_scenes([scene])
     monkeypatch.setattr(module, "studies", lambda: [*studies(), made])
     after = plan_scenes([scene])
     assert set(after.tasks) - set(before.tasks) == {proof_task(scene, "rk4").key}
     assert [*after.left_out][-1][1] == "the scene has no [new]"
-    assert found_of(scene, {})["new"] == 0
+    assert collect_findings(scene, {})["new"] == 0

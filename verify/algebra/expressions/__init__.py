@@ -1,1 +1,1 @@
-"""sympy's expressions: what they are made of, and how they are written; no ring is known here."""
+"""sympy's expressions: their parts and their text, independent of any ring."""

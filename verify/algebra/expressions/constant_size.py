@@ -1,4 +1,4 @@
-"""How large a constant expression is, before sympy is asked anything about it.
+"""The size of a constant expression, tested before sympy evaluates it.
 
 sympy settles signs and identities of constants by evaluating them, which for sin(exp(exp(100)))
 never ends. Ball arithmetic says at once that such a constant is out of reach.
@@ -17,16 +17,18 @@ from verify.late import sympy
 MAX_BITS = 4000
 
 
-def within_reach(constant: sympy.Expr) -> bool:
-    """Whether the constant is finite and below 2^4000 in size, shown by ball arithmetic."""
+def is_within_reach(constant: sympy.Expr) -> bool:
+    """Return True if the constant is finite and below 2^4000 in size, by ball arithmetic."""
     with working_precision(128):
         ball = _ball(constant)
+        # 128 bits suffice: only the order of magnitude matters, and a doubtful ball counts as too
+        # large.
         limit = flint.arb(2) ** MAX_BITS
         return ball is not None and ball.is_finite() and abs(ball) < limit
 
 
 def _ball(node: sympy.Expr) -> flint.arb | None:
-    """A ball around the constant, or None where this module does not know the expression."""
+    """Enclose the constant, or return None where this module does not know the expression."""
     if node.is_Rational:
         return flint.arb(flint.fmpq(int(node.p), int(node.q)))
     if node is sympy.pi:

@@ -1,4 +1,4 @@
-"""How sympy writes an expression as the text of a formula."""
+"""The printer by which sympy writes an expression as the text of a formula."""
 
 import sympy
 from sympy.printing.str import StrPrinter

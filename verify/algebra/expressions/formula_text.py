@@ -1,4 +1,4 @@
-"""Exact expression → the text of a formula, which `verify.algebra.formula` reads back."""
+"""The text of an exact expression as a formula, which `verify.algebra.formula` reads back."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.late import sympy
 
 @lru_cache(maxsize=512)
 def to_text(expression: sympy.Expr) -> str:
-    """The expression as a formula that `parse` reads back, to an equal expression."""
+    """Format the expression as a formula that `parse` reads back to an equal expression."""
     from verify.algebra.expressions.formula_printer import FormulaPrinter  # which imports sympy
 
     with _any_length():
@@ -21,11 +21,12 @@ def to_text(expression: sympy.Expr) -> str:
 
 @contextmanager
 def _any_length() -> Iterator[None]:
-    """Whole numbers are written in it however long they are; Python writes 4300 digits at most.
+    """Allow whole numbers of any length as text; Python's own limit is 4300 digits.
 
-    That is for numbers that come from outside. These do not: 10^1000, which a formula may hold,
-    has 7000 digits in its seventh power.
+    That limit guards against numbers from outside. These come from within: 10^1000, which a formula
+    may hold, has 7000 digits in its seventh power.
     """
+    # The limit is global to the process, so it is restored even after an error.
     before = sys.get_int_max_str_digits()
     sys.set_int_max_str_digits(0)
     try:

@@ -1,4 +1,4 @@
-"""Which functions and powers expressions are made of, innermost first."""
+"""The functions and powers in expressions, innermost first."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from verify.late import sympy
 
 
 def function_of(node: sympy.Expr) -> Function | None:
-    """The function that the node is of something, as e is exp of 1; None where it is of none."""
+    """Return the function that the node applies, exp for the number e; None where it is none."""
     return by_name().get("exp" if node is sympy.E else type(node).__name__)
 
 
 def is_trigonometric(node: sympy.Expr) -> bool:
-    """Whether it is a function as sin and cos are, which repeat."""
+    """Return True if the node is sin, cos or tan of something, a periodic function."""
     function = function_of(node)
     return function is not None and function.pair is CIRCLE
 
 
 def waves_in(expression: sympy.Expr) -> set[sympy.Expr]:
-    """All that is sin, cos or tan of something in the expression."""
+    """Return all sines, cosines and tangents in the expression."""
     return {node for node in sympy.preorder_traversal(expression) if is_trigonometric(node)}
 
 
 def subexpressions(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
-    """All subexpressions, each once: a composition has the same ones in many places."""
-    seen: set[sympy.Expr] = set()
+    """Return all subexpressions, each once: a composition has the same ones in many places."""
+    visited: set[sympy.Expr] = set()
     stack = list(expressions)
     while stack:
         node = stack.pop()
-        if node not in seen:
-            seen.add(node)
+        if node not in visited:
+            visited.add(node)
             stack += node.args
-    return seen
+    return visited
 
 
 def levels_of(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
-    """The function applications among the nodes by depth of nesting, innermost first."""
+    """Return the function applications among the nodes by depth of nesting, innermost first."""
     depth: dict[sympy.Expr, int] = {}
 
     @cache
@@ -65,7 +65,7 @@ def levels_of(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
 
 
 def is_exponential_power(node: sympy.Expr) -> bool:
-    """Whether node is u**v as sympy writes exp(v log u), with v not a rational number."""
+    """Return True if the node is u**v, sympy's form of exp(v log u), with v no rational number."""
     return bool(node.is_Pow and not isinstance(node, sympy.exp) and not node.exp.is_Rational)
 
 

@@ -1,7 +1,7 @@
-"""Monomials, read at once: of polynomials that are written out as sums of them there are many.
+"""Monomials, read directly: a polynomial that is written out has many of them.
 
-What else a formula is made of goes node by node through sympy, which looks at every product for
-what it could be simplified to.
+All other parts of a formula go node by node through sympy, which examines every product for
+simplifications and is slow.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ Quotient = tuple[int, int]  # numerator, denominator
 
 
 class Monomials:
-    """Collects those terms of a sum that are numbers times powers of names, by their powers.
+    """A collector of the terms of a sum that are numbers times powers of names, by their powers.
 
-    `line`: the text that the nodes are of. `name` gives a name's symbol, or what else it
+    `line`: the text that was parsed to the nodes. `name` returns a name's symbol, or what else it
     stands for, and raises InputError for one that is not allowed.
     """
 
@@ -36,14 +36,14 @@ class Monomials:
         self.collected: dict[Powers, gmpy2.mpq] = {}
 
     def take(self, node: ast.expr, sign: int) -> bool:
-        """Adds the term times its sign; False where it is to be read in the ordinary way."""
+        """Add the term times its sign; return False where it must be read in the ordinary way."""
         powers: dict[str, int] = {}
         quotient = self._quotient(node, powers, DEEPEST)
         if quotient is None or max(powers.values(), default=0) > _MOST_POWER:
             return False
         try:
             symbols = [(self.name(name), n) for name, n in powers.items()]
-        except InputError:  # of several errors the first one in the text is told
+        except InputError:  # the ordinary way reports the first of several errors in the text
             return False
         if not all(symbol.is_Symbol for symbol, _ in symbols):
             return False
@@ -53,8 +53,11 @@ class Monomials:
         return True
 
     def sum(self) -> sympy.Expr:
-        """The sum of what was taken, as sympy has it: sums it has in its own order, a number first;
-        products with a number before the names, where that is not 1."""
+        """Return the sum of the terms taken, in sympy's normal form.
+
+        There a number stands first in a sum and the other terms are in sympy's own order; in a
+        product a number other than 1 stands before the names.
+        """
         constant, terms = sympy.S.Zero, []
         for powers, c in self.collected.items():
             number = sympy.Rational(int(c.numerator), int(c.denominator))
@@ -63,30 +66,36 @@ class Monomials:
             elif c:
                 names = _names(powers)
                 factors = names if c == 1 else (number, *names)
-                terms.append(factors[0] if len(factors) == 1 else _in_order(sympy.Mul, factors))
+                terms.append(
+                    factors[0] if len(factors) == 1 else _build_ordered(sympy.Mul, factors)
+                )
         if len(terms) < 2:
             return sympy.Add(constant, *terms)
+        # sympy's constructors sort and simplify every argument, which is the cost that is avoided
+        # here: the arguments are put in its normal form at once.
         terms.sort(key=_place())
-        return _in_order(sympy.Add, terms if constant.is_zero else [constant, *terms])
+        return _build_ordered(sympy.Add, terms if constant.is_zero else [constant, *terms])
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
-        """The number before the names, whose powers are added to `powers`; None of what else it
-        may be, and of what the ordinary way would refuse."""
+        """Return the number before the names, and add the names' powers to `powers`.
+
+        None where the node is no such monomial, or the ordinary way would refuse it.
+        """
         match node:
             case ast.Constant():
-                written = self.line[node.col_offset : node.end_col_offset]
-                short = written.isdecimal() and len(written) <= _LONGEST
-                return (int(written), 1) if short else None
+                digits = self.line[node.col_offset : node.end_col_offset]
+                short = digits.isdecimal() and len(digits) <= _LONGEST
+                return (int(digits), 1) if short else None
             case ast.Name(id=name):
                 powers[name] = powers.get(name, 0) + 1
                 return 1, 1
             case ast.UnaryOp(op=ast.USub(), operand=operand) if levels:
-                found = self._quotient(operand, powers, levels - 1)
-                return found and (-found[0], found[1])
+                inner = self._quotient(operand, powers, levels - 1)
+                return inner and (-inner[0], inner[1])
             case ast.BinOp(op=ast.Pow(), left=ast.Name(id=name), right=ast.Constant()):
-                found = self._quotient(node.right, {}, 0)
-                powers[name] = powers.get(name, 0) + (found[0] if found else 0)
-                return found and (1, 1)
+                inner = self._quotient(node.right, {}, 0)
+                powers[name] = powers.get(name, 0) + (inner[0] if inner else 0)
+                return inner and (1, 1)
             case ast.BinOp(op=ast.Mult() | ast.Div()) if levels:
                 return self._product(node, powers, levels - 1)
         return None
@@ -96,45 +105,46 @@ class Monomials:
         while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
             divided = isinstance(node.op, ast.Div)
             inner: dict[str, int] = {} if divided else powers
-            found = self._quotient(node.right, inner, levels)
-            if found is None or (divided and (inner or found[0] == 0)):
+            quotient = self._quotient(node.right, inner, levels)
+            if quotient is None or (divided and (inner or quotient[0] == 0)):
                 return None
-            over, under = found[::-1] if divided else found
+            over, under = quotient[::-1] if divided else quotient
             above, below, node = above * over, below * under, node.left
-        found = self._quotient(node, powers, levels)
-        if found is None:
+        quotient = self._quotient(node, powers, levels)
+        if quotient is None:
             return None
-        above, below = above * found[0], below * found[1]
+        above, below = above * quotient[0], below * quotient[1]
+        # Larger numbers go the ordinary way, which has limits and messages of its own.
         return (above, below) if max(abs(above), abs(below)).bit_length() <= _MOST_BITS else None
 
 
 @cache
 def _place() -> Callable[[sympy.Expr], Any]:
-    """The key by which sympy orders what is summed."""
+    """Return the key by which sympy orders the terms of a sum."""
     return cmp_to_key(sympy.Basic.compare)
 
 
-def _in_order(kind: type[sympy.Expr], args: Sequence[sympy.Expr]) -> sympy.Expr:
-    """The sum or product of what is in order, which takes sympy ten times as long to find out."""
+def _build_ordered(kind: type[sympy.Expr], args: Sequence[sympy.Expr]) -> sympy.Expr:
+    """Build the sum or product of ordered arguments, ten times as fast as sympy, which sorts."""
     return kind._from_args(tuple(args), is_commutative=True)
 
 
 @lru_cache(maxsize=1024)
 def _names(powers: Powers) -> tuple[sympy.Expr, ...]:
-    found: tuple[sympy.Expr, ...] = sympy.Mul.make_args(sympy.Mul(*(x**n for x, n in powers)))
-    return found
+    factors: tuple[sympy.Expr, ...] = sympy.Mul.make_args(sympy.Mul(*(x**n for x, n in powers)))
+    return factors
 
 
-def is_of_name(x: sympy.Expr) -> bool:
-    """Whether it is a name or a power of one with an integer exponent."""
+def is_power_of_name(x: sympy.Expr) -> bool:
+    """Return True if x is a name or a power of one with an integer exponent."""
     return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
 
 
 def reads_back(x: sympy.Expr, most: int) -> bool:
-    """Whether x is a sum of monomials whose text, of at most so many characters, surely reads as x.
+    """Return True if x is a sum of monomials whose text surely parses back to x.
 
-    Its terms are then all taken by `Monomials`, which gives each number and powers as they stand
-    there, and sympy has one order for what is summed. Where the answer is no, it may be so too.
+    `most`: the allowed number of characters. The terms are then all taken by `Monomials`, which
+    keeps numbers and powers as they are, and sympy orders a sum in one way. False decides nothing.
     """
     if not x.is_Add:
         return False
@@ -147,7 +157,7 @@ def reads_back(x: sympy.Expr, most: int) -> bool:
                 if max(digits) > _LONGEST:
                     return False
                 length += sum(digits) + 2
-            elif is_of_name(factor):
+            elif is_power_of_name(factor):
                 name, power = factor.as_base_exp()
                 if not 0 < int(power) <= _MOST_POWER:
                     return False
@@ -164,11 +174,11 @@ class Monomial(NamedTuple):
     powers: tuple[tuple[str, int], ...]
 
 
-# A formula's expression is asked for its terms whenever something is made of it.
+# The terms of a formula's expression are needed whenever something is computed from it.
 @lru_cache(maxsize=64)
 def monomials_of(x: sympy.Expr) -> tuple[Monomial, ...] | None:
-    """The terms of x, as they stand there; None where one of them is no monomial."""
-    found = []
+    """Return the terms of x in their order; None where one of them is no monomial."""
+    monomials = []
     for term in x.args if x.is_Add else (x,):
         number, powers = sympy.S.One, []
         for factor in term.args if term.is_Mul else (term,):
@@ -176,16 +186,16 @@ def monomials_of(x: sympy.Expr) -> tuple[Monomial, ...] | None:
                 powers.append((factor.name, 1))
             elif factor.is_Rational:
                 number *= factor  # sympy's products may have several
-            elif is_of_name(factor) and factor.exp.p > 0:
+            elif is_power_of_name(factor) and factor.exp.p > 0:
                 powers.append((factor.base.name, int(factor.exp.p)))
             else:
                 return None
-        found.append(Monomial(number, tuple(powers)))
-    return tuple(found)
+        monomials.append(Monomial(number, tuple(powers)))
+    return tuple(monomials)
 
 
 def names_in(x: sympy.Expr) -> frozenset[str]:
-    """The names of the symbols in x."""
+    """Return the names of the symbols in x."""
     terms = monomials_of(x)
     if terms is None:
         return frozenset(symbol.name for symbol in x.free_symbols)

@@ -1,9 +1,9 @@
-"""A field of functions: quotients of polynomials in units, each of which knows its balls.
+"""A field of functions: quotients of polynomials in units, each of which can be enclosed.
 
-A unit is a name, π, or one function of quotients of older units: see the modules beside this one.
+A unit is a name, π, or a function of quotients of older units: see the modules in this folder.
 Polynomials are kept in normal form modulo the units' relations, such as ρ² = 1 + q². A quotient is
 a function where its divisor is not 0; divisors come only from denominators of the expression that
-is looked at, so where that is defined no divisor vanishes but where a common factor was left out.
+is examined. So where that is defined no divisor vanishes, except where a common factor cancelled.
 """
 
 import math
@@ -13,12 +13,12 @@ from fractions import Fraction
 
 import flint
 
-from verify.algebra.identities.polynomials import Poly, Polynomials, occurring, terms_of
+from verify.algebra.identities.polynomials import Poly, Polynomials, places_in, terms_of
 
 Ball = flint.arb
 _MOST_TERMS = 20_000
 _MOST_WORK = 2_000_000  # products of two terms, all in all
-_MOST_CANCELLED = 300  # terms of a quotient of which a common factor is looked for
+_MOST_CANCELLED = 300  # terms of a quotient, above which no common factor is looked for
 _MOST_DEGREE = 300
 
 
@@ -27,16 +27,16 @@ Names = Callable[[], Mapping[str, flint.arb]]
 
 
 class UndecidedError(Exception):
-    """The identity is out of reach: too large, or made of what is not handled here."""
+    """The identity is out of reach: too large, or with functions that are not handled here."""
 
 
 @dataclass(frozen=True)
 class Algebraic:
-    """What is known of an algebraic number a.
+    """Bounds on an algebraic number a.
 
-    `degrees`: by their places the units that it is made of, each with a bound of its degree over
-    the older ones; `divisor`: a whole number d > 0 for which d·a is an algebraic integer; `house`:
-    a bound of |a'| for every conjugate a'.
+    `degrees`: the places of the units in it, each with a bound on the unit's degree over the older
+    ones; `divisor`: a whole number d > 0 for which d·a is an algebraic integer; `house`: a bound on
+    |a'| for every conjugate a'.
     """
 
     degrees: Mapping[int, int]
@@ -45,7 +45,7 @@ class Algebraic:
 
     @property
     def degree(self) -> int:
-        """A bound of its degree."""
+        """A bound on the degree of the number."""
         return math.prod(self.degrees.values())
 
 
@@ -53,9 +53,9 @@ class Algebraic:
 class Unit:
     """One generator of the field.
 
-    `ball` gives its value in flint's present precision, from those of older units and the names;
-    `positive`: it is so wherever it is defined; `bounded`: it is between −1 and 1. `number`: of
-    what is an algebraic number.
+    `ball` encloses its value in flint's present precision, from balls of older units and the names;
+    `positive`: it is > 0 wherever it is defined; `bounded`: it is between −1 and 1. `number`: the
+    bounds on an algebraic number; None for other units.
     """
 
     index: int
@@ -66,16 +66,16 @@ class Unit:
 
 
 class Point:
-    """The units' balls at one point: given by balls for the names."""
+    """The units' balls at one point, which is given by balls for the names."""
 
     def __init__(self, field: "Field", names: Mapping[str, Ball]) -> None:
         self.field, self.names = field, names
         self.values: dict[int, Ball] = {}
 
-    def of(self, x: Poly) -> Ball:
-        """The ball of a polynomial in the units."""
+    def enclose(self, x: Poly) -> Ball:
+        """Enclose a polynomial in the units."""
         total = flint.arb(0)
-        places = occurring(x)
+        places = places_in(x)
         for monomial, coefficient in terms_of(x):
             term = flint.arb(coefficient)
             for place in places:
@@ -90,7 +90,7 @@ class Point:
         return self.values[index]
 
     def quotient(self, x: "Quotient") -> Ball:
-        return self.of(x.above) / self.of(x.below)
+        return self.enclose(x.above) / self.enclose(x.below)
 
 
 class Field:
@@ -99,7 +99,7 @@ class Field:
     def __init__(self, names: tuple[str, ...], room: int) -> None:
         self.ring = Polynomials(names, room)
         self.units: dict[int, Unit] = {}
-        self.known: dict[tuple[str, ...], Quotient] = {}
+        self.unit_by_key: dict[tuple[str, ...], Quotient] = {}
         self.work = 0
         for name in names:
             place = self.ring.places[name]
@@ -125,48 +125,51 @@ class Field:
         bounded: bool = False,
         number: tuple[int, Algebraic] | None = None,
     ) -> "Quotient":
-        """A new unit under a key that `known` does not have yet.
+        """Add a unit under a key that `unit_by_key` does not have yet.
 
-        `number`: its degree over the units in the second, which tells its divisor and house.
+        `number`: for an algebraic number, its degree over the units in the second item, and these
+        with the number's divisor and house.
         """
         try:
-            index = self.ring.made()
+            index = self.ring.reserve_place()
         except OverflowError:
             raise UndecidedError("too many functions") from None
-        own = number and replace(number[1], degrees={**number[1].degrees, index: number[0]})
-        self.units[index] = Unit(index, ball, positive, bounded, own)
-        self.known[key] = self.polynomial(self.ring.gens[index])
-        return self.known[key]
+        bounds = number and replace(number[1], degrees={**number[1].degrees, index: number[0]})
+        self.units[index] = Unit(index, ball, positive, bounded, bounds)
+        self.unit_by_key[key] = self.polynomial(self.ring.gens[index])
+        return self.unit_by_key[key]
 
     def relate(self, unit: "Quotient", power: int, relation: Poly) -> None:
-        """relation = 0, with that power of the unit, and older units; instead of an older one."""
+        """Set relation = 0, with that power of the unit and older units, for an older relation."""
         self.ring.relate(self.ring.gens[self.place(unit)], power, relation)
 
     def place(self, unit: "Quotient") -> int:
-        """The place of a unit."""
-        return occurring(unit.above)[0]
+        """Return the place of a unit."""
+        return places_in(unit.above)[0]
 
     def single(self, x: Poly) -> int | None:
-        """The place of the unit that x is, with coefficient 1."""
-        places = occurring(x)
+        """Return the place of the unit that x is, or None where x is not just a unit."""
+        places = places_in(x)
         alone = len(x) == 1 and len(places) == 1 and x.total_degree() == 1
         return places[0] if alone and x.leading_coefficient() == 1 else None
 
     # -- arithmetic ---------------------------------------------------------------------------
 
-    def multiplied(self, x: Poly, y: Poly) -> Poly:
+    def multiply(self, x: Poly, y: Poly) -> Poly:
         self.work += len(x) * len(y)
+        # The limit counts products of terms over the whole life of the field, so no identity takes
+        # long.
         if self.work > _MOST_WORK or x.total_degree() + y.total_degree() > 10 * _MOST_DEGREE:
             raise UndecidedError("too much work")
-        return self.limit(self.ring.reduce(x * y))
+        return self.check_length(self.ring.reduce(x * y))
 
-    def limit(self, x: Poly) -> Poly:
+    def check_length(self, x: Poly) -> Poly:
         if len(x) > _MOST_TERMS:
             raise UndecidedError("too many terms")
         return x
 
-    def made(self, above: Poly, below: Poly) -> "Quotient":
-        """Their quotient without a common factor, as far as one is looked for."""
+    def divide(self, above: Poly, below: Poly) -> "Quotient":
+        """Return the quotient without a common factor, as far as one is looked for."""
         if below.is_zero():
             raise UndecidedError("a division by zero")
         if above.is_zero():
@@ -175,32 +178,33 @@ class Field:
             common = above.gcd(below)
             if not common.is_constant():
                 above, below = self.ring.reduce(above / common), self.ring.reduce(below / common)
+        # Divisors have leading coefficient 1, so equal quotients have equal texts and keys.
         first = below.leading_coefficient()
         return Quotient(self, above / first, below / first)
 
     def is_small(self, *elements: Poly) -> bool:
-        """Whether common factors and factors of it may be asked for."""
+        """Return True if the elements are small enough to be factored."""
         terms = sum(len(x) for x in elements)
         return terms <= _MOST_CANCELLED and all(x.total_degree() <= _MOST_DEGREE for x in elements)
 
-    def positive(self, place: int) -> bool:
-        """Whether the unit of that place is > 0 wherever it is defined."""
+    def is_positive(self, place: int) -> bool:
+        """Return True if the unit of that place is > 0 wherever it is defined."""
         return self.units[place].positive
 
-    def bounded(self, place: int) -> bool:
-        """Whether it is between −1 and 1."""
+    def is_bounded(self, place: int) -> bool:
+        """Return True if the unit of that place is between −1 and 1."""
         return self.units[place].bounded
 
     def is_number(self, x: Poly) -> bool:
-        """Whether x is made of algebraic numbers alone."""
-        return all(self.units[place].number is not None for place in occurring(x))
+        """Return True if x contains algebraic numbers alone."""
+        return all(self.units[place].number is not None for place in places_in(x))
 
     def terms(self, x: "Quotient") -> Iterator[tuple[Fraction, "Quotient"]]:
-        """x = Σ c·m with rational c, each m a power product over one divisor."""
+        """Split x = Σ c·m, with rational c, each m a power product over one divisor."""
         for monomial, c in terms_of(x.above):
             power_product = self.ring.context.from_dict({monomial: 1})
             # x.below begins with 1, so one m has one form only where nothing cancels.
-            yield Fraction(int(c.p), int(c.q)), self.made(power_product, x.below)
+            yield Fraction(int(c.p), int(c.q)), self.divide(power_product, x.below)
 
 
 @dataclass(frozen=True)
@@ -217,12 +221,12 @@ class Quotient:
 
     @property
     def is_zero(self) -> bool:
-        """Whether it is 0 as it stands; else it may be or not."""
+        """True if the numerator is the zero polynomial; else the function may still be 0."""
         return bool(self.above.is_zero())
 
     @property
     def rational(self) -> flint.fmpq | None:
-        """The rational number that it is."""
+        """The quotient as a rational number; None where it is none as it stands."""
         if self.is_zero:
             return flint.fmpq(0)
         if self.above.is_constant() and self.below.is_constant():
@@ -232,9 +236,9 @@ class Quotient:
     def __add__(self, other: "Quotient") -> "Quotient":
         f = self.field
         if self.below == other.below:
-            return f.made(f.ring.reduce(self.above + other.above), self.below)
-        crossed = f.multiplied(self.above, other.below) + f.multiplied(other.above, self.below)
-        return f.made(crossed, f.multiplied(self.below, other.below))
+            return f.divide(f.ring.reduce(self.above + other.above), self.below)
+        crossed = f.multiply(self.above, other.below) + f.multiply(other.above, self.below)
+        return f.divide(crossed, f.multiply(self.below, other.below))
 
     def __neg__(self) -> "Quotient":
         return Quotient(self.field, -self.above, self.below)
@@ -244,13 +248,13 @@ class Quotient:
 
     def __mul__(self, other: "Quotient") -> "Quotient":
         f = self.field
-        return f.made(f.multiplied(self.above, other.above), f.multiplied(self.below, other.below))
+        return f.divide(f.multiply(self.above, other.above), f.multiply(self.below, other.below))
 
     def __truediv__(self, other: "Quotient") -> "Quotient":
         return self * other.inverse()
 
     def inverse(self) -> "Quotient":
-        return self.field.made(self.below, self.above)
+        return self.field.divide(self.below, self.above)
 
     def __pow__(self, n: int) -> "Quotient":
         if n < 0:
@@ -261,7 +265,7 @@ class Quotient:
         return half * half * self if n % 2 else half * half
 
     def times(self, c: int | Fraction | flint.fmpq) -> "Quotient":
-        """Its product with a rational number."""
+        """Return the product with a rational number."""
         if isinstance(c, Fraction):
             c = flint.fmpq(c.numerator, c.denominator)
         return Quotient(self.field, self.above * c, self.below) if c != 0 else self.field.zero

@@ -1,4 +1,4 @@
-"""Polynomials over the rationals, modulo relations that each give a power of one generator."""
+"""Polynomials over the rationals, modulo relations, each of which replaces a generator's power."""
 
 import math
 from collections.abc import Collection, Iterator, Sequence
@@ -27,57 +27,60 @@ class Generator:
 
     @property
     def inner(self) -> Poly:
-        """The argument; of a function, a root, an inverse: not of a variable or π."""
-        assert self.argument is not None  # noqa: S101 - the caller looks at the kind
+        """The argument of a function, a root or an inverse; a variable and π have none."""
+        assert self.argument is not None  # noqa: S101 - the caller checks the kind
         return self.argument
 
 
 def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
-    """Each monomial, as the powers of all generators, with its coefficient.
+    """Iterate over the monomials, as powers of all generators, with their coefficients.
 
-    Far faster than by a dictionary of flint's own making.
+    That is far faster than flint's own dictionary.
     """
     return zip(x.monoms(), x.coeffs(), strict=True)
 
 
-def occurring(x: Poly) -> list[int]:
-    """The places of the generators that are in x."""
+def places_in(x: Poly) -> list[int]:
+    """Return the places of the generators in x."""
     return [place for place, power in enumerate(x.degrees()) if power > 0]
 
 
-def split(x: Poly, at: int) -> dict[int, Poly]:
-    """x as a polynomial in the generator of that place: its coefficients that are not 0.
+def split(x: Poly, place: int) -> dict[int, Poly]:
+    """Split x by the powers of the generator of that place: the coefficients that are not 0.
 
-    By Taylor's theorem at 0, so that no term passes through Python.
+    They come from Taylor's theorem at 0, so that no term passes through Python.
     """
-    found = {}
-    for power in range(x.degrees()[at] + 1):
-        part = x.subs({at: 0})
+    parts = {}
+    # The n-th derivative at 0, divided by n!, is the coefficient of the n-th power.
+    for power in range(x.degrees()[place] + 1):
+        part = x.subs({place: 0})
         if not part.is_zero():
-            found[power] = part / math.factorial(power)
-        x = x.derivative(at)
-    return found
+            parts[power] = part / math.factorial(power)
+        x = x.derivative(place)
+    return parts
 
 
-def by_monomials(x: Poly, places: Collection[int]) -> dict[Monomial, dict[Monomial, flint.fmpq]]:
-    """The coefficient, by its terms, of each power product of the generators in these places."""
-    found: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
+def split_by_monomials(
+    x: Poly, places: Collection[int]
+) -> dict[Monomial, dict[Monomial, flint.fmpq]]:
+    """Return the coefficient, by its terms, of each power product of generators at these places."""
+    coefficients: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
     for monomial, c in terms_of(x):
         inside = tuple(n if place in places else 0 for place, n in enumerate(monomial))
         rest = tuple(0 if place in places else n for place, n in enumerate(monomial))
-        found.setdefault(inside, {})[rest] = c
-    return found
+        coefficients.setdefault(inside, {})[rest] = c
+    return coefficients
 
 
 class Polynomials:
-    """Those in the given names and in up to `room` generators, which are made one by one."""
+    """The polynomials in some names and in up to `room` generators, which are added one by one."""
 
     def __init__(
         self, names: Sequence[str], room: int = 0, ordering: flint.Ordering = flint.Ordering.lex
     ) -> None:
-        own = [f"_{k}" for k in range(room)]  # no name begins so
+        generator_names = [f"_{k}" for k in range(room)]  # no name begins so
         # Lexicographic with the newest generator first: relations then reduce to older ones.
-        self.context = flint.fmpq_mpoly_ctx.get([*own, *names], ordering)
+        self.context = flint.fmpq_mpoly_ctx.get([*generator_names, *names], ordering)
         self.gens = self.context.gens()
         self.places = {name: room + k for k, name in enumerate(names)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
@@ -85,32 +88,32 @@ class Polynomials:
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
 
     def constant(self, value: Fraction) -> Poly:
-        """A rational number as an element."""
+        """Convert a rational number to an element."""
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
-        """A variable as an element; KeyError where the ring has none of that name."""
+        """Return a variable as an element; KeyError where the ring has none of that name."""
         return self.gens[self.places[name]]
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
-        """x y in normal form."""
+        """Return x y in normal form."""
         return self.reduce(x * y)
 
-    def made(self) -> int:
-        """The place of a new generator; OverflowError where there is no room."""
+    def reserve_place(self) -> int:
+        """Reserve the place of a new generator; OverflowError where there is no room."""
         if not self.free:
             raise OverflowError
         self.free -= 1
         return self.free
 
     def relate(self, generator: Poly, power: int, relation: Poly) -> None:
-        """relation = 0, with that power of its newest generator; instead of an older relation."""
+        """Set relation = 0, with a power of its newest generator; it replaces an older relation."""
         place = self.gens.index(generator)
         others = (each for each in self.relations if each[0] != place)
         self.relations = sorted([*others, (place, power, relation)], key=lambda each: -each[0])
 
     def reduce(self, x: Poly) -> Poly:
-        """The normal form of x modulo the relations, newest generator first."""
+        """Reduce x to its normal form modulo the relations, newest generator first."""
         if self.relations:
             degrees = x.degrees()
             for place, power, relation in reversed(self.relations):

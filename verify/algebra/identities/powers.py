@@ -12,14 +12,14 @@ from math import lcm
 import flint
 
 from verify.algebra.identities.field import Field, Quotient, UndecidedError
-from verify.algebra.identities.numbers import number_sign, root_of
+from verify.algebra.identities.numbers import bounds_of_root, number_sign
 from verify.algebra.identities.polynomials import Poly
-from verify.algebra.identities.signs import definite
+from verify.algebra.identities.signs import definite_sign
 
 MAX_POWER = 256
 _MAX_DIVISOR = 120
 _MAX_NUMBER_BITS = 4000
-_SMALL_FACTOR = 16  # bits of the primes that are looked for in a large number
+_SMALL_FACTOR = 16  # bits of the primes up to which a large number is factored
 _SMALL_NUMBER = 64
 
 
@@ -27,28 +27,28 @@ class FinerError(Exception):
     """A unit must be divided more finely: the field is to be built anew."""
 
 
-class Finer:
-    """By how much units are divided, by the order in which they are made; kept between attempts."""
+class Divisors:
+    """The divisors of units, by the order in which these are added; kept between attempts."""
 
     def __init__(self) -> None:
         self.divisors: dict[tuple[str, int], int] = {}
 
-    def divisor(self, kind: str, number: int, r: Fraction) -> int:
-        """Of the unit of that number; FinerError where r is no whole multiple of its share."""
-        found = self.divisors.get((kind, number), 1)
-        if found % r.denominator:
-            finer = lcm(found, r.denominator)
+    def divisor_of(self, kind: str, number: int, r: Fraction) -> int:
+        """Return the divisor of a unit; FinerError where r is no whole multiple of its share."""
+        divisor = self.divisors.get((kind, number), 1)
+        if divisor % r.denominator:
+            finer = lcm(divisor, r.denominator)
             if finer > _MAX_DIVISOR:
                 raise UndecidedError("too fine a division")
             self.divisors[kind, number] = finer
             raise FinerError
-        return found
+        return divisor
 
 
 class Powers:
     """The powers, logarithms and exponentials of one field."""
 
-    def __init__(self, field: Field, finer: Finer) -> None:
+    def __init__(self, field: Field, finer: Divisors) -> None:
         self.field, self.finer = field, finer
         self.signs: dict[str, Quotient] = {}
         self.roots: dict[int, tuple[Poly, int]] = {}  # of ρ: its base and degree
@@ -59,30 +59,30 @@ class Powers:
     # -- signs --------------------------------------------------------------------------------
 
     def sign(self, f: Poly) -> Quotient:
-        """σ with σ f = |f|, as a number or a unit."""
+        """Return σ with σ f = |f|, as a number or a unit."""
         field, key = self.field, str(f)
         if key not in self.signs:
             if field.is_number(f):
-                shown: int | None = number_sign(field, f)
+                sign_value: int | None = number_sign(field, f)
             else:
-                shown = definite(f, field)
-            if shown is None:
-                shown_unit = field.unit(("sign", key), lambda at: at.of(f).sgn())
-                field.relate(shown_unit, 2, shown_unit.above**2 - 1)
-                self.signs[key] = shown_unit
-            elif shown == 0:
+                sign_value = definite_sign(f, field)
+            if sign_value is None:
+                unit = field.unit(("sign", key), lambda at: at.enclose(f).sgn())
+                field.relate(unit, 2, unit.above**2 - 1)
+                self.signs[key] = unit
+            elif sign_value == 0:
                 raise UndecidedError("the root or logarithm of 0")
             else:
-                self.signs[key] = field.number(shown)
+                self.signs[key] = field.number(sign_value)
         return field.polynomial(self.signs[key].above)
 
-    def positive(self, u: Quotient) -> None:
-        """Takes note of u > 0: the product of its factors' signs is 1."""
+    def assume_positive(self, u: Quotient) -> None:
+        """Record the assumption u > 0: the product of its factors' signs is 1."""
         field = self.field
         c, factors = self.factors(u)
         total = field.number(1 if c > 0 else -1)
         for f, n in factors:
-            if n % 2 and self._signed(f):
+            if n % 2 and self._may_be_negative(f):
                 total = total * self.sign(f)
         if total.rational == -1:
             raise UndecidedError("the root or logarithm of what is negative")
@@ -91,53 +91,53 @@ class Powers:
             unit = field.polynomial(newest)
             field.relate(unit, 1, newest - (total * unit).above)
 
-    def _signed(self, f: Poly) -> bool:
+    def _may_be_negative(self, f: Poly) -> bool:
         place = self.field.single(f)
         return place is None or not self.field.units[place].positive
 
     # -- factors ------------------------------------------------------------------------------
 
     def factors(self, u: Quotient) -> tuple[flint.fmpq, list[tuple[Poly, int]]]:
-        """u = c·Π f^n with irreducible polynomials f."""
+        """Factor u = c·Π f^n with irreducible polynomials f."""
         if u.is_zero or not self.field.is_small(u.above, u.below):
             raise UndecidedError("factors of what is 0, or too large")
         (a, above), (b, below) = u.above.factor(), u.below.factor()
         return a / b, [*((f, int(n)) for f, n in above), *((f, -int(n)) for f, n in below)]
 
     def prime_factors(self, c: flint.fmpq) -> list[tuple[int, int]]:
-        """|c| as a product of powers of primes, or of numbers too large to be factored."""
-        found = []
+        """Factor |c| into powers of primes, or of numbers too large to be factored."""
+        factors = []
         for number, sign in ((abs(int(c.p)), 1), (int(c.q), -1)):
             if number.bit_length() > _MAX_NUMBER_BITS:
                 raise UndecidedError("a number too large")
             small = number.bit_length() <= _SMALL_NUMBER
             whole = flint.fmpz(number)
             parts = whole.factor() if small else whole.factor_smooth(_SMALL_FACTOR)
-            found += [(int(prime), sign * int(n)) for prime, n in parts if prime > 1]
-        return found
+            factors += [(int(prime), sign * int(n)) for prime, n in parts if prime > 1]
+        return factors
 
     def bases(self, u: Quotient) -> list[tuple[Poly, int]]:
-        """|u| as a product of powers of such numbers and of irreducible polynomials."""
+        """Factor |u| into powers of such numbers and of irreducible polynomials."""
         (c, factors), constant = self.factors(u), self.field.ring.context.constant
         return [*((constant(prime), n) for prime, n in self.prime_factors(c)), *factors]
 
     # -- powers -------------------------------------------------------------------------------
 
     def power(self, u: Quotient, r: Fraction) -> Quotient:
-        """|u|^r."""
+        """Return |u|^r."""
         if abs(r) > MAX_POWER:
             raise UndecidedError("too high a power")
         total = self.field.one
         for f, n in self.bases(u):
-            total = total * self._of_base(f, n * r)
+            total = total * self._power_of_base(f, n * r)
         return total
 
-    def _of_base(self, f: Poly, e: Fraction) -> Quotient:
-        """|f|^e of an irreducible f."""
+    def _power_of_base(self, f: Poly, e: Fraction) -> Quotient:
+        """Return |f|^e for an irreducible f."""
         field, place = self.field, self.field.single(f)
         if place in self.roots:
             base, degree = self.roots[place]
-            return self._of_base(base, e / degree)
+            return self._power_of_base(base, e / degree)
         if place in self.exponents:
             return self.exponential(self.exponents[place].times(e))
         if abs(e) > MAX_POWER:
@@ -145,7 +145,7 @@ class Powers:
         whole = e.numerator // e.denominator
         rest = e - whole
         total = field.polynomial(f)
-        if whole % 2 and (self._signed(f) or field.is_number(f)):
+        if whole % 2 and (self._may_be_negative(f) or field.is_number(f)):
             total = total**whole * self.sign(f)
         else:
             total = total**whole
@@ -155,27 +155,27 @@ class Powers:
         return total * root ** int(rest * degree)
 
     def _root(self, f: Poly, r: Fraction) -> tuple[Quotient, int]:
-        """ρ with ρ^n = |f|, and n, of which r is a multiple of 1/n."""
+        """Return ρ with ρ^n = |f|, and n; r is a multiple of 1/n."""
         field, key = self.field, ("root", str(f))
-        degree = self.finer.divisor("root", self.number(key), r)
-        if key not in field.known:
+        degree = self.finer.divisor_of("root", self.number(key), r)
+        if key not in field.unit_by_key:
             sign = self.sign(f)
-            number = root_of(field, f, degree) if field.is_number(f) else None
-            made = field.unit(
-                key, lambda at: abs(at.of(f)).root(degree), positive=True, number=number
+            number = bounds_of_root(field, f, degree) if field.is_number(f) else None
+            unit = field.unit(
+                key, lambda at: abs(at.enclose(f)).root(degree), positive=True, number=number
             )
-            field.relate(made, degree, made.above**degree - (sign * field.polynomial(f)).above)
-            self.roots[field.place(made)] = f, degree
-        return field.known[key], degree
+            field.relate(unit, degree, unit.above**degree - (sign * field.polynomial(f)).above)
+            self.roots[field.place(unit)] = f, degree
+        return field.unit_by_key[key], degree
 
     def number(self, key: tuple[str, ...]) -> int:
-        """The place of the key in the order of making."""
+        """Return the number of the key, in the order in which keys first occur."""
         return self._numbers.setdefault(key, len(self._numbers))
 
     # -- logarithms ---------------------------------------------------------------------------
 
     def logarithm(self, u: Quotient) -> Quotient:
-        """log |u|."""
+        """Return log |u|."""
         total = self.field.zero
         for f, n in self.bases(u):
             total += self._log_of(f).times(n)
@@ -189,17 +189,17 @@ class Powers:
         if place in self.exponents:
             return self.exponents[place]
         key = ("logarithm", str(f))
-        if key not in field.known:
+        if key not in field.unit_by_key:
             if field.is_number(f) and number_sign(field, f) == 0:
                 raise UndecidedError("the logarithm of 0")
-            made = field.unit(key, lambda at: abs(at.of(f)).log())
-            self.logarithms[field.place(made)] = f
-        return field.known[key]
+            unit = field.unit(key, lambda at: abs(at.enclose(f)).log())
+            self.logarithms[field.place(unit)] = f
+        return field.unit_by_key[key]
 
     # -- exponentials -------------------------------------------------------------------------
 
     def exponential(self, u: Quotient) -> Quotient:
-        """exp u, by its terms: exp(r log |f|) is |f|^r."""
+        """Return exp u, term by term: exp(r log |f|) is |f|^r."""
         field = self.field
         total = field.one
         for r, term in field.terms(u):
@@ -211,14 +211,14 @@ class Powers:
         return total
 
     def _exponential_of(self, term: Quotient, r: Fraction) -> Quotient:
-        """exp(r·term)."""
+        """Return exp(r·term)."""
         field, key = self.field, ("exponential", term.key)
-        share = self.finer.divisor("exponential", self.number(key), r)
-        if key not in field.known:
+        share = self.finer.divisor_of("exponential", self.number(key), r)
+        if key not in field.unit_by_key:
             part = term.times(Fraction(1, share))
-            made = field.unit(key, lambda at: at.quotient(part).exp(), positive=True)
-            self.exponents[field.place(made)] = part
+            unit = field.unit(key, lambda at: at.quotient(part).exp(), positive=True)
+            self.exponents[field.place(unit)] = part
         n = int(r * share)
         if abs(n) > MAX_POWER:
             raise UndecidedError("too high a power")
-        return field.known[key] ** n
+        return field.unit_by_key[key] ** n

@@ -1,5 +1,5 @@
-"""What is likely wrong in a text that is no formula: where it stands, and what to write instead.
+"""Messages about a text that is no formula: the likely mistake, its place, and what to write.
 
-Nothing here decides what a formula is: the parser has refused the text, and asks why. So a rule
-that guesses badly words an error badly, and refuses nothing.
+Nothing here decides what a formula is: the parser has refused the text already. So a rule that
+guesses badly makes a bad message, and refuses nothing.
 """

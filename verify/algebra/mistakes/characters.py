@@ -1,4 +1,4 @@
-"""Characters that no formula has: what they are called, and what to write."""
+"""Messages about characters that no formula has: their names, and what to write."""
 
 import keyword
 import re
@@ -16,7 +16,7 @@ _POWER = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+")
 
 
 def strange_character(text: str) -> str:
-    """Of the first character that is outside ASCII, else of the first that is not printed."""
+    """Describe the first character that is outside ASCII, else the first unprintable one."""
     foreign = next((k for k, c in enumerate(text) if not c.isascii()), None)
     if foreign is None:
         unseen = (k for k, c in enumerate(text) if not (c.isprintable() or c.isspace()))
@@ -25,12 +25,13 @@ def strange_character(text: str) -> str:
         return f"is not a formula: {where} is not allowed; leave it out"
     c = text[foreign]
     name = unicodedata.name(c, "without a name").lower()
-    shown = c if c.isprintable() and c.strip() else f"U+{ord(c):04X}"
+    text_of_character = c if c.isprintable() and c.strip() else f"U+{ord(c):04X}"
     instead = _instead(c, text[foreign:])
-    return f"at {place(text, foreign)}: {shown} ({name}) is outside ASCII; {instead}"
+    return f"at {place(text, foreign)}: {text_of_character} ({name}) is outside ASCII; {instead}"
 
 
 def _instead(c: str, rest: str) -> str:
+    # Compatibility normalization maps look-alikes, such as full-width letters, to plain ones.
     plain = unicodedata.normalize("NFKC", c)
     if c in _LEFT_OUT:
         return "leave it out"

@@ -1,16 +1,16 @@
-"""What Python reads and no formula has: other functions, comparisons, indices, lists."""
+"""Messages about what Python reads and no formula has: functions, comparisons, indices, lists."""
 
 import ast
 import re
 from collections.abc import Collection
 
-from verify.errors import is_meant, nearest
+from verify.errors import find_nearest, format_suggestion
 from verify.functions import by_name
 
 _LONGEST = 40  # characters of what is quoted
 _CASES = "a formula has no cases, since H must be smooth"
 # What is made of functions, unless it is one itself; {0} and {1} are the arguments, in parentheses.
-_MADE = {
+_BY_FUNCTIONS = {
     "sec": "(1/cos{0})", "csc": "(1/sin{0})", "cosec": "(1/sin{0})", "cot": "(1/tan{0})",
     "ctg": "(1/tan{0})", "sech": "(1/cosh{0})", "csch": "(1/sinh{0})", "coth": "(1/tanh{0})",
     "log10": "(log{0}/log(10))", "log2": "(log{0}/log(2))", "log1p": "log(1 + {0})",
@@ -20,7 +20,7 @@ _MADE = {
     "atanh": "(log((1 + {0})/(1 - {0}))/2)",
 }  # fmt: skip
 _OTHERS = {
-    **{name: form for name, form in _MADE.items() if name not in by_name()},
+    **{name: form for name, form in _BY_FUNCTIONS.items() if name not in by_name()},
     **{other: f"{name}{{0}}" for name, f in by_name().items() for other in f.synonyms},
     "log": "(log{0}/log{1})",  # to a base
 }
@@ -29,8 +29,8 @@ _VARIABLES = frozenset({"p", "q", "h", "t", "pi"})
 
 
 def not_allowed(node: ast.expr, line: str, functions: Collection[str]) -> str:
-    """Of an expression of Python that no formula has."""
-    shown = _source(node, line)
+    """Describe an expression of Python that no formula has."""
+    source = _source(node, line)
     match node:
         case ast.Tuple(elts=[]):
             more = "something is missing between ( )"
@@ -48,11 +48,11 @@ def not_allowed(node: ast.expr, line: str, functions: Collection[str]) -> str:
             more = "write ( ) for brackets"
         case _:
             more = "allowed: + - * / ** and functions"
-    return f"{shown!r} is not allowed; {more}"
+    return f"{source!r} is not allowed; {more}"
 
 
 def operator_not_allowed(node: ast.BinOp) -> str:
-    """Of an operator of Python that no formula has."""
+    """Describe an operator of Python that no formula has."""
     more = {
         ast.FloorDiv: "write / for a quotient; // rounds, and a formula has no comment",
         ast.Mod: "% is a remainder, which is not smooth; allowed: + - * / **",
@@ -63,7 +63,7 @@ def operator_not_allowed(node: ast.BinOp) -> str:
 
 
 def stop_of(node: ast.expr, line: str) -> int:
-    """The offset in the line of what is not allowed in it: of a comma, of an operator."""
+    """Return the offset in the line of what is not allowed: of a comma, of an operator."""
     match node:
         case ast.Tuple(elts=[first, *_]):
             return line.find(",", first.end_col_offset)
@@ -74,43 +74,44 @@ def stop_of(node: ast.expr, line: str) -> int:
 
 
 def unknown_function(node: ast.Call, line: str, functions: Collection[str]) -> str:
-    """Of what is called and is no function that a formula may have: what to write."""
-    called = _source(node.func, line)
+    """Describe a call of something that is no function of formulas, and what to write."""
+    callee = _source(node.func, line)
     inside = ", ".join(_source(each, line) for each in node.args)
     listed = f"allowed: {', '.join(sorted(functions))}"
-    name = called.rpartition(".")[2]
-    if not isinstance(node.func, ast.Name | ast.Attribute) or called in _VARIABLES:
-        first = called if called.isalnum() else f"({called})"
+    name = callee.rpartition(".")[2]
+    if not isinstance(node.func, ast.Name | ast.Attribute) or callee in _VARIABLES:
+        first = callee if callee.isalnum() else f"({callee})"
         return f"{first} is no function; write {first}*({inside}) for a product"
-    known = name.lower().replace("arc", "a")
-    if known in functions and known != called.lower():
-        more = f"write {known}({inside})"
-    elif known in _OTHERS:
-        more = f"write {_others(known, node, line)}"
+    meant = name.lower().replace("arc", "a")
+    # Capital letters, a module's name as in np.sin, and arc- for a- are the common misspellings.
+    if meant in functions and meant != callee.lower():
+        more = f"write {meant}({inside})"
+    elif meant in _OTHERS:
+        more = f"write {_write_instead(meant, node, line)}"
     elif name.lower() in _WITH_CASES:
         more = f"{_CASES}; {listed}"
     else:
-        more = is_meant(nearest(name.lower(), sorted(functions))) + listed
-    return f"unknown function {called!r}; {more}"
+        more = format_suggestion(find_nearest(name.lower(), sorted(functions))) + listed
+    return f"unknown function {callee!r}; {more}"
 
 
 def wrong_arguments(name: str, node: ast.Call, line: str) -> str:
-    """Of a function that is allowed, and has not one argument."""
-    as_meant = name in _OTHERS and len(node.args) > 1
-    write = _others(name, node, line) if as_meant else f"{name}(q)"
+    """Describe a call of an allowed function that has not exactly one argument."""
+    has_form = name in _OTHERS and len(node.args) > 1
+    write = _write_instead(name, node, line) if has_form else f"{name}(q)"
     return f"{name} takes one argument; write {write}"
 
 
-def _others(name: str, node: ast.Call, line: str) -> str:
+def _write_instead(name: str, node: ast.Call, line: str) -> str:
     form = _OTHERS[name]
-    given = [f"({_source(each, line)})" for each in node.args]
-    written = form.format(*given, "(…)", "(…)")
+    arguments = [f"({_source(each, line)})" for each in node.args]
+    text = form.format(*arguments, "(…)", "(…)")
     # A name or a number wants no parentheses, but for a function's.
-    return re.sub(r"(?<![A-Za-z0-9_])\((\w+)\)", r"\1", written)
+    return re.sub(r"(?<![A-Za-z0-9_])\((\w+)\)", r"\1", text)
 
 
 def reserved_name(name: str, functions: Collection[str]) -> str:
-    """Of a name that stands for something else, alone."""
+    """Describe a reserved name that stands where a parameter may."""
     if name in functions:
         return f"{name!r} is a function; write {name}(q), and {name}(q)**2 for its square"
     if name == "h":
@@ -119,27 +120,27 @@ def reserved_name(name: str, functions: Collection[str]) -> str:
 
 
 def unknown_name(name: str, names: Collection[str], functions: Collection[str]) -> str:
-    """Of a name that may not stand there."""
+    """Describe a name that is not allowed, and list the allowed ones."""
     listed = f"allowed: {', '.join(sorted(names)) or 'numbers alone'}"
     if name in functions:
-        of = "q" if names else "2"
-        return f"unknown name {name!r}; it is a function: write {name}({of}); {listed}"
-    meant = is_meant(nearest(name, sorted(names)))
+        example = "q" if names else "2"
+        return f"unknown name {name!r}; it is a function: write {name}({example}); {listed}"
+    meant = format_suggestion(find_nearest(name, sorted(names)))
     return f"unknown name {name[:_LONGEST]!r}; {meant}{listed}"
 
 
-def no_number(value: object, written: str) -> str:
-    """Of a constant of Python that is none of a formula."""
+def no_number(value: object, text: str) -> str:
+    """Describe a constant of Python that is no number of a formula."""
     more = {
         str: "leave out the quotation marks",
         complex: "H is real; there is no imaginary unit",
         bool: "write 1 or 0",
     }.get(type(value), "allowed: 0.001, 1e-3, 7/3")
-    return f"{written[:_LONGEST]!r} is not a number; {more}"
+    return f"{text[:_LONGEST]!r} is not a number; {more}"
 
 
 def exponent_with_names(base: str, exponent: str) -> str:
-    """Of a power whose exponent is no number."""
+    """Describe a power whose exponent is no number."""
     if base in ("e", "E"):
         return (
             f"exponent {exponent} must be a rational number; write exp({exponent}) for a power of e"
@@ -150,5 +151,5 @@ def exponent_with_names(base: str, exponent: str) -> str:
 
 
 def _source(node: ast.expr, line: str) -> str:
-    found = (ast.get_source_segment(line, node) or type(node).__name__).strip()
-    return found if len(found) <= _LONGEST else f"{found[: _LONGEST - 1]}…"
+    text = (ast.get_source_segment(line, node) or type(node).__name__).strip()
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"

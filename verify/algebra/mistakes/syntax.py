@@ -1,4 +1,4 @@
-"""Why Python does not read a text as an expression: the first mistake in it that is well known."""
+"""The first common mistake in a text that Python does not read as an expression."""
 
 import keyword
 import re
@@ -14,8 +14,8 @@ _TOKEN = re.compile(
 )
 _CLOSES = {")": "(", "]": "[", "}": "{"}
 _INFIX = ("+", "-", "*", "/", "**", "^")
-_FIRST = ("+", "-")  # which may begin a formula
-_PYTHON = frozenset({"True", "False", "None"})  # which are constants, and no formula's either
+_FIRST = ("+", "-")  # operators that may begin a formula
+_PYTHON = frozenset({"True", "False", "None"})  # constants of Python that no formula has
 _CONDITIONS = frozenset({"if", "else", "and", "or", "not"})
 _CASES = "a formula has no cases, since H must be smooth"
 _STRAY = {
@@ -43,44 +43,45 @@ class _Token(NamedTuple):
     start: int
 
 
-Found = tuple[int, str]  # where in the text, what is wrong and what to write
+Mistake = tuple[int, str]  # index in the text, and the message with what to write instead
 
 
 def syntax_mistake(text: str, functions: Collection[str], offset: int | None) -> str:
-    """What is wrong where Python found no expression, and stopped at that offset of its line."""
+    """Describe the mistake in a text that is no expression; `offset`: where Python stopped."""
     tokens = [_Token(str(m.lastgroup), m[0], m.start()) for m in _TOKEN.finditer(text)]
-    found = [
+    mistakes = [
         *_brackets(tokens),
         *_stray(tokens),
         *_neighbours(text, tokens, functions),
         *_ends(tokens),
     ]
-    if found:
-        index, problem = min(found, key=lambda each: each[0])
+    if mistakes:
+        # The leftmost mistake is reported; those after it are often its consequences.
+        index, problem = min(mistakes, key=lambda each: each[0])
         return f"not a formula at {place(text, index)}: {problem}"
-    at = "" if offset is None else f" at {place(text, index_of(text, offset))}"
-    return f"not a formula{at}; allowed: + - * / ** and functions"
+    location = "" if offset is None else f" at {place(text, index_of(text, offset))}"
+    return f"not a formula{location}; allowed: + - * / ** and functions"
 
 
-def _brackets(tokens: Sequence[_Token]) -> Iterator[Found]:
-    waiting: list[_Token] = []
+def _brackets(tokens: Sequence[_Token]) -> Iterator[Mistake]:
+    open_brackets: list[_Token] = []
     for token in tokens:
         if token.text in _CLOSES.values():
-            waiting.append(token)
+            open_brackets.append(token)
         elif token.text in _CLOSES:
-            if not waiting:
+            if not open_brackets:
                 yield token.start, f"this {token.text} closes nothing; leave it out"
                 return
-            opened = waiting.pop()
-            if opened.text != _CLOSES[token.text]:
-                yield opened.start, f"this {opened.text} is closed by {token.text}; write ( )"
+            opening = open_brackets.pop()
+            if opening.text != _CLOSES[token.text]:
+                yield opening.start, f"this {opening.text} is closed by {token.text}; write ( )"
                 return
-    if waiting:
-        yield waiting[-1].start, f"this {waiting[-1].text} is not closed; write )"
+    if open_brackets:
+        yield open_brackets[-1].start, f"this {open_brackets[-1].text} is not closed; write )"
 
 
-def _stray(tokens: Sequence[_Token]) -> Iterator[Found]:
-    """Words and characters that no formula has."""
+def _stray(tokens: Sequence[_Token]) -> Iterator[Mistake]:
+    """Yield the words and characters that no formula has."""
     for before, token in pairwise((None, *tokens)):
         assert token is not None  # noqa: S101 - only the first of the pairs' first is None
         if token.text in _STRAY:
@@ -105,41 +106,48 @@ def _stray(tokens: Sequence[_Token]) -> Iterator[Found]:
 
 
 def _latex(command: str) -> str:
-    known = {"frac": "(a)/(b) for \\frac{a}{b}", "cdot": "* for \\cdot", "times": "* for \\times"}
-    return f"this is LaTeX; write {known.get(command, f'{command} without the backslash')}"
+    commands = {
+        "frac": "(a)/(b) for \\frac{a}{b}",
+        "cdot": "* for \\cdot",
+        "times": "* for \\times",
+    }
+    return f"this is LaTeX; write {commands.get(command, f'{command} without the backslash')}"
 
 
-def _neighbours(text: str, tokens: Sequence[_Token], functions: Collection[str]) -> Iterator[Found]:
-    """Two things side by side that an operator should part, or that none can."""
-    for left, right in pairwise(tokens):
-        shown = " ".join(text[left.start : right.start + len(right.text)].split())
-        begins = right.kind != "sign" or right.text == "("
-        ends = left.kind != "sign" or left.text == ")"
-        if left.text in functions:
-            if right.kind != "sign":
-                write = f"write {left.text}({right.text})"
-                yield left.start, f"{left.text} takes its argument in parentheses; {write}"
-        elif ends and begins and not (left.kind == "name" and right.text == "("):
-            yield left.start, _missing_sign(text, left, right, shown)
-        elif left.text in (*_INFIX, "(") and right.text in ("*", "/", "**", "^", ")"):
-            yield left.start, f"something is missing in {shown}"
+def _neighbours(
+    text: str, tokens: Sequence[_Token], functions: Collection[str]
+) -> Iterator[Mistake]:
+    """Yield neighbours that an operator should separate, or between which something is missing."""
+    for before, after in pairwise(tokens):
+        pair = " ".join(text[before.start : after.start + len(after.text)].split())
+        begins = after.kind != "sign" or after.text == "("
+        ends = before.kind != "sign" or before.text == ")"
+        if before.text in functions:
+            if after.kind != "sign":
+                write = f"write {before.text}({after.text})"
+                yield before.start, f"{before.text} takes its argument in parentheses; {write}"
+        elif ends and begins and not (before.kind == "name" and after.text == "("):
+            yield before.start, _missing_sign(text, before, after, pair)
+        elif before.text in (*_INFIX, "(") and after.text in ("*", "/", "**", "^", ")"):
+            yield before.start, f"something is missing in {pair}"
     for token in tokens:
         if re.fullmatch(r"0\d+", token.text):
             yield token.start, f"write {int(token.text)} for {token.text}"
 
 
-def _missing_sign(text: str, left: _Token, right: _Token, shown: str) -> str:
-    if left.kind == "number" and left.text + right.text == shown:  # nothing between them
-        if exponent := re.match(r"[dDfF]([+-]?\d+)", text[right.start :]):
-            return f"write {left.text}e{exponent[1]} for {left.text}{exponent[0]}"
-        if right.kind == "number":
-            return f"{shown} is no number; it has two points"
-        if right.text in ("e", "E"):
-            return f"write exponents as {left.text}e-3, and e to a power as {left.text}*exp(…)"
-    return f"write {left.text}*{right.text} for {shown}"
+def _missing_sign(text: str, before: _Token, after: _Token, pair: str) -> str:
+    if before.kind == "number" and before.text + after.text == pair:  # nothing between them
+        # Fortran writes exponents that Python does not read, such as 1d-3.
+        if exponent := re.match(r"[dDfF]([+-]?\d+)", text[after.start :]):
+            return f"write {before.text}e{exponent[1]} for {before.text}{exponent[0]}"
+        if after.kind == "number":
+            return f"{pair} is no number; it has two points"
+        if after.text in ("e", "E"):
+            return f"write exponents as {before.text}e-3, and e to a power as {before.text}*exp(…)"
+    return f"write {before.text}*{after.text} for {pair}"
 
 
-def _ends(tokens: Sequence[_Token]) -> Iterator[Found]:
+def _ends(tokens: Sequence[_Token]) -> Iterator[Mistake]:
     if tokens and tokens[-1].text in _INFIX:
         yield tokens[-1].start, f"something is missing after {tokens[-1].text}"
     if tokens and tokens[0].text in _INFIX and tokens[0].text not in _FIRST:

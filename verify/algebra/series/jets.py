@@ -1,4 +1,4 @@
-"""Every smooth H at once: its partial derivatives H_ij = ∂_pⁱ∂_q^j H as independent variables.
+"""The jets of every smooth H: derivatives H_ij = ∂_pⁱ∂_q^j H as independent variables.
 
 At a point the derivatives of a smooth H up to any order may take any values (those of a polynomial
 are free already). So a polynomial in the H_ij vanishes for every H at every point exactly where it
@@ -26,7 +26,7 @@ from verify.errors import LimitError
 _MOST_JETS = 4000
 Poly = flint.fmpq_mpoly
 Series = list[Poly]
-Index = tuple[int, ...]  # how often by each variable
+Index = tuple[int, ...]  # the number of derivatives by each variable
 
 
 class JetsInDegrees(Polynomials):
@@ -48,8 +48,10 @@ class JetsInDegrees(Polynomials):
             problem = f"about {count} derivatives of H would be needed; allowed: {_MOST_JETS}"
             raise LimitError("degrees", self._half, problem)
         self.indices = [x for n in range(1, order + 1) for x in self._of_order(n)]
-        written = [self._called(index) for index in self.indices]
-        super().__init__([*self.variables, *written], ordering=flint.Ordering.degrevlex)
+        names_of_derivatives = [self._name_of(index) for index in self.indices]
+        super().__init__(
+            [*self.variables, *names_of_derivatives], ordering=flint.Ordering.degrevlex
+        )
         self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
 
     def _of_order(self, n: int) -> Iterator[Index]:
@@ -61,13 +63,14 @@ class JetsInDegrees(Polynomials):
 
     def _vanishes(self, index: Index) -> bool:
         half = self._half
+        # ∂_p∂_q (T(p) + V(q)) = 0; with t both T and V may depend on it.
         return self.separable and any(index[:half]) and any(index[half : 2 * half])
 
-    def _called(self, index: Index) -> str:
+    def _name_of(self, index: Index) -> str:
         return "H_" + "".join(name * n for name, n in zip(self.variables, index, strict=True))
 
-    def of(self, index: Index) -> Poly:
-        """That derivative of H."""
+    def derivative(self, index: Index) -> Poly:
+        """Return that derivative of H; OverflowError beyond the ring's order."""
         if self._vanishes(index):
             return self.zero
         if sum(index) > self.order:
@@ -75,38 +78,40 @@ class JetsInDegrees(Polynomials):
         return self.gens[self._at[index]]
 
     def first(self, name: str) -> Poly:
-        """∂H/∂name."""
-        return self.of(tuple(int(other == name) for other in self.variables))
+        """Return ∂H/∂name."""
+        return self.derivative(tuple(int(other == name) for other in self.variables))
 
     # -- as a ring ----------------------------------------------------------------------------
 
     def diff(self, x: Poly, name: str) -> Poly:
-        """The partial derivative by a variable, which sends H's derivatives to the next."""
+        """Return the partial derivative by a variable, which maps H_ij to the next derivatives."""
         by, count = self.places[name], len(self.variables)
         total = x.derivative(by)
-        for at, degree in enumerate(x.degrees()[count:], count):
+        for place, degree in enumerate(x.degrees()[count:], count):
             if degree > 0:  # −1 of zero
-                index = list(self.indices[at - count])
+                index = list(self.indices[place - count])
                 index[by] += 1
-                total += x.derivative(at) * self.of(tuple(index))
+                total += x.derivative(place) * self.derivative(tuple(index))
         return total
 
     def decide(self, x: Poly) -> Decision:
-        """Zero where x is the zero polynomial; else some polynomial H gives it another value."""
+        """Decide zero: x is 0 for every H if it is the zero polynomial, else not for some H."""
         return Decision(bool(x.is_zero()))
 
     def vanishes(self, x: Poly) -> bool:
-        """Whether x is the zero polynomial."""
+        """Return True if x is the zero polynomial."""
         return bool(x.is_zero())
 
     def text(self, x: Poly) -> str:
-        """x as a formula."""
+        """Format x as a formula."""
         return str(x).replace("^", "**")
 
 
 class Jets(JetsInDegrees):
-    """Those of H(p, q): p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative
-    beyond. `timed`: of H(p, q, t), with t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1.
+    """The jets of H(p, q): p, q and H_ij for 1 ≤ i + j ≤ `order`.
+
+    `timed`: of H(p, q, t), with t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1. A derivative beyond the
+    order raises OverflowError.
 
     >>> jets = Jets(2)
     >>> jets.text(jets.diff(jets.h(1, 0) ** 2, "q"))
@@ -119,17 +124,20 @@ class Jets(JetsInDegrees):
         self.p, self.q = self.gens[:2]
 
     def _of_order(self, n: int) -> Iterator[Index]:
-        """Those by t alone occur in no derivative along the flow."""
+        """Iterate over the indices of order n, without derivatives by t alone.
+
+        Those occur in no derivative along the flow.
+        """
         if not self.timed:
             return super()._of_order(n)
         return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
-        """∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
+        """Return ∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
         if self.timed:
-            return self.of((i, j, k))
-        return self.zero if k else self.of((i, j))
+            return self.derivative((i, j, k))
+        return self.zero if k else self.derivative((i, j))
 
     def product(self, indices: Iterable[Index]) -> Poly:
-        """The product of these derivatives."""
-        return math.prod(map(self.of, indices), start=self.one)
+        """Return the product of these derivatives."""
+        return math.prod(map(self.derivative, indices), start=self.one)

@@ -1,11 +1,10 @@
-"""Power series in h cut off after hⁿ, and functions of (p, q) at a point given by such series.
+"""Power series in h truncated after hⁿ, and functions of (p, q) at a point given by such series.
 
-A function's Taylor series around (p, q) needs nothing but its partial derivatives, so that
-f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, whatever f is made of;
-no closed form of a composition is written down on the way.
+A function's Taylor series around (p, q) needs only its partial derivatives, so that
+f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, for any f; no closed
+form of a composition is needed.
 
-What power series and forms are made over: a ring of functions with derivatives.
-
+The coefficients of series and forms are elements of a ring of functions with derivatives.
 `verify.algebra.ring.Ring` is one, in which zero is decided; the jets of every H are another, in
 which zero is the zero polynomial.
 """
@@ -20,57 +19,59 @@ from verify.algebra.zero_test import Decision
 
 
 class CoefficientRing(Protocol):
-    """See the module's text."""
+    """A ring of functions with derivatives; see the module's text."""
 
     @property
     def zero(self) -> Poly:
-        """0."""
+        """The element 0."""
 
     @property
     def one(self) -> Poly:
-        """1."""
+        """The element 1."""
 
     @property
     def places(self) -> Mapping[str, int]:
         """The variables by their names."""
 
     def reduce(self, x: Poly) -> Poly:
-        """x in normal form."""
+        """Return x in normal form."""
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
-        """The product in normal form."""
+        """Return the product in normal form."""
 
     def constant(self, value: Fraction) -> Poly:
-        """A rational number as an element."""
+        """Convert a rational number to an element."""
 
     def variable(self, name: str) -> Poly:
-        """A variable as an element."""
+        """Return a variable as an element."""
 
     def diff(self, x: Poly, name: str) -> Poly:
-        """The partial derivative by a variable."""
+        """Return the partial derivative by a variable."""
 
     def decide(self, x: Poly) -> Decision:
-        """Whether x is the zero function."""
+        """Decide whether x is the zero function."""
 
     def vanishes(self, x: Poly) -> bool | None:
-        """The same, without a witness."""
+        """Return True if x is zero, False if not, None if undecided; without a witness."""
 
     def text(self, x: Poly) -> str:
-        """x as a formula."""
+        """Format x as a formula."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """Σ hᵏ coefficients[k], the coefficients in normal form in `ring` and free of h."""
+    """The series Σ hᵏ coefficients[k], the coefficients in normal form in `ring`, free of h."""
 
     ring: CoefficientRing
     coefficients: tuple[Poly, ...]
 
     @classmethod
-    def of(cls, ring: CoefficientRing, coefficients: Sequence[Poly], most: int) -> "Series":
-        """With these first coefficients, as far as h^most."""
-        kept = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
-        return cls(ring, tuple(kept))
+    def from_coefficients(
+        cls, ring: CoefficientRing, coefficients: Sequence[Poly], most: int
+    ) -> "Series":
+        """Make the series with these first coefficients, as far as h^most."""
+        padded = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
+        return cls(ring, tuple(padded))
 
     @property
     def most(self) -> int:
@@ -97,87 +98,94 @@ class Series:
         for i, x in enumerate(self.coefficients):
             if not x.is_zero():
                 for j, y in enumerate(other.coefficients[: most + 1 - i]):
+                    # Terms beyond h^most are never formed; the sums are reduced once, at the end.
                     if not y.is_zero():
                         total[i + j] += x * y
         return Series(ring, tuple(map(ring.reduce, total)))
 
-    def over(self, divisor: "Series", inverse: Poly) -> "Series":
-        """Its quotient by a series whose first coefficient has this inverse."""
+    def divide_by(self, divisor: "Series", inverse: Poly) -> "Series":
+        """Divide by a series; `inverse` is that of its first coefficient."""
         ring = self.ring
-        found: list[Poly] = []
+        quotient: list[Poly] = []
+        # From Σ d_j c_(k−j) = x_k: c_k = (x_k − Σ_(j≥1) d_j c_(k−j))/d_0.
         for k, total in enumerate(self.coefficients):
             for j in range(1, k + 1):
                 if not divisor.coefficients[j].is_zero():
-                    total = total - divisor.coefficients[j] * found[k - j]
-            found.append(ring.multiply(ring.reduce(total), inverse))
-        return Series(ring, tuple(found))
+                    total = total - divisor.coefficients[j] * quotient[k - j]
+            quotient.append(ring.multiply(ring.reduce(total), inverse))
+        return Series(ring, tuple(quotient))
 
     @property
     def vanishes(self) -> bool:
-        """Whether all coefficients that are kept are 0."""
+        """True if all coefficients of the truncated series are 0."""
         return all(c.is_zero() for c in self.coefficients)
 
     def times(self, x: Poly | Fraction) -> "Series":
-        """Its product with what does not depend on h."""
+        """Return the product with a factor that does not depend on h."""
         factor = self.ring.constant(x) if isinstance(x, Fraction) else x
         multiply = self.ring.multiply
         return Series(
             self.ring, tuple(c if c.is_zero() else multiply(factor, c) for c in self.coefficients)
         )
 
-    def shifted(self, n: int) -> "Series":
-        """Its product with hⁿ."""
-        return Series.of(self.ring, [*[self.ring.zero] * n, *self.coefficients], self.most)
+    def shift(self, n: int) -> "Series":
+        """Return the product with hⁿ."""
+        return Series.from_coefficients(
+            self.ring, [*[self.ring.zero] * n, *self.coefficients], self.most
+        )
 
     def diff(self, name: str) -> "Series":
-        """∂/∂name of each coefficient."""
+        """Return the series of ∂/∂name of each coefficient."""
         return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
 
 
 class Derivatives:
-    """A ring element, with its derivatives, each made once."""
+    """A ring element with its derivatives, each computed once."""
 
     def __init__(self, ring: CoefficientRing, element: Poly) -> None:
         self.ring, self.element = ring, element
         self._known: dict[str, Derivatives] = {}
 
     def by(self, name: str) -> "Derivatives":
-        """∂/∂name, with its own derivatives."""
+        """Return ∂/∂name of the element, with the further derivatives."""
         if name not in self._known:
             self._known[name] = Derivatives(self.ring, self.ring.diff(self.element, name))
         return self._known[name]
 
     def partial(self, i: int, j: int) -> Poly:
-        """∂ⁱ⁺ʲ/∂pⁱ∂qʲ of it, of a function of p and q."""
-        found = self
+        """Return ∂ⁱ⁺ʲ/∂pⁱ∂qʲ of the element, a function of p and q."""
+        derivative = self
         for name in "p" * i + "q" * j:
-            found = found.by(name)
-        return found.element
+            derivative = derivative.by(name)
+        return derivative.element
 
 
-def at_moved(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:
-    """The ring element x, up to h^most, where each variable of a name is moved by its series, O(h).
+def expand_at(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:
+    """Expand the ring element x at a moved point, up to h^most.
 
-    By Taylor's formula, one variable after the other, so that an x with few of them is soon done.
+    `moves`: the variables' names with their displacements, series that are O(h). Taylor's formula
+    is applied to one variable after the other, which is fast for an x with few of them.
     """
     ring = x.ring
-    cut = [(name, Series.of(ring, by.coefficients, most)) for name, by in moves]
+    cut = [(name, Series.from_coefficients(ring, by.coefficients, most)) for name, by in moves]
     for name, by in cut:
         if not by.coefficients[0].is_zero():
             raise ValueError(f"{name} is moved at h = 0")
-    terms = _taylor_terms(x, cut, Series.of(ring, [ring.one], most), Fraction(1))
-    return sum(terms, Series.of(ring, [], most))
+    terms = _taylor_terms(x, cut, Series.from_coefficients(ring, [ring.one], most), Fraction(1))
+    return sum(terms, Series.from_coefficients(ring, [], most))
 
 
 def _taylor_terms(
     x: Derivatives, moves: Sequence[tuple[str, Series]], power: Series, share: Fraction
 ) -> Iterator[Series]:
-    """Of x and its derivatives by these variables, times the power of what stands before."""
+    """Yield the terms of Taylor's formula in these variables, each times `power` and `share`."""
     if not moves:
         yield power.times(x.element * x.ring.constant(share))
         return
     (name, by), *rest = moves
     n = 0
+    # by = O(h), so `power` vanishes after at most `most` + 1 factors, also where x is no
+    # polynomial.
     while not (x.element.is_zero() or power.vanishes):
         yield from _taylor_terms(x, rest, power, share)
         n += 1

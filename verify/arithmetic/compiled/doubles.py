@@ -27,7 +27,7 @@ Points = npt.NDArray[np.float64]
 
 
 def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:
-    """`run(steps, inputs, points)`: the kernel's steps on an array, in place.
+    """Return `run(steps, inputs, points)`: the kernel's steps on an array, in place.
 
     `carried`: its last arguments, so many, are the rows of `points`, (carried, POINTS); `inputs`
     are those between the steps and them. Raises NotImplementedError where the source has what is
@@ -36,76 +36,78 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     from verify.arithmetic.lanes import libm_circle
     from verify.arithmetic.lanes.doubles import DoublesInLanes
 
-    called = _CALL.findall(source)
+    functions = _CALL.findall(source)
 
     def target(_: int) -> Target:
-        return DoublesInLanes(SETS, carried, called)
+        return DoublesInLanes(SETS, carried, functions)
 
-    own = "circle of its own" if libm_circle.there() else "libm"
-    form = f"{SETS} sets, {carried} rows, {own}"
-    layout, linked = _source(source, names, form, target).compiled()
+    circle = "circle of its own" if libm_circle.is_available() else "libm"
+    form = f"{SETS} sets, {carried} rows, {circle}"
+    layout, linked = _source(source, names, form, target).compile()
     function = linked()
     rows = len(layout.arguments)
 
     def run(steps: int, inputs: Points, points: Points) -> None:
-        given = np.empty((rows, POINTS))
-        given.view(np.int64)[0] = steps
-        given[1 : rows - carried] = np.reshape(inputs, (-1, 1))
-        given[rows - carried :] = points
-        found = np.empty((carried + 2, POINTS))
-        function(given.ctypes.data, found.ctypes.data)
-        points[:] = found[1:-1]
+        arguments = np.empty((rows, POINTS))
+        arguments.view(np.int64)[0] = steps
+        arguments[1 : rows - carried] = np.reshape(inputs, (-1, 1))
+        arguments[rows - carried :] = points
+        results = np.empty((carried + 2, POINTS))
+        # Both arrays stay referenced until the call returns: the compiled code has only their
+        # addresses.
+        function(arguments.ctypes.data, results.ctypes.data)
+        points[:] = results[1:-1]
 
     return run
 
 
 def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> Callable[..., Any]:
-    """The kernel as a function of its own arguments, a tuple or one number as it returns.
+    """Return the kernel as a function of its own arguments, a tuple or one number as it returns.
 
     `anew`: not from what is kept on disk. Raises NotImplementedError as `on_points` does.
     """
-    layout, linked = _source(source, names, "doubles").compiled(anew=anew)
-    given, found = (_record(kinds) for kinds in (layout.arguments, layout.results))
+    layout, linked = _source(source, names, "doubles").compile(anew=anew)
+    packing, unpacking = (_record(kinds) for kinds in (layout.arguments, layout.results))
     size = layout.result_at[-1] + 8
 
     def kernel(*arguments: Any) -> Any:
         result = ctypes.create_string_buffer(size)
-        linked()(given.pack(*arguments), result)
-        values = found.unpack_from(result)
+        linked()(packing.pack(*arguments), result)
+        values = unpacking.unpack_from(result)
         return values if layout.returns_tuple else values[0]
 
-    def prepared(*arguments: Any) -> Callable[[], None]:
-        return partial(linked(), given.pack(*arguments), ctypes.create_string_buffer(size))
+    def prepare(*arguments: Any) -> Callable[[], None]:
+        return partial(linked(), packing.pack(*arguments), ctypes.create_string_buffer(size))
 
-    kernel.prepared = prepared  # type: ignore[attr-defined]
+    kernel.prepare = prepare  # type: ignore[attr-defined]
     return kernel
 
 
 def _source(
     source: str, names: Mapping[str, Any], target: str, make: Callable[[int], Target] | None = None
 ) -> Source:
-    """The kernel with the numbers among its names, which are all that a target asks for."""
+    """Return the kernel with the numbers among its names, which are all that a target needs."""
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    return Source(_annotated(source), _FRACTION, constants, target, make)
+    return Source(_annotate(source), _FRACTION, constants, target, make)
 
 
 def _record(kinds: Sequence[str]) -> Struct:
-    """How integers and float64 lie side by side."""
+    """Return the layout of integers and float64 side by side."""
     return Struct("=" + "".join("q" if kind == "int" else "d" for kind in kinds))
 
 
 def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], object]:
-    """The kernel on these arguments, as a call to be timed, which packs none of them."""
-    made: Callable[..., Callable[[], object]] = getattr(
-        kernel, "prepared", partial(partial, kernel)
+    """Return the kernel on these arguments, as a call to be timed, which packs none of them."""
+    prepare: Callable[..., Callable[[], object]] = getattr(
+        kernel, "prepare", partial(partial, kernel)
     )
-    return made(*arguments)
+    return prepare(*arguments)
 
 
-def _annotated(source: str) -> str:
-    """All numbers are float64, but for the steps."""
+def _annotate(source: str) -> str:
+    """Annotate all numbers as float64, except the steps."""
     head, parenthesis, rest = source.partition("(")
     arguments, end, body = rest.partition("):")
     first, *others = (each.partition(":")[0].strip() for each in arguments.split(","))
-    named = ", ".join([f"{first}: 'int'", *(f"{name}: 'float'" for name in others)])
-    return f"{head}{parenthesis}{named}{end}{body}"
+    annotated = ", ".join([f"{first}: 'int'", *(f"{name}: 'float'" for name in others)])
+    return f"{head}{parenthesis}{annotated}{end}{body}"

@@ -49,14 +49,14 @@ class Frame:
     """A function that is being written out: its variables' places, and where it goes on."""
 
     names: dict[str, Any]
-    known: dict[str, Any]  # its module's names
+    globals: dict[str, Any]  # its module's names
     end: ir.Block
     results: list[Number] = field(default_factory=list)  # places
     loops: list[tuple[ir.Block, ir.Block]] = field(default_factory=list)  # next, after
 
 
 class LoopWriter:
-    """Writes a module `void main(i64* in, i64* out)`."""
+    """A writer of a module `void main(i64* in, i64* out)`."""
 
     def __init__(self) -> None:
         self.module = ir.Module()
@@ -67,7 +67,7 @@ class LoopWriter:
         self.frame = Frame({}, {}, self.b.block)
 
     def write(self, function: Function, kinds: Sequence[str]) -> tuple[str, ...]:
-        """The function for arguments of these kinds; the kinds of its results."""
+        """Write the function for arguments of these kinds; return the kinds of its results."""
         arguments, offset = [], 0
         for kind, _, columns in (each.partition(" ") for each in kinds):
             read = I64 if columns else _TYPES[kind]
@@ -77,15 +77,15 @@ class LoopWriter:
                 pointer = self.b.inttoptr(value, _TYPES[kind].as_pointer())
                 value = Array(pointer, length, int(columns))
             arguments.append(value)
-        results, offset = self._called(function, arguments), 0
+        results, offset = self._inline(function, arguments), 0
         for each in results:
             offset = memory.write(self.b, self.main.args[1], offset, each)
         self.b.ret_void()
         self.places.branch(self.main.blocks[1])
         return tuple("float" if x.type == DOUBLE else "int" for x in results)
 
-    def _called(self, function: Function, arguments: Sequence[Any]) -> list[Number]:
-        """Its results; its text is written here."""
+    def _inline(self, function: Function, arguments: Sequence[Any]) -> list[Number]:
+        """Write the function's text here, and return its results."""
         definition: Ours = ast.parse(inspect.getsource(function)).body[0]
         outer = self.frame
         self.frame = Frame({}, function.__globals__, self.b.append_basic_block("end"))
@@ -101,16 +101,16 @@ class LoopWriter:
 
     def _block(self, statements: Sequence[ast.stmt]) -> None:
         for statement in statements:
-            known: dict[type, Callable[[Ours], None]] = {
+            handlers: dict[type, Callable[[Ours], None]] = {
                 ast.Assign: self._assignment, ast.AugAssign: self._change, ast.If: self._if,
                 ast.While: self._while, ast.For: self._for, ast.Return: self._return,
                 ast.Continue: lambda _: self._go(self.frame.loops[-1][0]),
                 ast.Break: lambda _: self._go(self.frame.loops[-1][1]),
                 ast.Expr: lambda _: None,  # a docstring
             }  # fmt: skip
-            if type(statement) not in known:
+            if type(statement) not in handlers:
                 raise NotImplementedError(ast.dump(statement))
-            known[type(statement)](statement)
+            handlers[type(statement)](statement)
 
     def _go(self, block: ir.Block) -> None:
         if not self.b.block.is_terminated:
@@ -121,15 +121,15 @@ class LoopWriter:
         if isinstance(target, ast.Tuple):
             values = self._several(statement.value, len(target.elts))
             for each, value in zip(target.elts, values, strict=True):
-                self._put(each, value)
+                self._store(each, value)
         else:
-            self._put(target, self._expression(statement.value))
+            self._store(target, self._expression(statement.value))
 
     def _change(self, statement: Ours) -> None:
         x, y = map(self._expression, (statement.target, statement.value))
-        self._put(statement.target, self._operation(statement.op, x, y))
+        self._store(statement.target, self._operation(statement.op, x, y))
 
-    def _put(self, target: Ours, value: Any) -> None:
+    def _store(self, target: Ours, value: Any) -> None:
         if isinstance(target, ast.Name):
             self._assign(target.id, value)
         else:
@@ -142,6 +142,8 @@ class LoopWriter:
             names[name] = value
             return
         if name not in names:
+            # Places are allocated in the entry block: LLVM's sroa turns only those into registers,
+            # and a loop that allocated in its body would grow the stack.
             names[name] = self.places.alloca(value.type)
         self.b.store(self._as(value, names[name].type.pointee), names[name])
 
@@ -159,22 +161,22 @@ class LoopWriter:
         self._loop(self._condition(statement.test), statement.body, head)
 
     def _for(self, statement: Ours) -> None:
-        """`for name in range(…)` of a stop, or of a start and a stop."""
+        """Write `for name in range(…)` of a stop, or of a start and a stop."""
         *start, stop = map(self._expression, statement.iter.args)
         self._assign(statement.target.id, start[0] if start else constant(0, 64))
         head, following = (self.b.append_basic_block(x) for x in ("head", "next"))
         self._go(head)
         self.b.position_at_end(head)
-        at = self._expression(ast.Name(statement.target.id))
-        self._loop(self._compare("<", at, stop), statement.body, following)
+        index = self._expression(ast.Name(statement.target.id))
+        self._loop(self._compare("<", index, stop), statement.body, following)
         after = self.b.block
         self.b.position_at_end(following)
-        self._assign(statement.target.id, self.b.add(at, constant(1, 64)))
+        self._assign(statement.target.id, self.b.add(index, constant(1, 64)))
         self._go(head)
         self.b.position_at_end(after)
 
     def _loop(self, goes_on: Number, body: Sequence[ast.stmt], following: ir.Block) -> None:
-        """At its head; `following` is where it goes on behind the body."""
+        """Write a loop at its head; `following` is where it goes on behind the body."""
         inside, after = (self.b.append_basic_block(x) for x in ("loop", "done"))
         self.b.cbranch(goes_on, inside, after)
         self.b.position_at_end(inside)
@@ -195,7 +197,8 @@ class LoopWriter:
     # -- expressions --------------------------------------------------------------------------
 
     def _several(self, node: ast.expr, count: int) -> list[Any]:
-        """What a tuple has, what a call gives, or the first numbers of a row; else one number."""
+        """Return the elements of a tuple, the results of a call, or the first numbers of a row;
+        else one number."""
         if isinstance(node, ast.Tuple):
             return [self._expression(each) for each in node.elts]
         if isinstance(node, ast.Call):
@@ -210,7 +213,7 @@ class LoopWriter:
         match node:
             case ast.Name(id=name):
                 if name not in self.frame.names:
-                    return self._number(self.frame.known[name])
+                    return self._number(self.frame.globals[name])
                 value = self.frame.names[name]
                 return value if isinstance(value, Array) else self.b.load(value)
             case ast.Constant(value=value):
@@ -251,7 +254,7 @@ class LoopWriter:
         return self.b.load(self._place(node))
 
     def _place(self, node: Ours) -> Number:
-        """Where a number lies, or where a row begins."""
+        """Return the address of a number, or of the beginning of a row."""
         array, indices = self._expression(node.value), [node.slice]
         if isinstance(node.slice, ast.Tuple):
             indices = node.slice.elts
@@ -266,18 +269,18 @@ class LoopWriter:
             return [reduce(lambda x, y: self._least("<>"[name == "max"], x, y), values)]
         if name == "len":
             return [values[0].length]
-        function = self.frame.known[name]
+        function = self.frame.globals[name]
         if function is sqrt:
             return [self.b.call(float_function(self.module, name), values)]
-        return self._called(function, values)
+        return self._inline(function, values)
 
     def _least(self, order: str, x: Number, y: Number) -> Number:
-        """The first of those that come first in this order."""
+        """Return the first of those that come first in this order."""
         x, y = self._alike(x, y)
         return self.b.select(self._compare(order, y, x), y, x)
 
     def _condition(self, node: ast.expr) -> Number:
-        """All of it is looked at, as nothing in it does anything."""
+        """Write a condition; all of it is evaluated, as nothing in it has side effects."""
         match node:
             case ast.BoolOp(op=operator, values=values):
                 join = self.b.and_ if isinstance(operator, ast.And) else self.b.or_
@@ -290,5 +293,5 @@ class LoopWriter:
     def _compare(self, order: str, x: Number, y: Number) -> Number:
         if x.type != DOUBLE:
             return self.b.icmp_signed(order, x, y)
-        known = self.b.fcmp_unordered if order == "!=" else self.b.fcmp_ordered
-        return known(order, x, y)
+        compare = self.b.fcmp_unordered if order == "!=" else self.b.fcmp_ordered
+        return compare(order, x, y)

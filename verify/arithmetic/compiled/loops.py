@@ -18,12 +18,12 @@ from verify.arithmetic.compiled.loop_writer import LoopWriter
 _LETTERS = {"int": "q", "float": "d"}
 
 
-def compiled(function: Callable[..., Any]) -> Callable[..., tuple[Any, ...]]:
-    """The function, compiled at its first call for the kinds of its arguments: numbers, contiguous
-    arrays. What it returns is a tuple."""
+def compile_function(function: Callable[..., Any]) -> Callable[..., tuple[Any, ...]]:
+    """Return the function, compiled at its first call for the kinds of its arguments: numbers,
+    contiguous arrays. It returns a tuple."""
 
     @cache
-    def made(kinds: tuple[str, ...]) -> tuple[Struct, native.Native]:
+    def compile_for(kinds: tuple[str, ...]) -> tuple[Struct, native.Native]:
         writer = LoopWriter()
         results = writer.write(function, kinds)
         key = code_cache.key_of(native.versions(), str(writer.module))
@@ -31,19 +31,19 @@ def compiled(function: Callable[..., Any]) -> Callable[..., tuple[Any, ...]]:
         if code is None:
             code = native.machine_code(writer.module)
             code_cache.keep(key, code)
-        return Struct("=" + "".join(map(_LETTERS.__getitem__, results))), native.linked(code)
+        return Struct("=" + "".join(map(_LETTERS.__getitem__, results))), native.link(code)
 
     def call(*arguments: Any) -> tuple[Any, ...]:
-        results, linked = made(tuple(map(_kind, arguments)))
-        found = ctypes.create_string_buffer(results.size)
-        linked(b"".join(map(_words, arguments)), found)
-        return results.unpack(found.raw)
+        results, linked = compile_for(tuple(map(_kind, arguments)))
+        buffer = ctypes.create_string_buffer(results.size)
+        linked(b"".join(map(_words, arguments)), buffer)
+        return results.unpack(buffer.raw)
 
     return call
 
 
 def _kind(x: Any) -> str:
-    """`float` or `int`; of an array with the number of columns."""
+    """Return `float` or `int`; of an array with the number of columns."""
     if not isinstance(x, np.ndarray):
         return "float" if isinstance(x, float) else "int"
     assert x.flags.c_contiguous  # noqa: S101 - as its address is all that is given
@@ -51,7 +51,7 @@ def _kind(x: Any) -> str:
 
 
 def _words(x: Any) -> bytes:
-    """A number; of an array where it lies, and its length."""
+    """Return the bytes of a number; of an array its address and its length."""
     if isinstance(x, np.ndarray):
         return Struct("=qq").pack(x.ctypes.data, len(x))
     return Struct("=" + _LETTERS[_kind(x)]).pack(x)

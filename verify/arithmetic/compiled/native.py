@@ -32,7 +32,8 @@ _COMPILER = sha256(b"\n".join(path.read_bytes() for path in _OURS))
 
 @cache
 def versions() -> str:
-    """All that machine code depends on besides its source: compilers, this one too, processor."""
+    """Return all that machine code depends on besides its source: compilers, this one too,
+    processor."""
     python = ".".join(map(str, sys.version_info[:3]))
     ours = f"Python {python}, {_COMPILER.hexdigest()}, {LANES} lanes"
     libraries = f"llvmlite {llvmlite.__version__}, LLVM {llvm.llvm_version_info}"
@@ -40,7 +41,7 @@ def versions() -> str:
 
 
 def machine_code(module: "ir.Module") -> bytes:
-    """The module as an object file. Any thread may ask for one, one is made at a time."""
+    """Return the module as an object file. Any thread may ask for one, one is made at a time."""
     with _LOCK:
         target = _target()
         module.triple = target.triple
@@ -50,10 +51,12 @@ def machine_code(module: "ir.Module") -> bytes:
         return bytes(target.emit_object(parsed))
 
 
-def linked(code: bytes, name: str = "main") -> Native:
-    """The function of that name in an object file; it stays in memory for good."""
+def link(code: bytes, name: str = "main") -> Native:
+    """Return the function of that name in an object file; it stays in memory for good."""
     with _LOCK:
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target())
+        # The object file has no references outside the C library; the engine resolves these in this
+        # process.
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         _ENGINES.append(engine)
@@ -63,7 +66,7 @@ def linked(code: bytes, name: str = "main") -> Native:
 
 @cache
 def _processor() -> tuple[str, str]:
-    """Its name and its features."""
+    """Return the processor's name and its features."""
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
@@ -77,7 +80,7 @@ def _target() -> llvm.TargetMachine:
 
 
 def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
-    """Registers for variables, and common subexpressions.
+    """Optimise a module: registers for variables, and common subexpressions.
 
     The rest of LLVM's pipeline makes these kernels no faster, and takes ten times as long.
     """

@@ -1,4 +1,4 @@
-"""By what way several orbits are stepped on this machine.
+"""The way in which several orbits are stepped on this machine.
 
 `VERIFY_LANES` forces one: `avx512` (its 52-bit multiply-add), `avx2` (the fused multiply-add of
 float64), `portable` (the same code by products of 128 bits, slower than one orbit after the other,
@@ -20,27 +20,27 @@ VARIABLE, OFF = "VERIFY_LANES", "off"
 
 @dataclass(frozen=True)
 class Path:
-    """A way: the class that multiplies by it, and what the processor must have."""
+    """A way: the class that multiplies, and the features that the processor must have."""
 
     name: str
     multiply_add: str
-    needed: tuple[str, ...] = ()
+    required: tuple[str, ...] = ()
 
     @property
     def target(self) -> "Callable[[int], Target]":
-        """Writes code for numbers with so many fraction bits."""
+        """A function that makes the writer of code for numbers with so many fraction bits."""
         from verify.arithmetic.lanes import multiply_add
         from verify.arithmetic.lanes.ensemble import Ensemble
 
-        own = getattr(multiply_add, self.multiply_add)
-        return lambda fraction: Ensemble(fraction, own)
+        kind = getattr(multiply_add, self.multiply_add)
+        return lambda fraction: Ensemble(fraction, kind)
 
     @property
-    def there(self) -> bool:
-        """Whether this processor has what it needs."""
+    def is_available(self) -> bool:
+        """True if this processor has the required features."""
         from verify.arithmetic import processor
 
-        return all(processor.features().get(name, False) for name in self.needed)
+        return all(processor.features().get(name, False) for name in self.required)
 
 
 _FASTEST_FIRST = (
@@ -50,24 +50,27 @@ _FASTEST_FIRST = (
 PATHS = {path.name: path for path in (*_FASTEST_FIRST, Path("portable", "Portable"))}
 
 
-def forced() -> str:
-    """The way that VERIFY_LANES asks for, or empty. Raises InputError where that is unknown."""
-    asked = os.environ.get(VARIABLE, "")
-    if asked and asked not in (*PATHS, OFF):
-        raise InputError(VARIABLE, asked, f"allowed: {', '.join([*PATHS, OFF])}")
-    return asked
+def forced_path() -> str:
+    """Return the way that VERIFY_LANES names, or empty. Raises InputError where that is unknown."""
+    name = os.environ.get(VARIABLE, "")
+    if name and name not in (*PATHS, OFF):
+        raise InputError(VARIABLE, name, f"allowed: {', '.join([*PATHS, OFF])}")
+    return name
 
 
-def chosen() -> Path | None:
-    """The way; None is one orbit after the other.
+def choose_path() -> Path | None:
+    """Choose the way; None is one orbit after the other.
+
+    Raises InputError where VERIFY_LANES names a way that is unknown, or not available.
 
     Raises InputError where VERIFY_LANES asks for what is unknown, or not there.
     """
-    asked = forced()
-    if asked == OFF:
+    name = forced_path()
+    if name == OFF:
         return None
-    if not asked:
-        return next((path for path in _FASTEST_FIRST if path.there), None)
-    if not PATHS[asked].there:
-        raise InputError(VARIABLE, asked, "this processor has no such instructions")
-    return PATHS[asked]
+    if not name:
+        return next((path for path in _FASTEST_FIRST if path.is_available), None)
+    # A forced way that the processor lacks would end the process with an illegal instruction.
+    if not PATHS[name].is_available:
+        raise InputError(VARIABLE, name, "this processor has no such instructions")
+    return PATHS[name]

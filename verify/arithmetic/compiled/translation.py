@@ -1,4 +1,4 @@
-"""Numbers that kernels take and give, and how they lie in memory; what a source became."""
+"""Numbers that kernels take and give, their layout in memory, and the translation of a source."""
 
 import json
 import struct
@@ -48,8 +48,8 @@ Word = Fixed | float | int  # by the kind of an argument, or of a result
 
 @dataclass(frozen=True)
 class Layout:
-    """How the arguments and results of a function lie in memory: 64-bit words, one after another,
-    and behind the results one that says whether all functions had a value."""
+    """The layout of a function's arguments and results in memory: 64-bit words, one after
+    another, and behind the results one that says whether all functions had a value."""
 
     fraction: int
     arguments: tuple[str, ...]
@@ -69,40 +69,42 @@ class Layout:
 
     @cached_property
     def result_at(self) -> tuple[int, ...]:
-        """Where each result begins, and where the last one ends."""
+        """The byte offsets at which results begin, and at which the last one ends."""
         return (0, *accumulate(self.result_sizes))
 
     @cached_property
     def pieces(self) -> struct.Struct:
-        """Takes the results apart: doubles as they are, and the bytes of what is longer."""
+        """A struct that splits the results: doubles as they are, and the bytes of longer
+        numbers."""
         kinds = zip(self.results, self.result_sizes, strict=True)
         return struct.Struct("<" + "".join("d" if k == "float" else f"{n}s" for k, n in kinds))
 
-    def packed(self, arguments: Sequence[Word]) -> bytes:
-        """The first arguments, or all; OverflowError where one is outside the format."""
-        return b"".join(map(self._packed, arguments, self.arguments))
+    def pack(self, arguments: Sequence[Word]) -> bytes:
+        """Pack the first arguments, or all; OverflowError where one is outside the format."""
+        return b"".join(map(self._pack_word, arguments, self.arguments))
 
-    def packed_state(self, state: Sequence[Word]) -> bytes:
-        """What a kernel carries, its last arguments."""
-        return b"".join(map(self._packed, state, self.arguments[-len(state) :]))
+    def pack_state(self, state: Sequence[Word]) -> bytes:
+        """Pack what a kernel carries, its last arguments."""
+        return b"".join(map(self._pack_word, state, self.arguments[-len(state) :]))
 
-    def _packed(self, value: Any, kind: str) -> bytes:
+    def _pack_word(self, value: Any, kind: str) -> bytes:
         if kind == "float":
             return _DOUBLE.pack(value)
         raw, bits = int(value if kind == "int" else value.raw), self._bits_of(kind)
+        # Two's complement: the range is not symmetric.
         if not -1 << bits - 1 <= raw < 1 << bits - 1:
             raise OverflowError(f"{raw} has more than {bits} bits")
         return raw.to_bytes(8 * words_of(bits), "little", signed=True)
 
-    def unpacked(self, raw: bytes) -> object:
-        """The results; ValueError where a function had no value outside a loop."""
+    def unpack(self, raw: bytes) -> object:
+        """Return the results; ValueError where a function had no value outside a loop."""
         if not raw[self.result_at[-1]]:
             raise ValueError("a function has no value there")
         values = tuple(map(self.result, self.pieces.unpack_from(raw), count()))
         return values if self.returns_tuple else values[0]
 
     def result(self, piece: float | bytes, index: int) -> Word:
-        """One of the results, from its piece."""
+        """Return one of the results, from its piece."""
         if isinstance(piece, float):
             return piece
         number = int.from_bytes(piece, "little", signed=True)
@@ -119,15 +121,15 @@ class Translation:
     layout: Layout
     code: Callable[[], bytes]
 
-    def written(self) -> bytes:
-        """As it is kept: a line of JSON, then the object file."""
-        own = self.layout
-        kinds = [own.fraction, own.arguments, own.results, own.returns_tuple]
+    def to_bytes(self) -> bytes:
+        """Return the kept form: a line of JSON, then the object file."""
+        layout = self.layout
+        kinds = [layout.fraction, layout.arguments, layout.results, layout.returns_tuple]
         return json.dumps(kinds).encode() + b"\n" + self.code()
 
     @classmethod
-    def read(cls, raw: bytes) -> "Translation":
-        """What `written` wrote."""
+    def from_bytes(cls, raw: bytes) -> "Translation":
+        """Read what `to_bytes` wrote."""
         head, _, code = raw.partition(b"\n")
         fraction, arguments, results, returns_tuple = json.loads(head)
         layout = Layout(fraction, tuple(arguments), tuple(results), returns_tuple)
@@ -136,8 +138,8 @@ class Translation:
 
 @dataclass(frozen=True)
 class Source:
-    """What is compiled: a function's text, its format, the values of the names in it, and for what
-    it is compiled."""
+    """A source to be compiled: a function's text, its format, the values of the names in it, and
+    the target."""
 
     text: str
     fraction: int
@@ -152,12 +154,12 @@ class Source:
         return code_cache.key_of(native.versions(), self.text, form, repr(self.names))
 
     @property
-    def kept(self) -> bool:
-        """Whether it need not be compiled."""
+    def is_cached(self) -> bool:
+        """True if it need not be compiled."""
         return code_cache.load(self.key) is not None
 
     def translation(self) -> Translation:
-        """Made now, from nothing that is kept."""
+        """Translate it now, from nothing that is kept."""
         if self.make is None:
             from verify.arithmetic.wide.one_orbit import OneOrbit
 
@@ -171,19 +173,22 @@ class Source:
         layout = Layout(self.fraction, kinds, results, translator.returns_tuple)
         return Translation(layout, cache(lambda: native.machine_code(module)))
 
-    def compiled(self, *, anew: bool = False) -> tuple[Layout, Callable[[], native.Native]]:
-        """Its layout, and what links it: it is loaded, or compiled and kept, for the first call.
+    def compile(self, *, anew: bool = False) -> tuple[Layout, Callable[[], native.Native]]:
+        """Return its layout, and a function that links it: the code is loaded, or compiled and
+        kept, at the first call.
 
         `anew`: neither loaded nor kept.
         """
-        known = None if anew else code_cache.load(self.key)
-        translation = self.translation() if known is None else Translation.read(known)
+        cached = None if anew else code_cache.load(self.key)
+        translation = self.translation() if cached is None else Translation.from_bytes(cached)
 
+        # Most kernels are made to be examined and never run: so linking waits for the first call,
+        # and a result is written to the cache only then.
         @cache
         def function() -> native.Native:
-            made = native.linked(translation.code())
-            if known is None and not anew:
-                code_cache.keep(self.key, translation.written())
-            return made
+            linked = native.link(translation.code())
+            if cached is None and not anew:
+                code_cache.keep(self.key, translation.to_bytes())
+            return linked
 
         return translation.layout, function

@@ -20,7 +20,7 @@ _MOST_WEIGHT = 1 << 9  # of sums whose carries have not moved: limbs stay below 
 
 
 def count_of(width: int) -> int:
-    """The limbs for so many bits, the sign among them."""
+    """Return the number of limbs for so many bits, the sign among them."""
     return -(-width // DIGIT)
 
 
@@ -42,19 +42,19 @@ class Number:
 
 
 class Carries:
-    """What is known of numbers with so many fraction bits, each written once."""
+    """Operations on the carries of numbers with so many fraction bits, each written once."""
 
     def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
         self.fraction, self.size, self.multiply_add = fraction, size_of(fraction), multiply_add
 
     def carry(self, b: ir.IRBuilder, x: Number) -> list[Value]:
-        """The limbs after the carries have moved; of all but the highest 52 bits count."""
+        """Return the limbs after the carries have moved; of all but the highest 52 bits count."""
         if not x.carried:
-            x.carried = vectors.carried(b, x.limbs)
+            x.carried = vectors.carry(b, x.limbs)
         return x.carried
 
     def factors(self, b: ir.IRBuilder, x: Number) -> list[Value]:
-        """The limbs as they are multiplied."""
+        """Return the limbs as they are multiplied."""
         if not x.factors:
             *low, high = self.carry(b, x)
             factor = self.multiply_add.factor
@@ -62,9 +62,9 @@ class Carries:
         return x.factors
 
     def settle(self, b: ir.IRBuilder, x: Number) -> list[Value]:
-        """The limbs, all but the highest in [0, 2^52), the highest with the sign."""
+        """Return the limbs, all but the highest in [0, 2^52), the highest with the sign."""
         if x.settled is None:
-            x.settled = vectors.settled(b, self.carry(b, x))
+            x.settled = vectors.settle(b, self.carry(b, x))
         return x.settled
 
     def negative(self, b: ir.IRBuilder, x: Number) -> Value:
@@ -73,18 +73,20 @@ class Carries:
         return x.negative
 
     def prepare(self, b: ir.IRBuilder, x: Number) -> None:
-        """Writes here what may be asked for later, of which the rest comes to nothing."""
+        """Write here what may be needed later; what is not needed costs nothing."""
         self.settle(b, x)
         self.factors(b, x)
         self.negative(b, x)
 
-    def known(self, limbs: Sequence[Value], width: int) -> Number:
-        """A number whose carries have moved."""
+    def from_settled(self, limbs: Sequence[Value], width: int) -> Number:
+        """Return a number whose carries have moved."""
         limbs = list(limbs)
         return Number(limbs, width, settled=limbs, carried=limbs)
 
     def light(self, b: ir.IRBuilder, x: Number) -> Number:
-        """The same number, its carries moved where it is a sum of many."""
+        """Return the same number, its carries moved where it is a sum of many."""
+        # Each limb is below weight·2^52 in size; a word overflows at 2^63, so carries must move
+        # before sums get that heavy.
         if x.weight < _MOST_WEIGHT:
             return x
-        return self.known(self.settle(b, x), x.width)
+        return self.from_settled(self.settle(b, x), x.width)

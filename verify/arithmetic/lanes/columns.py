@@ -32,7 +32,9 @@ class Columns:
         self._add_half = multiply_add.high if exact else multiply_add.near
 
     def add(self, b: ir.IRBuilder, x: Value, y: Value, c: int, *, signed: bool = False) -> None:
-        """The product of two factors, standing in a column; `signed`: one may be negative."""
+        """Add the product of two factors, standing in a column; `signed`: one may be negative."""
+        # One column below the kept ones: its high half carries into the lowest kept column, and is
+        # added; everything further down is less than a unit for each product.
         if c == self.low - 1:
             self._add_half(b, self.sums[self.low], x, y)
         elif self.low <= c <= self.top:

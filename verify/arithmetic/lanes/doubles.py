@@ -15,9 +15,9 @@ from typing import Any, NoReturn
 from llvmlite import ir
 
 from verify.arithmetic.lanes import libm_circle, vectors
-from verify.arithmetic.lanes.functions import of_doubles
+from verify.arithmetic.lanes.functions import apply_to_doubles
 from verify.arithmetic.lanes.libm_circle import LibmCircle
-from verify.arithmetic.lanes.schedule import reordered
+from verify.arithmetic.lanes.schedule import reorder
 from verify.arithmetic.lanes.vectors import DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
@@ -32,16 +32,18 @@ class DoublesInLanes:
 
     A number is a tuple of vectors, one for each of the `sets` of lanes; or a vector, where it is
     the same for all of them. The steps and their counter are one word. The last arguments, so many
-    as are `carried`, differ from point to point. `called`: the functions that the source calls.
+    as are `carried`, differ from point to point. `function_names`: the functions that the source
+    calls.
     """
 
-    def __init__(self, sets: int, carried: int, called: Sequence[str]) -> None:
+    def __init__(self, sets: int, carried: int, function_names: Sequence[str]) -> None:
         self.module, self.sets, self.carried = ir.Module(), sets, carried
-        wanted = [name for name in libm_circle.NAMES if name in called]
-        self.circle = LibmCircle(self.module, sets, wanted)
-        self._known: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
-        self._found: tuple[Any, dict[str, Any]] = None, {}  # of what, and what the circle gave
-        self._left: set[str] = set()  # variables of loops that have ended
+        circle_functions = [name for name in libm_circle.NAMES if name in function_names]
+        self.circle = LibmCircle(self.module, sets, circle_functions)
+        self._variables: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
+        # The last argument of the circle's functions, and their values for it.
+        self._circle_results: tuple[Any, dict[str, Any]] = None, {}
+        self._loop_locals: set[str] = set()  # variables of loops that have ended
         self._where: Any = None  # the lanes for which an `if` holds
 
     # -- the function -------------------------------------------------------------------------
@@ -52,20 +54,20 @@ class DoublesInLanes:
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self._open(ir.IRBuilder(main.append_basic_block("body")))
         first_carried = len(arguments) - self.carried
-        for at, (name, kind) in enumerate(arguments):
-            sets = range(self.sets if at >= first_carried else 1)
-            found = [self._read(main.args[0], at, own, kind) for own in sets]
-            self._known[name] = tuple(found) if at >= first_carried else found[0]
+        for index, (name, kind) in enumerate(arguments):
+            sets = range(self.sets if index >= first_carried else 1)
+            parts = [self._read(main.args[0], index, lane_set, kind) for lane_set in sets]
+            self._variables[name] = tuple(parts) if index >= first_carried else parts[0]
 
-    def _read(self, memory: Value, at: int, own: int, kind: str) -> Value:
-        place = self._place(self.b, memory, at, own)
+    def _read(self, memory: Value, index: int, lane_set: int, kind: str) -> Value:
+        place = self._place(self.b, memory, index, lane_set)
         if kind == "int":
             place = self.b.bitcast(place, I64.as_pointer())
         return self.b.load(place, align=_ALIGNED)
 
-    def _place(self, b: ir.IRBuilder, memory: Value, at: int, own: int) -> Value:
-        """Where the row of that number has what is of one set of lanes."""
-        place = b.gep(memory, [constant((at * self.sets + own) * LANES, 64)])
+    def _place(self, b: ir.IRBuilder, memory: Value, index: int, lane_set: int) -> Value:
+        """Return the address of a number's row for one set of lanes."""
+        place = b.gep(memory, [constant((index * self.sets + lane_set) * LANES, 64)])
         return b.bitcast(place, DOUBLES.as_pointer())
 
     def end(self) -> None:
@@ -74,11 +76,11 @@ class DoublesInLanes:
     def give(self, values: Callable[[], Sequence[Any]]) -> None:
         if self._where is not None:
             _refuse("points that end apart")
-        found, b = [*values(), constant(1, 64)], self._close()
-        for at, value in enumerate(found):
-            for own, x in enumerate(self._in_sets(value)):
+        results, b = [*values(), constant(1, 64)], self._close()
+        for index, value in enumerate(results):
+            for lane_set, x in enumerate(self._in_sets(value)):
                 word = b.bitcast(vectors.same(b, x, WORDS), DOUBLES) if x.type == I64 else x
-                b.store(word, self._place(b, b.function.args[1], at, own), align=_ALIGNED)
+                b.store(word, self._place(b, b.function.args[1], index, lane_set), align=_ALIGNED)
         b.ret_void()
 
     def when(self, condition: Any, body: Callable[[], None]) -> None:
@@ -87,55 +89,57 @@ class DoublesInLanes:
         body()
         self._where = None
 
-    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
-        before = dict(self._known)
-        carried = [each for each in before if each in changed]
-        if any(self.kind(before[each]) == "int" for each in carried):
+    def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
+        before = dict(self._variables)
+        loop_variables = [each for each in before if each in assigned]
+        if any(self.kind(before[each]) == "int" for each in loop_variables):
             _refuse("integers that a loop changes")
-        places = {each: self._room() for each in carried}
+        places = {each: self._room() for each in loop_variables}
         self._keep(places)
         b, counter = self._close(), self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
         head, inside, done = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
         b.position_at_end(head)
-        at = b.load(counter)
-        b.cbranch(b.icmp_signed("<", at, limit), inside, done)
+        index = b.load(counter)
+        b.cbranch(b.icmp_signed("<", index, limit), inside, done)
         self._open(ir.IRBuilder(inside))
-        self._known = before | {name: at} | self._fetched(places)
+        self._variables = before | {name: index} | self._fetch(places)
         body()
         self._keep(places)
         b = self._close()
-        b.store(b.add(at, constant(1, 64)), counter)
+        b.store(b.add(index, constant(1, 64)), counter)
         b.branch(head)
         self._open(ir.IRBuilder(done))
-        self._known = before | self._fetched(places)
-        self._left |= {name, *changed} - before.keys()
-        self._found = None, {}
+        self._variables = before | self._fetch(places)
+        # A variable that is first set in the loop has no value if the loop makes no pass; reading
+        # it afterwards is refused.
+        self._loop_locals |= {name, *assigned} - before.keys()
+        self._circle_results = None, {}
 
     def leave(self) -> None:
         _refuse("a loop that some points leave before others")
 
-    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
-        return reordered(statements)
+    def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+        return reorder(statements)
 
     # -- sets of lanes ------------------------------------------------------------------------
 
     def _open(self, b: ir.IRBuilder) -> None:
-        """Goes on there: with what all sets share, and then with one after the other."""
+        """Go on in new blocks: one for what all sets share, and then one after the other."""
         self.b = b
         self._of_sets = [ir.IRBuilder(b.append_basic_block("set")) for _ in range(self.sets)]
 
     def _close(self) -> ir.IRBuilder:
-        """Ends what is done set by set; writes what comes after."""
+        """End what is done set by set; return the builder for what comes after."""
         chain = [self.b, *self._of_sets]
         for builder, following in pairwise(chain):
             builder.branch(following.block)
         return chain[-1]
 
     def _each(self, operation: Callable[..., Value], *values: Any) -> Any:
-        """What the operation, which takes a builder first, gives for each of the sets; once where
-        all is the same for them."""
+        """Apply the operation, which takes a builder first, to each of the sets; once where all
+        is the same for them."""
         if not any(isinstance(x, tuple) for x in values):
             return operation(self.b, *values)
         return tuple(map(operation, self._of_sets, *map(self._in_sets, values)))
@@ -144,36 +148,36 @@ class DoublesInLanes:
         return value if isinstance(value, tuple) else (value,) * self.sets
 
     def _room(self) -> tuple[Value, ...]:
-        """Memory of a number."""
+        """Allocate memory of a number."""
         return tuple(self.allocations.alloca(DOUBLES) for _ in range(self.sets))
 
     def _keep(self, places: Mapping[str, tuple[Value, ...]]) -> None:
-        for name, own in places.items():
-            self._each(_B.store, self._known[name], own)
+        for name, addresses in places.items():
+            self._each(_B.store, self._variables[name], addresses)
 
-    def _fetched(self, places: Mapping[str, tuple[Value, ...]]) -> dict[str, Any]:
-        return {name: self._each(_B.load, own) for name, own in places.items()}
+    def _fetch(self, places: Mapping[str, tuple[Value, ...]]) -> dict[str, Any]:
+        return {name: self._each(_B.load, addresses) for name, addresses in places.items()}
 
     # -- variables and numbers ----------------------------------------------------------------
 
     def has(self, name: str) -> bool:
-        if name in self._left:
+        if name in self._loop_locals:
             _refuse("a variable of a loop after it")
-        return name in self._known
+        return name in self._variables
 
     def load(self, name: str) -> Any:
-        return self._known[name]
+        return self._variables[name]
 
     def assign(self, name: str, value: Any) -> None:
-        before = self._known.get(name)
+        before = self._variables.get(name)
         if before is not None and self.kind(before) == "float":
-            value = self.converted(value, "float")
+            value = self.convert(value, "float")
         if self._where is not None:
             if before is None or self.kind(before) == "int":
                 _refuse("a variable that is set for some points, and was no number before")
             value = self._each(_B.select, self._where, value, before)
-        self._known[name] = value
-        self._left.discard(name)
+        self._variables[name] = value
+        self._loop_locals.discard(name)
 
     def integer(self, value: int) -> Value:
         return constant(value, 64)
@@ -184,7 +188,7 @@ class DoublesInLanes:
     def kind(self, value: Any) -> str:
         return "int" if not isinstance(value, tuple) and value.type == I64 else "float"
 
-    def converted(self, value: Any, kind: str) -> Any:
+    def convert(self, value: Any, kind: str) -> Any:
         if self.kind(value) == kind:
             return value
         return vectors.same(self.b, self.b.sitofp(value, ir.DoubleType()), DOUBLES)
@@ -232,32 +236,32 @@ class DoublesInLanes:
             _refuse("a function of an integer")
         if name == "abs":
             return [self._each(vectors.absolute, x)]
-        if name in libm_circle.NAMES and libm_circle.there():
+        if name in libm_circle.NAMES and libm_circle.is_available():
             return [self._by_circle(name, x)]
-        return [self._each(lambda b, each: of_doubles(b, name, each), x)]
+        return [self._each(lambda b, each: apply_to_doubles(b, name, each), x)]
 
     def _by_circle(self, name: str, x: Any) -> Any:
-        """One of the functions that are found for all sets, and all of them at once."""
-        if self._found[0] is not x:
-            wanted = self.circle.wanted
-            sizes = self.sets, self.sets * len(wanted)
-            given, found = (self.allocations.alloca(DOUBLES, size=size) for size in sizes)
+        """Return one of the functions that are computed for all sets, and all of them at once."""
+        if self._circle_results[0] is not x:
+            names = self.circle.names
+            sizes = self.sets, self.sets * len(names)
+            inputs, outputs = (self.allocations.alloca(DOUBLES, size=size) for size in sizes)
             self._each(
-                lambda b, own, k: b.store(own, b.gep(given, [k])), self._in_sets(x), self._row(0)
+                lambda b, x, k: b.store(x, b.gep(inputs, [k])), self._in_sets(x), self._row(0)
             )
             b = self._close()
-            b.call(self.circle.function, [given, found])
+            b.call(self.circle.function, [inputs, outputs])
             self._open(b)
             values = {
-                function: self._each(lambda b, k: b.load(b.gep(found, [k])), self._row(at))
-                for at, function in enumerate(wanted)
+                function: self._each(lambda b, k: b.load(b.gep(outputs, [k])), self._row(index))
+                for index, function in enumerate(names)
             }
-            self._found = x, values
-        return self._found[1][name]
+            self._circle_results = x, values
+        return self._circle_results[1][name]
 
-    def _row(self, at: int) -> tuple[Value, ...]:
-        """The places of a number's sets, rows of them one after the other."""
-        return tuple(constant(at * self.sets + own, 64) for own in range(self.sets))
+    def _row(self, index: int) -> tuple[Value, ...]:
+        """Return the places of a number's sets, rows of them one after the other."""
+        return tuple(constant(index * self.sets + lane_set, 64) for lane_set in range(self.sets))
 
 
 def _refuse(what: str) -> NoReturn:

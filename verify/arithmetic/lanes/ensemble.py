@@ -13,13 +13,13 @@ from llvmlite import ir
 
 from verify.arithmetic.lanes import libm_circle, vectors
 from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.functions import LaneFunctions, of_doubles
+from verify.arithmetic.lanes.functions import LaneFunctions, apply_to_doubles
 from verify.arithmetic.lanes.libm_circle import LibmCircle
 from verify.arithmetic.lanes.memory import Memory
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.passes import Retirement, Variables
-from verify.arithmetic.lanes.schedule import reordered
+from verify.arithmetic.lanes.schedule import reorder
 from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
@@ -40,8 +40,9 @@ class Ensemble:
         self.functions = LaneFunctions(self.module, self.numbers)
         self.memory = Memory(self.numbers, self.widths)
         self.circle = LibmCircle(self.module, 1, libm_circle.NAMES)
-        self._found: tuple[Any, dict[str, Value]] = None, {}  # of what, and what the circle gave
-        self._known: dict[str, Any] = {}
+        # The last argument of the circle's functions, and their values for it.
+        self._circle_results: tuple[Any, dict[str, Value]] = None, {}
+        self._variables: dict[str, Any] = {}
         self._retirement: Retirement | None = None  # of the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
 
@@ -52,14 +53,14 @@ class Ensemble:
         main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self.b = ir.IRBuilder(main.append_basic_block("body"))
-        self._known["valid"] = ir.Constant(CONDITIONS, [1] * LANES)
+        self._variables["valid"] = ir.Constant(CONDITIONS, [1] * LANES)
         offset = 0
         for name, kind in arguments:
-            self._known[name] = self.memory.read(self.b, main.args[0], offset, kind)
+            self._variables[name] = self.memory.read(self.b, main.args[0], offset, kind)
             offset += self.memory.size(kind)
         first = arguments[0][0] if arguments and arguments[0][1] == "int" else None
         if first:  # the steps, one number for all
-            self._known[first] = self.b.extract_element(self._known[first], constant(0, 64))
+            self._variables[first] = self.b.extract_element(self._variables[first], constant(0, 64))
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
@@ -71,71 +72,73 @@ class Ensemble:
             assert self._retirement is not None  # noqa: S101 - an `if` returns in the loop alone
             self._retirement.retire(self.b, self._where, values()[0], self._finish)
             return
-        b, found = self.b, values()
+        b, results = self.b, values()
         if self._retirement:
-            found = [b.load(self._retirement.done), *found[1:]]
-        words = [word for value in found for word in self.memory.words(b, value)]
+            results = [b.load(self._retirement.done), *results[1:]]
+        words = [word for value in results for word in self.memory.words(b, value)]
         words.append(b.zext(vectors.in_lanes(b, self.load("valid")), WORDS))
         self.memory.write(b, b.function.args[1], words)
         b.ret_void()
 
     def when(self, condition: Value, body: Callable[[], None]) -> None:
         assert self._where is None  # noqa: S101 - the language nests no `if`
+        # Lanes cannot branch apart: the body is executed for all, and `assign` selects the new
+        # value only where the condition holds.
         self._where = vectors.in_lanes(self.b, condition)
         body()
         self._where = None
 
-    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
-        b, before = self.b, dict(self._known)
-        carried = [n for n in before if n in changed or n == "valid"]
+    def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
+        b, before = self.b, dict(self._variables)
+        changed_here = [n for n in before if n in assigned or n == "valid"]
         variables = Variables(self.numbers)
-        for each in carried:
+        for each in changed_here:
             variables.add(b, self.allocations, each, before[each])
         variables.keep(b, before)
         self._retirement = Retirement(b, self.allocations, limit)
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
-        for value in (value for n, value in before.items() if n not in carried):
+        for value in (value for n, value in before.items() if n not in changed_here):
             if isinstance(value, Number):  # it stays as it is: its factors are made once
                 self.numbers.prepare(b, value)
         head, inside, self._finish = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
         b.position_at_end(head)
-        at = b.load(counter)
-        b.cbranch(b.icmp_signed("<", at, limit), inside, self._finish)
+        index = b.load(counter)
+        b.cbranch(b.icmp_signed("<", index, limit), inside, self._finish)
         b.position_at_end(inside)
-        self._known = before | {name: at} | variables.fetched(b, before)
+        self._variables = before | {name: index} | variables.fetch(b, before)
         body()
-        variables.keep(b, self._known)
-        b.store(b.add(at, constant(1, 64)), counter)
+        variables.keep(b, self._variables)
+        b.store(b.add(index, constant(1, 64)), counter)
         b.branch(head)
         b.position_at_end(self._finish)
-        self._known = before | variables.fetched(b, before)
-        self._found = None, {}
+        self._variables = before | variables.fetch(b, before)
+        self._circle_results = None, {}
 
     def leave(self) -> None:
         raise NotImplementedError("a loop that some lanes leave before others")
 
-    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
-        return reordered(statements)
+    def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+        return reorder(statements)
 
     # -- variables and numbers ----------------------------------------------------------------
 
     def has(self, name: str) -> bool:
-        return name in self._known
+        return name in self._variables
 
     def load(self, name: str) -> Any:
-        return self._known[name]
+        return self._variables[name]
 
     def assign(self, name: str, value: Any) -> None:
-        before = self._known.get(name)
+        before = self._variables.get(name)
         if before is not None and name != "valid" and self.kind(value) != self.kind(before):
-            value = self.converted(value, self.kind(before))
+            value = self.convert(value, self.kind(before))
         if self._where is not None:
-            value = self._chosen(self._where, value, before)
-        self._known[name] = value
+            value = self._select(self._where, value, before)
+        self._variables[name] = value
 
-    def _chosen(self, where: Value, value: Any, other: Any) -> Any:
+    def _select(self, where: Value, value: Any, other: Any) -> Any:
         if isinstance(value, Number):
             return self.numbers.choose(self.b, where, value, other)
         if value.type == I64 or other.type == I64:
@@ -155,9 +158,9 @@ class Ensemble:
             return "wide" if value.width == self.widths["wide"] else "sum"
         return "float" if value.type == DOUBLES else "int"
 
-    def converted(self, value: Any, kind: str) -> Any:
+    def convert(self, value: Any, kind: str) -> Any:
         if isinstance(value, Number) and kind == "sum":
-            return self.numbers.extended(self.b, value, self.widths["sum"])
+            return self.numbers.extend(self.b, value, self.widths["sum"])
         if isinstance(value, Number) or value.type == DOUBLES:
             raise TypeError(f"{self.kind(value)} is no {kind}; use wide(x) or approx(x)")
         if not isinstance(value, ir.Constant):
@@ -235,27 +238,28 @@ class Ensemble:
         if name == "shifted":
             by = values[1]  # a literal is one word for all lanes
             by = vectors.same(b, by, WORDS) if by.type == I64 else by
-            return [self.numbers.shifted(b, x, by)]
+            return [self.numbers.shift_down(b, x, by)]
         if name == "wide":
             return [self._wide(x)]
         if not isinstance(x, Number):
             plain = name.removeprefix("f_")
-            if plain in libm_circle.NAMES and libm_circle.there():
+            if plain in libm_circle.NAMES and libm_circle.is_available():
                 return [self._by_circle(plain, x)]
-            return [of_doubles(b, name, x)]
-        valid, found = self.functions.call(b, name, x, self.allocations)
+            return [apply_to_doubles(b, name, x)]
+        valid, results = self.functions.call(b, name, x, self.allocations)
         self._require(valid)
-        return list(found)
+        return list(results)
 
     def _by_circle(self, name: str, x: Value) -> Value:
-        """sin or cos of float64; both are found at once."""
-        if self._found[0] is not x:
-            b, (given, found) = self.b, (self.allocations.alloca(DOUBLES, size=n) for n in (1, 2))
-            b.store(x, given)
-            b.call(self.circle.function, [given, found])
-            values = [b.load(b.gep(found, [constant(at, 64)])) for at in range(2)]
-            self._found = x, dict(zip(self.circle.wanted, values, strict=True))
-        return self._found[1][name]
+        """Return sin or cos of float64; both are computed at once."""
+        if self._circle_results[0] is not x:
+            b = self.b
+            inputs, outputs = (self.allocations.alloca(DOUBLES, size=n) for n in (1, 2))
+            b.store(x, inputs)
+            b.call(self.circle.function, [inputs, outputs])
+            values = [b.load(b.gep(outputs, [constant(index, 64)])) for index in range(2)]
+            self._circle_results = x, dict(zip(self.circle.names, values, strict=True))
+        return self._circle_results[1][name]
 
     def _wide(self, x: Value) -> Number:
         top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
@@ -266,5 +270,5 @@ class Ensemble:
         return self.numbers.from_double(self.b, x)
 
     def _require(self, condition: Value) -> None:
-        """`valid` only where this is true."""
-        self._known["valid"] = self.b.and_(self.load("valid"), condition)
+        """Make `valid` false unless the condition holds."""
+        self._variables["valid"] = self.b.and_(self.load("valid"), condition)

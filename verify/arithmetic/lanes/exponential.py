@@ -31,7 +31,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.circle import lost_in_units
-from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
+from verify.arithmetic.lanes.fractions import Fractions, add, constant, negate, settle, subtract
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
 from verify.arithmetic.lanes.table import Table, rows_of
@@ -46,13 +46,13 @@ _MARGIN = 2.0**-20  # of k, so that ρ is surely not negative
 _MOST, _LEAST = 12, -47  # of a, beyond which one orbit's function is asked
 
 
-def _lost(count: int) -> int:
+def _units_lost(count: int) -> int:
     return 2 * count + 16
 
 
 @cache
 def _powers_of(count: int) -> ir.Constant:
-    """Half of 2^(i/_OCTAVE), the same in all modules."""
+    """Return half of 2^(i/_OCTAVE), the same in all modules."""
     with working_precision(DIGIT * count + 256):
         step = flint.arb(2).log() / _OCTAVE
         values = [arb_integer((step * i).exp(), DIGIT * count - 1) for i in range(_OCTAVE)]
@@ -70,35 +70,39 @@ class Exponential:
         self._table: Table | None = None
 
     def exp(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Number]]:
-        """e^x."""
-        k, rho = self._reduced(b, x)
+        """Return e^x."""
+        k, rho = self._reduce(b, x)
         half = self._powers().entries(b, vectors.each(b, b.and_(k, splat(_OCTAVE - 1))))
-        mantissa = taken(b, half, self.fractions.product(b, half, self._small(b, rho)))
+        mantissa = subtract(b, half, self.fractions.product(b, half, self._small(b, rho)))
         a = vectors.down(b, k, _OCTAVE.bit_length() - 1)
         # Of m, which is half of one orbit's mantissa.
-        lost = _lost(self.count) + lost_in_units(self.numbers.fraction, self.count, 1)
+        lost = _units_lost(self.count) + lost_in_units(self.numbers.fraction, self.count, 1)
         # The number is 2^(F + 16) m / 2^(15 − a); where that is no shift from 1 to 63, one orbit is
         # asked.
-        seen = b.and_(b.icmp_signed("<=", a, splat(_MOST)), b.icmp_signed(">=", a, splat(_LEAST)))
-        by = b.select(seen, b.sub(splat(15), a), splat(1))
-        margin = constant(lost, self.count)
-        low, high = (
-            self._cut(b, settled(b, move(b, mantissa, margin)), by) for move in (taken, added)
+        in_range = b.and_(
+            b.icmp_signed("<=", a, splat(_MOST)), b.icmp_signed(">=", a, splat(_LEAST))
         )
-        apart = splat(0)
+        by = b.select(in_range, b.sub(splat(15), a), splat(1))
+        margin = constant(lost, self.count)
+        # The mantissa minus and plus all that was lost on both sides: where both are cut to one
+        # number, so is the one of a single orbit.
+        low, high = (
+            self._cut(b, settle(b, move(b, mantissa, margin)), by) for move in (subtract, add)
+        )
+        difference = splat(0)
         for u, v in zip(low.limbs, high.limbs, strict=True):
-            apart = b.or_(apart, b.xor(u, v))
-        return b.or_(b.not_(seen), b.icmp_unsigned("!=", apart, splat(0))), [low]
+            difference = b.or_(difference, b.xor(u, v))
+        return b.or_(b.not_(in_range), b.icmp_unsigned("!=", difference, splat(0))), [low]
 
     def cosh(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Number]]:
-        """(e^x + e^−x)/2, rounded down."""
+        """Return (e^x + e^−x)/2, rounded down."""
         unsure, up, down = self._both(b, x)
-        return unsure, [self.numbers.shifted(b, self.numbers.add(b, up, down), splat(1))]
+        return unsure, [self.numbers.shift_down(b, self.numbers.add(b, up, down), splat(1))]
 
     def sinh(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Number]]:
-        """(e^x − e^−x)/2, rounded down."""
+        """Return (e^x − e^−x)/2, rounded down."""
         unsure, up, down = self._both(b, x)
-        return unsure, [self.numbers.shifted(b, self.numbers.sub(b, up, down), splat(1))]
+        return unsure, [self.numbers.shift_down(b, self.numbers.sub(b, up, down), splat(1))]
 
     def _both(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number, Number]:
         unsure, (up,) = self.exp(b, x)
@@ -106,26 +110,28 @@ class Exponential:
         unsure_too, (down,) = self.exp(b, minus)
         return b.or_(unsure, unsure_too), up, down
 
-    def _reduced(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Value]]:
-        """(k, ρ), all limbs of ρ without a sign."""
+    def _reduce(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Value]]:
+        """Return (k, ρ), all limbs of ρ without a sign."""
         near = b.fadd(self.reduction.steps(b, x), splat_double(_MARGIN))
         k = b.fptosi(b.call(vectors.intrinsic(self.module, "ceil"), [near]), WORDS)
         everywhere = ir.Constant(CONDITIONS, [1] * LANES)
-        return k, settled(b, negated(b, everywhere, self.reduction.rest(b, x, k)))
+        return k, settle(b, negate(b, everywhere, self.reduction.rest(b, x, k)))
 
     def _small(self, b: ir.IRBuilder, rho: list[Value]) -> list[Value]:
-        """1 − e^−ρ."""
+        """Return 1 − e^−ρ."""
         fractions = self.fractions
-        u = fractions.raised(b, rho, _SHIFT)
+        u = fractions.shift_up(b, rho, _SHIFT)
         coefficients = [Fraction(1, factorial(j + 1)) for j in range(8 * self.count)]
         (series,) = fractions.series(b, u, coefficients, shift=_SHIFT)
-        return fractions.shifted(b, settled(b, fractions.product(b, u, series)), _SHIFT)
+        return fractions.shift_down(b, settle(b, fractions.product(b, u, series)), _SHIFT)
 
     def _cut(self, b: ir.IRBuilder, mantissa: list[Value], by: Value) -> Number:
-        """2^(F + 16) m / 2^by, rounded down."""
+        """Return 2^(F + 16) m / 2^by, rounded down."""
         if self.below:
-            mantissa = self.fractions.shifted(b, mantissa, self.below)
-        return self.numbers.shifted(b, self.numbers.known(mantissa, self.numbers.size), by)
+            mantissa = self.fractions.shift_down(b, mantissa, self.below)
+        return self.numbers.shift_down(
+            b, self.numbers.from_settled(mantissa, self.numbers.size), by
+        )
 
     def _powers(self) -> Table:
         if self._table is None:

@@ -20,28 +20,28 @@ _NEGLIGIBLE = 16  # units of the last place
 
 
 def constant(value: int, count: int) -> list[Value]:
-    """A number of units, which may have a sign, in so many limbs."""
+    """Return a number of units, which may have a sign, in so many limbs."""
     low = [splat((value >> DIGIT * i) % (1 << DIGIT)) for i in range(count - 1)]
     return [*low, splat(value >> DIGIT * (count - 1))]
 
 
-def settled(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
-    """The same number with its carries moved; the highest limb has the sign."""
-    return vectors.settled(b, vectors.carried(b, limbs))
+def settle(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
+    """Return the same number with its carries moved; the highest limb has the sign."""
+    return vectors.settle(b, vectors.carry(b, limbs))
 
 
-def added(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
-    """x + y limb by limb, x the longer one."""
+def add(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
+    """Return x + y limb by limb, x the longer one."""
     return [b.add(u, v) for u, v in zip(x, y, strict=False)] + list(x[len(y) :])
 
 
-def taken(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
-    """x − y limb by limb, x the longer one."""
+def subtract(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
+    """Return x − y limb by limb, x the longer one."""
     return [b.sub(u, v) for u, v in zip(x, y, strict=False)] + list(x[len(y) :])
 
 
-def negated(b: ir.IRBuilder, where: Value, x: Sequence[Value]) -> list[Value]:
-    """−x where the condition holds, else x."""
+def negate(b: ir.IRBuilder, where: Value, x: Sequence[Value]) -> list[Value]:
+    """Return −x where the condition holds, else x."""
     return [b.select(where, b.sub(splat(0), limb), limb) for limb in x]
 
 
@@ -52,7 +52,10 @@ class Fractions:
         self.multiply_add, self.count = multiply_add, count
 
     def product(self, b: ir.IRBuilder, t: Sequence[Value], x: Sequence[Value]) -> list[Value]:
-        """t x in as many limbs as x, t of `count` limbs; carries have not moved.
+        """Return t x in as many limbs as x, t of `count` limbs; carries have not moved.
+
+        Within 2 m units for m limbs of x, and not negative: of the column below the lowest kept one
+        only the high halves are added.
 
         Within 2 m units for m limbs of x, and not negative: of the column below the lowest that is
         kept the high halves alone are added.
@@ -67,7 +70,8 @@ class Fractions:
     def series(
         self, b: ir.IRBuilder, t: Sequence[Value], *series: Sequence[Fraction], shift: int
     ) -> list[list[Value]]:
-        """c₀ − c₁ τ + c₂ τ² − … of each, where t = τ·2^shift; the c are positive and fall fast.
+        """Return c₀ − c₁ τ + c₂ τ² − … of each series, where t = τ·2^shift; the c are positive and
+        fall fast.
 
         Terms below 16 units are left out; what the others lose is below 2 m + 2 units each, and is
         multiplied by t < 1 further on. All go on together, since each waits for its products.
@@ -77,27 +81,27 @@ class Fractions:
             for total, coefficients in zip(totals, series, strict=True):
                 if j < len(coefficients):
                     self._next_term(b, t, total, coefficients[j] / Fraction(2) ** (j * shift))
-        return [settled(b, total) for total in totals]
+        return [settle(b, total) for total in totals]
 
     def _next_term(
         self, b: ir.IRBuilder, t: Sequence[Value], total: list[Value], coefficient: Fraction
     ) -> None:
-        """total ← the coefficient − t·total, or nothing where both are."""
+        """Set total to the coefficient − t·total, or leave it empty where both are negligible."""
         scaled = round(coefficient * 2 ** (DIGIT * self.count))
         scaled = min(scaled, 2 ** (DIGIT * self.count) - 1)
         if scaled < _NEGLIGIBLE:
             return
         value = constant(scaled, -(-scaled.bit_length() // DIGIT))
-        total[:] = taken(b, value, self.product(b, t, settled(b, total))) if total else value
+        total[:] = subtract(b, value, self.product(b, t, settle(b, total))) if total else value
 
-    def shifted(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
-        """x / 2^by rounded down, 0 < by < 52; all limbs of x but the highest are settled."""
-        raised = self.multiply_add.raised
-        low = [raised(b, vectors.down(b, u, by), v, DIGIT - by) for u, v in pairwise(x)]
+    def shift_down(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
+        """Return x / 2^by rounded down, 0 < by < 52; all limbs of x but the highest are settled."""
+        add_shifted = self.multiply_add.add_shifted
+        low = [add_shifted(b, vectors.down(b, u, by), v, DIGIT - by) for u, v in pairwise(x)]
         return [*low, vectors.down(b, x[-1], by)]
 
-    def raised(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
-        """x·2^by, below 1, 0 < by < 52; all limbs of x are settled."""
-        raised = self.multiply_add.raised
+    def shift_up(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
+        """Return x·2^by, below 1, 0 < by < 52; all limbs of x are settled."""
+        add_shifted = self.multiply_add.add_shifted
         low = [splat(0), *(vectors.down(b, u, DIGIT - by) for u in x[:-1])]
-        return [raised(b, u, v, by) for u, v in zip(low, x, strict=True)]
+        return [add_shifted(b, u, v, by) for u, v in zip(low, x, strict=True)]

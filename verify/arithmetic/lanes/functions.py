@@ -21,7 +21,7 @@ from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, WORDS, splat, splat_double
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide import limbs
-from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, MoreFunctions, iterations
 from verify.arithmetic.wide.one_orbit import float_function
 from verify.arithmetic.wide.size import words_of
@@ -34,9 +34,9 @@ class Newton:
         self.module, self.numbers, self.fraction = module, numbers, numbers.fraction
 
     def inverse(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
-        """y ← y + y (1 − x y)."""
+        """Iterate y ← y + y (1 − x y)."""
         numbers, one = self.numbers, splat_double(1.0)
-        size = numbers.known(numbers.settle(b, numbers.absolute(b, x)), numbers.size)
+        size = numbers.from_settled(numbers.settle(b, numbers.absolute(b, x)), numbers.size)
         valid = self._at_least(b, size, LEAST_DIVISOR)
         guess = b.fdiv(one, b.select(valid, numbers.to_double(b, x), one))
         y = numbers.from_double(b, guess)
@@ -47,7 +47,7 @@ class Newton:
         return valid, y
 
     def sqrt(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
-        """s ← s + (x − s²)/(2 s₀)."""
+        """Iterate s ← s + (x − s²)/(2 s₀)."""
         numbers = self.numbers
         valid = self._at_least(b, x, LEAST_ROOT)
         inside = b.select(valid, numbers.to_double(b, x), splat_double(1.0))
@@ -60,27 +60,27 @@ class Newton:
         return valid, s
 
     def _at_least(self, b: ir.IRBuilder, x: Number, places: int) -> Value:
-        """Where x ≥ 2^−places."""
+        """Return the condition x ≥ 2^−places."""
         least = self.numbers.constant(1 << self.fraction - places, self.numbers.size)
         return b.not_(self.numbers.less(b, x, least))
 
 
 class LaneFunctions:
-    """Defines functions of one format in a module, each when it is first asked for."""
+    """A writer of functions of one format into a module, each when it is first needed."""
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
         self.module, self.numbers, self._words = module, numbers, words_of(numbers.size)
         self.one = MoreFunctions(module, numbers.fraction)
-        self._made: dict[str, ir.Function] = {}
+        self._loops: dict[str, ir.Function] = {}
         # What is written in lanes: where it is unsure, and its values.
-        self._written: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
+        self._in_lanes: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
         newton = Newton(module, numbers)
         # What has the bits of one orbit at once: where it has a value, and that.
         self._exact = {"inverse": newton.inverse, "sqrt": newton.sqrt}
         circle = Circle(module, numbers)
         exponential = Exponential(module, numbers)
         if circle.spare < DIGIT:
-            self._written = {
+            self._in_lanes = {
                 "cos_sin": circle.cos_sin,
                 "cos": lambda b, x: _part(circle.cos_sin(b, x), 0),
                 "sin": lambda b, x: _part(circle.cos_sin(b, x), 1),
@@ -90,50 +90,56 @@ class LaneFunctions:
     def call(
         self, b: ir.IRBuilder, name: str, x: Number, allocations: ir.IRBuilder
     ) -> tuple[Value, Sequence[Number]]:
-        """Where the function has a value, and its values; memory is taken by `allocations`."""
+        """Return where the function has a value, and its values; memory is allocated by
+        `allocations`."""
         if name in self._exact:
             valid, value = self._exact[name](b, x)
             return valid, [value]
-        if name not in self._written:
+        if name not in self._in_lanes:
             everywhere = ir.Constant(CONDITIONS, [1] * LANES)
             return self._one_by_one(b, name, x, everywhere, allocations)
-        unsure, values = self._written[name](b, x)
+        unsure, values = self._in_lanes[name](b, x)
         places = [[allocations.alloca(WORDS) for _ in value.limbs] for value in values]
-        for value, own in zip(values, places, strict=True):
-            for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
+        for value, addresses in zip(values, places, strict=True):
+            for limb, place in zip(self.numbers.settle(b, value), addresses, strict=True):
                 b.store(limb, place)
+        # The results of all lanes are stored before the branch: the rare block overwrites only the
+        # lanes in which rounding is in doubt.
         cold, after = b.append_basic_block("unsure"), b.append_basic_block("sure")
         before, everywhere = b.block, ir.Constant(CONDITIONS, [1] * LANES)
         b.cbranch(vectors.any_of(b, unsure), cold, after)
         b.position_at_end(cold)
         has_value, exact = self._one_by_one(b, name, x, unsure, allocations)
         has_value, end = b.or_(has_value, b.not_(unsure)), b.block
-        for value, own in zip(exact, places, strict=True):
-            for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
+        for value, addresses in zip(exact, places, strict=True):
+            for limb, place in zip(self.numbers.settle(b, value), addresses, strict=True):
                 b.store(b.select(unsure, limb, b.load(place)), place)
         b.branch(after)
         b.position_at_end(after)
         valid = b.phi(CONDITIONS)
         valid.add_incoming(everywhere, before)
         valid.add_incoming(has_value, end)
-        found = [self.numbers.known([b.load(p) for p in own], self.numbers.size) for own in places]
-        return valid, found
+        numbers = [
+            self.numbers.from_settled([b.load(p) for p in addresses], self.numbers.size)
+            for addresses in places
+        ]
+        return valid, numbers
 
     # -- lane by lane -------------------------------------------------------------------------
 
     def _one_by_one(
         self, b: ir.IRBuilder, name: str, x: Number, where: Value, allocations: ir.IRBuilder
     ) -> tuple[Value, list[Number]]:
-        """By the function of one orbit, in the lanes where the condition holds."""
+        """Apply the function of one orbit, in the lanes where the condition holds."""
         count = self._words
         function, results = self._loop_of(name)
         room = allocations.alloca(WORDS, size=count)
-        found = allocations.alloca(WORDS, size=results * count + 1)
+        results_at = allocations.alloca(WORDS, size=results * count + 1)
         for i, word in enumerate(self.numbers.words(b, x)):
             b.store(word, b.gep(room, [constant(i, 64)]))
         pointer, which = I64.as_pointer(), b.bitcast(where, ir.IntType(LANES))
-        b.call(function, [b.bitcast(room, pointer), b.bitcast(found, pointer), which])
-        words = [b.load(b.gep(found, [constant(i, 64)])) for i in range(results * count + 1)]
+        b.call(function, [b.bitcast(room, pointer), b.bitcast(results_at, pointer), which])
+        words = [b.load(b.gep(results_at, [constant(i, 64)])) for i in range(results * count + 1)]
         values = [
             self.numbers.from_words(b, words[i * count : (i + 1) * count], self.numbers.size)
             for i in range(results)
@@ -141,31 +147,31 @@ class LaneFunctions:
         return b.icmp_unsigned("!=", words[-1], splat(0)), values
 
     def _loop_of(self, name: str) -> tuple[ir.Function, int]:
-        """The function that goes through lanes in memory, and how many values it writes."""
+        """Return the function that goes through lanes in memory, and how many values it writes."""
         one = self.one.get(name)
         results = len(one.function_type.return_type.elements) - 1
-        if name in self._made:
-            return self._made[name], results
+        if name in self._loops:
+            return self._loops[name], results
         pointer, which = I64.as_pointer(), ir.IntType(LANES)
         kind = ir.FunctionType(ir.VoidType(), [pointer, pointer, which])
-        function = self._made[name] = ir.Function(self.module, kind, f"lanes_{name}")
+        function = self._loops[name] = ir.Function(self.module, kind, f"lanes_{name}")
         function.linkage = "internal"
         function.attributes.add("noinline")
-        names = ("entry", "lane", "asked", "next", "done")
-        entry, head, asked, following, done = map(function.append_basic_block, names)
+        names = ("entry", "lane", "selected", "next", "done")
+        entry, head, selected, following, done = map(function.append_basic_block, names)
         b = ir.IRBuilder(entry)
         b.branch(head)
         b.position_at_end(head)
         lane = b.phi(I64)
         lane.add_incoming(constant(0, 64), entry)
         bit = b.lshr(function.args[2], b.trunc(lane, which))
-        b.cbranch(b.trunc(bit, ir.IntType(1)), asked, following)
-        b.position_at_end(asked)
-        packed = b.call(one, [self._gathered(b, b.gep(function.args[0], [lane]))])
-        target, at = b.gep(function.args[1], [lane]), 0
+        b.cbranch(b.trunc(bit, ir.IntType(1)), selected, following)
+        b.position_at_end(selected)
+        packed = b.call(one, [self._gather(b, b.gep(function.args[0], [lane]))])
+        target, index = b.gep(function.args[1], [lane]), 0
         for i in range(results):
-            at = self._scattered(b, target, at, b.extract_value(packed, i))
-        self._scattered(b, target, at, resized(b, b.extract_value(packed, results), 64))
+            index = self._scatter(b, target, index, b.extract_value(packed, i))
+        self._scatter(b, target, index, resize(b, b.extract_value(packed, results), 64))
         b.branch(following)
         b.position_at_end(following)
         after = b.add(lane, constant(1, 64))
@@ -175,19 +181,19 @@ class LaneFunctions:
         b.ret_void()
         return function, results
 
-    def _gathered(self, b: ir.IRBuilder, pointer: Value) -> Value:
+    def _gather(self, b: ir.IRBuilder, pointer: Value) -> Value:
         places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(self._words))
-        return limbs.joined(b, [b.load(place) for place in places])
+        return limbs.join(b, [b.load(place) for place in places])
 
-    def _scattered(self, b: ir.IRBuilder, pointer: Value, at: int, value: Value) -> int:
+    def _scatter(self, b: ir.IRBuilder, pointer: Value, index: int, value: Value) -> int:
         count: int = value.type.width // 64
         for i in range(count):
-            b.store(limbs.limb(b, value, i), b.gep(pointer, [constant(LANES * (at + i), 64)]))
-        return at + count
+            b.store(limbs.limb(b, value, i), b.gep(pointer, [constant(LANES * (index + i), 64)]))
+        return index + count
 
 
-def of_doubles(b: ir.IRBuilder, name: str, x: Value) -> Value:
-    """A function of float64, lane by lane: the same bits as for one orbit."""
+def apply_to_doubles(b: ir.IRBuilder, name: str, x: Value) -> Value:
+    """Apply a function of float64, lane by lane: the same bits as for one orbit."""
     if name.removeprefix("f_") == "sqrt":
         return b.call(vectors.intrinsic(b.module, "sqrt"), [x])
     function, total = float_function(b.module, name), ir.Constant(DOUBLES, ir.Undefined)

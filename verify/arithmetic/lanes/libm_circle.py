@@ -1,4 +1,4 @@
-"""sin and cos of float64 in lanes, with the bits of glibc's own.
+"""The functions sin and cos of float64 in lanes, with the bits of glibc's own.
 
 glibc's are within 0.518 units in the last place of the value, and sin x with |x| < 0.8555 within
 0.548, as its source says (`s_sin.c`, since 2.28); what Gladman, Innocente, Mather and Zimmermann
@@ -34,7 +34,14 @@ from llvmlite import ir
 
 from verify.arithmetic import processor
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.lanes.vectors import DOUBLES, WORDS, absolute, fused, splat, splat_double
+from verify.arithmetic.lanes.vectors import (
+    DOUBLES,
+    WORDS,
+    absolute,
+    multiply_add,
+    splat,
+    splat_double,
+)
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant
@@ -50,21 +57,21 @@ class Pair(NamedTuple):
 
 
 def exact_sum(b: ir.IRBuilder, x: Value, y: Value) -> Pair:
-    """x + y, |x| ≥ |y|: rounded, and what that leaves out."""
+    """Return x + y, |x| ≥ |y|: rounded, and the error of the rounding."""
     total = b.fadd(x, y)
     return Pair(total, b.fadd(b.fsub(x, total), y))
 
 
 def plus(b: ir.IRBuilder, x: Value, y: Pair) -> Pair:
-    """x + y, |x| ≥ |y|."""
+    """Return x + y, |x| ≥ |y|."""
     total = exact_sum(b, x, y.high)
     return Pair(total.high, b.fadd(total.low, y.low))
 
 
 def times(b: ir.IRBuilder, x: Pair, y: Pair) -> Pair:
     product = b.fmul(x.high, y.high)
-    rest = fused(b, x.high, y.high, b.fneg(product))
-    return Pair(product, fused(b, x.low, y.high, fused(b, x.high, y.low, rest)))
+    rest = multiply_add(b, x.high, y.high, b.fneg(product))
+    return Pair(product, multiply_add(b, x.low, y.high, multiply_add(b, x.high, y.low, rest)))
 
 
 NAMES = ("sin", "cos")
@@ -96,22 +103,23 @@ class Rounded(NamedTuple):
 
 
 @cache
-def there() -> bool:
-    """Whether the C library is one of which so much is known, and the processor has what it takes.
+def is_available() -> bool:
+    """Return True if the C library is one with these bounds, and the processor has fused
+    multiply-add.
 
     Where a fused multiply-add is itself a call, the library's own sine is faster.
     """
     try:
         name, _, version = (os.confstr("CS_GNU_LIBC_VERSION") or "").partition(" ")
-        known = name == "glibc" and tuple(map(int, version.split(".")[:2])) >= (2, 28)
+        is_analysed = name == "glibc" and tuple(map(int, version.split(".")[:2])) >= (2, 28)
     except (AttributeError, ValueError, OSError):  # another library, or another system
         return False
-    return known and processor.features().get("fma", False)
+    return is_analysed and processor.features().get("fma", False)
 
 
 @cache
 def _quarter_turn() -> tuple[float, float, float]:
-    """π/2 as a sum, its first two parts of few bits."""
+    """Return π/2 as a sum, its first two parts of few bits."""
     places = 5 * _BITS
     with working_precision(2 * places):
         rest = Fraction(arb_integer(flint.arb.pi() / 2, places), 1 << places)
@@ -124,11 +132,11 @@ def _quarter_turn() -> tuple[float, float, float]:
 
 
 class LibmCircle:
-    """Writes those of `wanted` into a module, for so many vectors at once."""
+    """A writer of the functions `names` into a module, for so many vectors at once."""
 
-    def __init__(self, module: ir.Module, sets: int, wanted: Sequence[str]) -> None:
+    def __init__(self, module: ir.Module, sets: int, names: Sequence[str]) -> None:
         assert sets * LANES <= 64  # noqa: S101 - a word has a bit for each lane
-        self.module, self.sets, self.wanted = module, sets, wanted
+        self.module, self.sets, self.names = module, sets, names
 
     @cached_property
     def function(self) -> ir.Function:
@@ -145,12 +153,12 @@ class LibmCircle:
         b = ir.IRBuilder(entry)
         b.branch(each)
         b.position_at_end(each)
-        at_set, *unsure = (b.phi(I64) for _ in range(1 + len(self.wanted)))
+        at_set, *unsure = (b.phi(I64) for _ in range(1 + len(self.names)))
         for phi in (at_set, *unsure):
             phi.add_incoming(constant(0, 64), entry)
-        values = rounded(b, b.load(b.gep(function.args[0], [at_set])))
+        values = sin_and_cos(b, b.load(b.gep(function.args[0], [at_set])))
         shift, further = b.mul(at_set, constant(LANES, 64)), b.add(at_set, constant(1, 64))
-        for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
+        for at, (name, bits) in enumerate(zip(self.names, unsure, strict=True)):
             place = b.gep(function.args[1], [b.add(at_set, constant(at * self.sets, 64))])
             b.store(values[name].nearest, place)
             more = b.zext(b.bitcast(values[name].unsure, ir.IntType(LANES)), I64)
@@ -158,7 +166,7 @@ class LibmCircle:
         at_set.add_incoming(further, each)
         b.cbranch(b.icmp_unsigned("<", further, count), each, after)
         b.position_at_end(after)
-        for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
+        for at, (name, bits) in enumerate(zip(self.names, unsure, strict=True)):
             places = (function.args[0], b.gep(function.args[1], [constant(at * self.sets, 64)]))
             x, y = (b.bitcast(place, DOUBLE.as_pointer()) for place in places)
             _ask(b, float_function(self.module, name), x, y, bits.incomings[1][0])
@@ -167,58 +175,60 @@ class LibmCircle:
 
 
 def _ask(b: ir.IRBuilder, function: ir.Function, x: Value, y: Value, which: Value) -> None:
-    """y = f(x) where the bit of a lane is set."""
+    """Set y = f(x) where the bit of a lane is set."""
     head, lane, done = map(b.append_basic_block, ("head", "lane", "done"))
     before, zero = b.block, constant(0, 64)
     b.branch(head)
     b.position_at_end(head)
-    left = b.phi(I64)
-    left.add_incoming(which, before)
-    b.cbranch(b.icmp_unsigned("!=", left, zero), lane, done)
+    remaining = b.phi(I64)
+    remaining.add_incoming(which, before)
+    b.cbranch(b.icmp_unsigned("!=", remaining, zero), lane, done)
     b.position_at_end(lane)
-    at = b.cttz(left, ir.Constant(BOOL, 1))
-    b.store(b.call(function, [b.load(b.gep(x, [at]))]), b.gep(y, [at]))
-    left.add_incoming(b.and_(left, b.sub(left, constant(1, 64))), lane)
+    lane_index = b.cttz(remaining, ir.Constant(BOOL, 1))
+    b.store(b.call(function, [b.load(b.gep(x, [lane_index]))]), b.gep(y, [lane_index]))
+    remaining.add_incoming(b.and_(remaining, b.sub(remaining, constant(1, 64))), lane)
     b.branch(head)
     b.position_at_end(done)
 
 
-def rounded(b: ir.IRBuilder, x: Value) -> dict[str, Rounded]:
-    """sin x and cos x."""
-    found = reduced(b, x)
-    odd = b.icmp_unsigned("!=", b.and_(found.quarter, splat(1)), splat(0))
+def sin_and_cos(b: ir.IRBuilder, x: Value) -> dict[str, Rounded]:
+    """Return sin x and cos x."""
+    parts = reduce(b, x)
+    odd = b.icmp_unsigned("!=", b.and_(parts.quarter, splat(1)), splat(0))
     near_0 = b.fcmp_ordered("<", absolute(b, x), splat_double(_NEAR_0))
     rooms = [splat_double(0.5 / share) for share in (SURE_NEAR_0, SURE)]
-    sine, sure = _rounded(b, found.sine, b.select(near_0, *rooms))
+    sine, sure = _round(b, parts.sine, b.select(near_0, *rooms))
     # There sin x is a cosine of r beyond π/4.
-    cosine, also_sure = _rounded(b, found.cosine, b.select(b.and_(near_0, odd), *rooms))
+    cosine, also_sure = _round(b, parts.cosine, b.select(b.and_(near_0, odd), *rooms))
     sin, cos = b.select(odd, cosine, sine), b.select(odd, sine, cosine)
-    quarters = found.quarter, b.add(found.quarter, splat(1))
+    quarters = parts.quarter, b.add(parts.quarter, splat(1))
     near = b.select(odd, also_sure, sure), b.select(odd, sure, also_sure)
     return {
-        name: Rounded(_signed(b, value, quarter), b.not_(b.and_(each, found.within)))
+        name: Rounded(_negate_by_quarter(b, value, quarter), b.not_(b.and_(each, parts.within)))
         for name, value, quarter, each in zip(NAMES, (sin, cos), quarters, near, strict=True)
     }
 
 
-def reduced(b: ir.IRBuilder, x: Value) -> Reduced:
-    """Within 0.012 units in the last place."""
+def reduce(b: ir.IRBuilder, x: Value) -> Reduced:
+    """Reduce x to r, within 0.012 units in the last place."""
     parts = _quarter_turn()
     whole, inverse = splat_double(_WHOLE), splat_double(float(1 / sum(map(Fraction, parts))))
-    turned = fused(b, x, inverse, whole)
-    back = b.fsub(whole, turned)  # −k
+    # Adding 1.5·2^52 rounds x·2/π to an integer, which the low bits of the sum then hold (the
+    # parity of k and k mod 4 are read from there).
+    shifted_quarters = multiply_add(b, x, inverse, whole)
+    minus_k = b.fsub(whole, shifted_quarters)  # −k
     first, second, third = map(splat_double, parts)
-    near = exact_sum(b, fused(b, back, first, x), b.fmul(back, second))
-    r = exact_sum(b, near.high, fused(b, back, third, near.low))
-    within = b.and_(
+    near = exact_sum(b, multiply_add(b, minus_k, first, x), b.fmul(minus_k, second))
+    r = exact_sum(b, near.high, multiply_add(b, minus_k, third, near.low))
+    is_accurate = b.and_(
         b.fcmp_ordered("<=", absolute(b, x), splat_double(_FARTHEST)),
         b.fcmp_ordered(">=", absolute(b, r.high), splat_double(_LEAST)),
     )
-    return Reduced(*_of_small(b, r), b.bitcast(turned, WORDS), within)
+    return Reduced(*_sine_and_cosine(b, r), b.bitcast(shifted_quarters, WORDS), is_accurate)
 
 
-def _of_small(b: ir.IRBuilder, r: Pair) -> tuple[Pair, Pair]:
-    """sin r and cos r, |r| ≤ π/4 and a little more."""
+def _sine_and_cosine(b: ir.IRBuilder, r: Pair) -> tuple[Pair, Pair]:
+    """Return sin r and cos r, |r| ≤ π/4 and a little more."""
     z = times(b, r, r)
     more = times(b, r, times(b, z, _series(b, z.high, _SINE[1:])))
     sine = plus(b, r.high, Pair(more.high, b.fadd(r.low, more.low)))
@@ -229,27 +239,29 @@ def _of_small(b: ir.IRBuilder, r: Pair) -> tuple[Pair, Pair]:
 
 
 def _series(b: ir.IRBuilder, z: Value, coefficients: Sequence[Fraction]) -> Pair:
-    """Σ cₙ zⁿ, all but c₀ in float64."""
+    """Return Σ cₙ zⁿ, all but c₀ in float64."""
     first, *others = coefficients
     *lower, total = (splat_double(float(c)) for c in others)
     for c in reversed(lower):
-        total = fused(b, total, z, c)
+        total = multiply_add(b, total, z, c)
     rest = splat_double(float(first - Fraction(float(first))))
-    return exact_sum(b, splat_double(float(first)), fused(b, total, z, rest))
+    return exact_sum(b, splat_double(float(first)), multiply_add(b, total, z, rest))
 
 
-def _rounded(b: ir.IRBuilder, value: Pair, room: Value) -> tuple[Value, Value]:
-    """To the nearest float64, and where that is still so with `room` times as much beside it.
+def _round(b: ir.IRBuilder, value: Pair, room: Value) -> tuple[Value, Value]:
+    """Round to the nearest float64, and tell where that holds with `room` times the remainder, too.
+
+    The condition is false for a power of two, and for the number below one: there units change.
 
     It is never said of a power of two, or of the number below one: there units change.
     """
-    found = exact_sum(b, *value)
-    same = b.fcmp_ordered("==", fused(b, found.low, room, found.high), found.high)
-    after = b.and_(b.add(b.bitcast(found.high, WORDS), splat(1)), splat(_MANTISSA))
-    return found.high, b.and_(same, b.icmp_unsigned(">", after, splat(1)))
+    nearest = exact_sum(b, *value)
+    same = b.fcmp_ordered("==", multiply_add(b, nearest.low, room, nearest.high), nearest.high)
+    after = b.and_(b.add(b.bitcast(nearest.high, WORDS), splat(1)), splat(_MANTISSA))
+    return nearest.high, b.and_(same, b.icmp_unsigned(">", after, splat(1)))
 
 
-def _signed(b: ir.IRBuilder, x: Value, quarter: Value) -> Value:
-    """−x where the quarter turn's bit of value 2 is set."""
+def _negate_by_quarter(b: ir.IRBuilder, x: Value, quarter: Value) -> Value:
+    """Return −x where the quarter turn's bit of value 2 is set."""
     sign = b.shl(b.and_(quarter, splat(2)), splat(62))
     return b.bitcast(b.xor(b.bitcast(x, WORDS), sign), DOUBLES)

@@ -25,11 +25,11 @@ class Memory:
     widths: Mapping[str, int]
 
     def size(self, kind: str) -> int:
-        """The words of a number of that kind."""
+        """Return the number of words of a number of that kind."""
         return words_of(self.widths[kind]) if kind in self.widths else 1
 
     def read(self, b: ir.IRBuilder, memory: Value, offset: int, kind: str) -> Any:
-        """The number of that kind at a word offset."""
+        """Return the number of that kind at a word offset."""
         places = (self._place(b, memory, offset + i) for i in range(self.size(kind)))
         words = [b.load(place, align=_ALIGNED) for place in places]
         if kind in self.widths:
@@ -37,18 +37,18 @@ class Memory:
         return b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
 
     def write(self, b: ir.IRBuilder, memory: Value, words: Sequence[Value]) -> None:
-        for at, word in enumerate(words):
-            b.store(word, self._place(b, memory, at), align=_ALIGNED)
+        for index, word in enumerate(words):
+            b.store(word, self._place(b, memory, index), align=_ALIGNED)
 
     def words(self, b: ir.IRBuilder, value: Any) -> list[Value]:
-        """The words of a number; of one for all lanes, the same in each."""
+        """Return the words of a number; of one for all lanes, the same in each."""
         if isinstance(value, Number):
             return self.numbers.words(b, value)
         if value.type == DOUBLES:
             return [b.bitcast(value, WORDS)]
         return [value if value.type == WORDS else vectors.same(b, value, WORDS)]
 
-    def _place(self, b: ir.IRBuilder, memory: Value, at: int) -> Value:
-        """Where a word lies."""
-        place = b.gep(memory, [constant(at * LANES, 64)])
+    def _place(self, b: ir.IRBuilder, memory: Value, index: int) -> Value:
+        """Return the address of a word."""
+        place = b.gep(memory, [constant(index * LANES, 64)])
         return b.bitcast(place, WORDS.as_pointer())

@@ -24,15 +24,15 @@ from verify.arithmetic.wide.limbs import Value
 
 @dataclass
 class Sum:
-    """What is added up in each lane: a vector, and a number that is known now, the same in all."""
+    """A sum in each lane: a vector, and a number known at compile time, the same in all lanes."""
 
     vector: Value | None = None
     constant: int = 0
 
-    def add(self, b: ir.IRBuilder, part: Value, less: int = 0) -> None:
-        """A part, which is too large by a known number."""
+    def add(self, b: ir.IRBuilder, part: Value, excess: int = 0) -> None:
+        """Add a part, which is too large by a known number."""
         self.vector = part if self.vector is None else b.add(self.vector, part)
-        self.constant -= less
+        self.constant -= excess
 
     def total(self, b: ir.IRBuilder) -> Value:
         if self.vector is None:
@@ -48,36 +48,36 @@ class MultiplyAdd(ABC):
 
     @abstractmethod
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
-        """A limb, of which the low 52 bits count, as it is multiplied; the `highest` may be
-        negative, and is below 2^51 in size."""
+        """Return a limb, of which the low 52 bits count, as it is multiplied; the `highest` may
+        be negative, and is below 2^51 in size."""
 
     @abstractmethod
     def sum(self, start: int = 0) -> Sum:
-        """A sum to begin with."""
+        """Return a sum to begin with."""
 
     @abstractmethod
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        """Adds the product of two factors, neither negative, divided by 2^52 and rounded down."""
+        """Add the product of two factors, neither negative, divided by 2^52 and rounded down."""
 
     def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        """Adds the product divided by 2^52, rounded down or to the nearest; neither is negative."""
+        """Add the product divided by 2^52, rounded down or to the nearest; neither is negative."""
         self.high(b, total, x, y)
 
     @abstractmethod
     def both(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
-        """Adds the product in two parts, the second divided by 2^52: exact only together.
+        """Add the product in two parts, the second divided by 2^52: exact only together.
 
         `signed`: a factor may be negative. Without `high` a multiple of 2^52 is left out.
         """
 
-    def raised(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
-        """low + the low 52 bits of x·2^by."""
-        return b.add(low, vectors.masked(b, vectors.up(b, x, by)))
+    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
+        """Return low + the low 52 bits of x·2^by."""
+        return b.add(low, vectors.mask(b, vectors.up(b, x, by)))
 
 
-class _OfWords(MultiplyAdd):
+class _WordProducts(MultiplyAdd):
     """Factors are words, of which the low 52 bits count."""
 
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
@@ -88,7 +88,7 @@ class _OfWords(MultiplyAdd):
 
     @abstractmethod
     def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        """Adds the low 52 bits of the product."""
+        """Add the low 52 bits of the product."""
 
     def both(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
@@ -98,8 +98,8 @@ class _OfWords(MultiplyAdd):
             self.high(b, high, x, y)
 
 
-class Avx512(_OfWords):
-    """By the instructions of AVX-512 IFMA."""
+class Avx512(_WordProducts):
+    """Products by the instructions of AVX-512 IFMA."""
 
     def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         total.vector = self._instruction(b, "l", total.vector, x, y)
@@ -107,52 +107,54 @@ class Avx512(_OfWords):
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         total.vector = self._instruction(b, "h", total.vector, x, y)
 
-    def raised(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
+    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
         return self._instruction(b, "l", low, x, splat(1 << by))
 
     def _instruction(
         self, b: ir.IRBuilder, half: str, a: Value | None, x: Value, y: Value
     ) -> Value:
-        function = vectors.declared(
+        function = vectors.declare(
             b.module, f"llvm.x86.avx512.vpmadd52{half}.uq.512", WORDS, [WORDS] * 3
         )
         return b.call(function, [splat(0) if a is None else a, x, y])
 
 
-class Portable(_OfWords):
-    """By products of 128 bits."""
+class Portable(_WordProducts):
+    """Products of 128 bits."""
 
     def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        total.add(b, vectors.masked(b, b.mul(vectors.masked(b, x), vectors.masked(b, y))))
+        total.add(b, vectors.mask(b, b.mul(vectors.mask(b, x), vectors.mask(b, y))))
 
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         long = ir.VectorType(ir.IntType(128), LANES)
-        product = b.mul(*(b.zext(vectors.masked(b, v), long) for v in (x, y)))
+        product = b.mul(*(b.zext(vectors.mask(b, v), long) for v in (x, y)))
         total.add(b, b.trunc(b.lshr(product, ir.Constant(long, [DIGIT] * LANES)), WORDS))
 
 
 class Fused(MultiplyAdd):
-    """By fused multiply-adds of float64, to which factors are converted."""
+    """Products by fused multiply-adds of float64, to which factors are converted."""
 
     signed, leaves_out = True, True
 
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
         if highest:
-            moved = b.add(limb, splat(_bits(_ABOUT_0)))
-            return b.fsub(b.bitcast(moved, DOUBLES), splat_double(_ABOUT_0))
-        moved = b.or_(vectors.masked(b, limb), splat(_bits(_UNIT)))
-        return b.fsub(b.bitcast(moved, DOUBLES), splat_double(_UNIT))
+            biased = b.add(limb, splat(_bits(_ABOUT_0)))
+            return b.fsub(b.bitcast(biased, DOUBLES), splat_double(_ABOUT_0))
+        biased = b.or_(vectors.mask(b, limb), splat(_bits(_UNIT)))
+        return b.fsub(b.bitcast(biased, DOUBLES), splat_double(_UNIT))
 
     def sum(self, start: int = 0) -> Sum:
         return Sum(None, start)
 
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         high, rest = self._split(b, x, y, _HIGH)
+        # The fused multiply-add rounds to the nearest: where the remainder is negative, the high
+        # part was rounded up, and −1 (the sign-extended condition) corrects it.
         total.add(b, b.sext(b.fcmp_ordered("<", rest, splat_double(0.0)), WORDS))
         total.add(b, b.bitcast(high, WORDS), _bits(_HIGH))
 
     def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        above = vectors.fused(b, x, y, splat_double(_HIGH))
+        above = vectors.multiply_add(b, x, y, splat_double(_HIGH))
         total.add(b, b.bitcast(above, WORDS), _bits(_HIGH))
 
     def both(
@@ -165,13 +167,13 @@ class Fused(MultiplyAdd):
             high.add(b, b.bitcast(above, WORDS), _bits(about))
 
     def _split(self, b: ir.IRBuilder, x: Value, y: Value, about: float) -> tuple[Value, Value]:
-        """(`about` + the higher part of the product, the rest)."""
+        """Return (`about` + the higher part of the product, the rest)."""
         start = splat_double(about)
-        above = vectors.fused(b, x, y, start)
-        return above, vectors.fused(b, x, y, b.fsub(start, above))
+        above = vectors.multiply_add(b, x, y, start)
+        return above, vectors.multiply_add(b, x, y, b.fsub(start, above))
 
     def _whole(self, b: ir.IRBuilder, x: Value) -> Value:
-        """The bits of 1.5·2^52 + x, |x| ≤ 2^51 whole: those of 1.5·2^52, and x added."""
+        """Return the bits of 1.5·2^52 + x, |x| ≤ 2^51 whole: those of 1.5·2^52, and x added."""
         return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
 
 

@@ -23,7 +23,7 @@ class Numbers(Products):
     def constant(self, raw: int, width: int) -> Number:
         count = count_of(width)
         limbs = [splat((raw >> DIGIT * i) % (1 << DIGIT)) for i in range(count - 1)]
-        return self.known([*limbs, splat(raw >> DIGIT * (count - 1))], width)
+        return self.from_settled([*limbs, splat(raw >> DIGIT * (count - 1))], width)
 
     def add(self, b: ir.IRBuilder, x: Number, y: Number) -> Number:
         return self._by_limbs(b, b.add, x, y)
@@ -41,55 +41,55 @@ class Numbers(Products):
         return Number([b.sub(splat(0), limb) for limb in x.limbs], x.width, x.weight)
 
     def choose(self, b: ir.IRBuilder, condition: Value, x: Number, y: Number) -> Number:
-        """x where the condition holds, else y."""
+        """Return x where the condition holds, else y."""
         both = zip(self.settle(b, x), self.settle(b, y), strict=True)
-        return self.known([b.select(condition, u, v) for u, v in both], x.width)
+        return self.from_settled([b.select(condition, u, v) for u, v in both], x.width)
 
     def absolute(self, b: ir.IRBuilder, x: Number) -> Number:
         negative = self.negative(b, x)
         limbs = self.settle(b, x)
         return Number([b.select(negative, b.sub(splat(0), v), v) for v in limbs], x.width)
 
-    def extended(self, b: ir.IRBuilder, x: Number, width: int) -> Number:
-        """The same number in more limbs."""
+    def extend(self, b: ir.IRBuilder, x: Number, width: int) -> Number:
+        """Return the same number in more limbs."""
         return Number(x.limbs + [splat(0)] * (count_of(width) - len(x.limbs)), width, x.weight)
 
     def less(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
-        """Where x < y."""
+        """Return the condition x < y."""
         return self.negative(b, self.sub(b, x, y))
 
     def equal(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
-        """Where x = y."""
+        """Return the condition x = y."""
         rest = self.settle(b, self.sub(b, x, y))
         return b.icmp_unsigned("==", reduce(b.or_, rest), splat(0))
 
     # -- 64-bit words and doubles -------------------------------------------------------------
 
     def words(self, b: ir.IRBuilder, x: Number) -> list[Value]:
-        """Those of the number in two's complement, the lowest first."""
+        """Return the words of the number in two's complement, the lowest first."""
         return [self._word(b, x, WORD * index) for index in range(words_of(x.width))]
 
     def _leading(self, b: ir.IRBuilder, x: Number, beneath: int = 0) -> Value:
-        """As `verify.arithmetic.wide.limbs.leading`."""
+        """Return the leading word, as `verify.arithmetic.wide.limbs.leading` does."""
         return self._word(b, x, x.width - WORD * (beneath + 1))
 
     def _word(self, b: ir.IRBuilder, x: Number, first: int) -> Value:
-        """The 64 bits of the number in two's complement that begin with that one."""
+        """Return 64 bits of the number in two's complement, from bit `first` on."""
         total = None
         limbs = self.settle(b, x)
         for i, limb in enumerate(limbs):
-            at, end = DIGIT * i - first, DIGIT * (i + 1) - first
+            start, end = DIGIT * i - first, DIGIT * (i + 1) - first
             last = i == len(limbs) - 1
-            if (end <= 0 and not last) or at >= 64:
+            if (end <= 0 and not last) or start >= 64:
                 continue
             shift = b.ashr if last else b.lshr
-            part = shift(limb, splat(min(-at, 63))) if at < 0 else vectors.up(b, limb, at)
+            part = shift(limb, splat(min(-start, 63))) if start < 0 else vectors.up(b, limb, start)
             total = part if total is None else b.or_(total, part)
         assert total is not None  # noqa: S101
         return total
 
     def from_words(self, b: ir.IRBuilder, words: Sequence[Value], width: int) -> Number:
-        """The number of so many bits in 64-bit words, the lowest first."""
+        """Return the number of so many bits in 64-bit words, the lowest first."""
         count = count_of(width)
         limbs = []
         for i in range(count):
@@ -99,18 +99,18 @@ class Numbers(Products):
             limb = (b.ashr if last and highest else b.lshr)(words[index], splat(by))
             if not highest and (last or by > 64 - DIGIT):
                 limb = b.or_(limb, vectors.up(b, words[index + 1], 64 - by))
-            limbs.append(limb if last else vectors.masked(b, limb))
-        return self.known(limbs, width)
+            limbs.append(limb if last else vectors.mask(b, limb))
+        return self.from_settled(limbs, width)
 
     def to_double(self, b: ir.IRBuilder, x: Number) -> Value:
-        """As `verify.arithmetic.wide.newton.to_double`, operation by operation."""
+        """Convert as `verify.arithmetic.wide.newton.to_double` does, operation by operation."""
         high = b.sitofp(self._leading(b, x), DOUBLES)
         low = b.uitofp(self._leading(b, x, 1), DOUBLES)
         unit, below = map(splat_double, units_of_words(x.width - self.size))
         return b.fadd(b.fmul(high, unit), b.fmul(low, below))
 
     def from_double(self, b: ir.IRBuilder, value: Value) -> Number:
-        """As `verify.arithmetic.wide.newton.from_double`; |value| < 2^15."""
+        """Convert as `verify.arithmetic.wide.newton.from_double` does; |value| < 2^15."""
         floor, absolute = (vectors.intrinsic(b.module, name) for name in ("floor", "fabs"))
         count = count_of(self.size)
         scale = splat_double(2.0 ** (self.fraction - DIGIT * (count - 1)))
@@ -127,13 +127,13 @@ class Numbers(Products):
     # -- what the language has ----------------------------------------------------------------
 
     def inside(self, b: ir.IRBuilder, x: Number, limit: Number) -> Value:
-        """|x| < limit, by the leading bits alone; see the translator of one orbit."""
+        """Return |x| < limit, by the leading bits alone; see the translator of one orbit."""
         high, most = (self._leading(b, v) for v in (x, limit))
-        moved = b.sub(b.add(high, most), splat(1))
-        return b.icmp_unsigned("<", moved, b.sub(b.add(most, most), splat(1)))
+        biased = b.sub(b.add(high, most), splat(1))
+        return b.icmp_unsigned("<", biased, b.sub(b.add(most, most), splat(1)))
 
-    def shifted(self, b: ir.IRBuilder, x: Number, by: Value) -> Number:
-        """x / 2^by rounded down, 0 ≤ by < 64, `by` a word in each lane."""
+    def shift_down(self, b: ir.IRBuilder, x: Number, by: Value) -> Number:
+        """Return x / 2^by rounded down, 0 ≤ by < 64, `by` a word in each lane."""
         limbs = self.settle(b, x)
         sign = vectors.down(b, limbs[-1], 63)
         far = b.icmp_unsigned(">=", by, splat(DIGIT))
@@ -143,9 +143,9 @@ class Numbers(Products):
         above = [*low[1:], high, sign]
         near = [b.select(far, v, u) for u, v in zip([*low, high], above, strict=True)]
         filled = [*near, sign]
-        left = b.sub(splat(DIGIT), rest)
-        moved = [
-            b.or_(b.lshr(vectors.masked(b, u), rest), vectors.masked(b, b.shl(v, left)))
+        complement = b.sub(splat(DIGIT), rest)
+        shifted = [
+            b.or_(b.lshr(vectors.mask(b, u), rest), vectors.mask(b, b.shl(v, complement)))
             for u, v in pairwise(filled[:-1])
         ]
-        return self.known([*moved, b.ashr(near[-1], rest)], x.width)
+        return self.from_settled([*shifted, b.ashr(near[-1], rest)], x.width)

@@ -19,38 +19,38 @@ from verify.arithmetic.wide.limbs import Value
 
 
 class Variables:
-    """Those variables that a loop changes."""
+    """The variables that a loop changes."""
 
     def __init__(self, numbers: Numbers) -> None:
         self.numbers = numbers
         self.places: dict[str, list[Value]] = {}
 
     def add(self, b: ir.IRBuilder, allocations: ir.IRBuilder, name: str, value: Any) -> None:
-        """Makes place for a variable, which has this value before the loop."""
+        """Allocate places for a variable, which has this value before the loop."""
         parts = self._parts(b, value)
         self.places[name] = [allocations.alloca(part.type) for part in parts]
 
     def keep(self, b: ir.IRBuilder, values: Mapping[str, Any]) -> None:
-        """Writes what they are at the end of a pass."""
+        """Write the values at the end of a pass."""
         for name, places in self.places.items():
             for part, place in zip(self._parts(b, values[name]), places, strict=True):
                 b.store(part, place)
 
-    def fetched(self, b: ir.IRBuilder, before: Mapping[str, Any]) -> dict[str, Any]:
-        """What they are at the beginning of a pass; `before`: what they were before the loop."""
-        found = {}
+    def fetch(self, b: ir.IRBuilder, before: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the values at the beginning of a pass; `before`: those before the loop."""
+        values = {}
         for name, places in self.places.items():
             parts, value = [b.load(place) for place in places], before[name]
             number = isinstance(value, Number)
-            found[name] = self.numbers.known(parts, value.width) if number else parts[0]
-        return found
+            values[name] = self.numbers.from_settled(parts, value.width) if number else parts[0]
+        return values
 
     def _parts(self, b: ir.IRBuilder, value: Any) -> list[Value]:
         return self.numbers.settle(b, value) if isinstance(value, Number) else [value]
 
 
 class Retirement:
-    """Which lanes go on, and how many steps those have done that do not."""
+    """The lanes that go on, and the steps done by those that have retired."""
 
     def __init__(self, b: ir.IRBuilder, allocations: ir.IRBuilder, limit: Value) -> None:
         self.done, self.going = allocations.alloca(WORDS), allocations.alloca(CONDITIONS)
@@ -58,13 +58,15 @@ class Retirement:
         b.store(ir.Constant(CONDITIONS, [1] * LANES), self.going)
 
     def retire(self, b: ir.IRBuilder, where: Value, step: Value, finish: ir.Block) -> None:
-        """The lanes where that is true have done so many steps, and do no more; goes to `finish`
-        when none is left."""
+        """Retire the lanes where the condition holds, which have done so many steps; go to
+        `finish` when none is left."""
         leaving = b.and_(where, b.load(self.going))
         some = b.append_basic_block("leaving")
         after = b.append_basic_block("after")
         b.cbranch(vectors.any_of(b, leaving), some, after)
         b.position_at_end(some)
+        # Only the lanes that leave in this pass record their step; those that left before keep
+        # theirs.
         done = b.select(leaving, vectors.same(b, step, WORDS), b.load(self.done))
         b.store(done, self.done)
         rest = b.and_(b.load(self.going), b.not_(leaving))

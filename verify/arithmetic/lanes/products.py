@@ -35,14 +35,16 @@ class Products(Carries):
         self._whole: dict[int, ir.Function] = {}
 
     def product(self, b: ir.IRBuilder, x: Number, y: Number) -> Number:
-        """x y / 2^fraction, rounded to the nearest, halves upwards."""
+        """Return x y / 2^fraction, rounded to the nearest, halves upwards."""
         columns = self._columns(b, x, y, self._first)
-        near = self._rounded(b, columns, x.width)
+        near = self._round(b, columns, x.width)
         if self._first == _EXACT:
             return Number(near, x.width, _WEIGHT)
         unsure = vectors.any_of(b, self._unsure(b, columns[self._first]))
         before, cold = b.block, b.append_basic_block("unsure")
         after = b.append_basic_block("sure")
+        # The weights move the rare block out of the way, so that the common path stays in
+        # straight-line code.
         b.cbranch(unsure, cold, after).set_weights([1, 1 << 20])
         b.position_at_end(cold)
         whole = b.call(
@@ -58,7 +60,7 @@ class Products(Carries):
         return Number(limbs, x.width, _WEIGHT)
 
     def _unsure(self, b: ir.IRBuilder, column: Value) -> Value:
-        """Where what is left out below the first column might carry into the result."""
+        """Return the condition that the omitted columns might carry into the result."""
         lost = self._lost(self._first)
         below = self._drop if self._first == self._lowest else DIGIT
         rest = b.and_(b.add(column, splat(lost)), splat((1 << below) - 1))
@@ -66,12 +68,13 @@ class Products(Carries):
 
     @staticmethod
     def _lost(first: int) -> int:
-        """Units of the first column that may be missing: less than one for each product in the two
-        columns beneath it, 2·first − 1 of them, and less than one for all further below."""
+        """Return the units of the first column that may be missing: less than one for each
+        product in the two columns beneath it, 2·first − 1 of them, and less than one for all
+        further below."""
         return 2 * first
 
     def _whole_product(self, module: ir.Module, width: int) -> ir.Function:
-        """The limbs of a product from all columns: a function apart, since it is hardly ever
+        """Return a function for the product from all columns: apart, since it is hardly ever
         called."""
         if width in self._whole:
             return self._whole[width]
@@ -84,17 +87,17 @@ class Products(Carries):
         function.attributes.add("noinline")
         b = ir.IRBuilder(function.append_basic_block("entry"))
         x, y = (
-            self.known(vectors.settled(b, limbs), width)
+            self.from_settled(vectors.settle(b, limbs), width)
             for limbs in (function.args[:count], function.args[count:])
         )
-        found = ir.Constant(result, ir.Undefined)
-        for i, limb in enumerate(self._rounded(b, self._columns(b, x, y, _EXACT), width)):
-            found = b.insert_value(found, limb, i)
-        b.ret(found)
+        packed = ir.Constant(result, ir.Undefined)
+        for i, limb in enumerate(self._round(b, self._columns(b, x, y, _EXACT), width)):
+            packed = b.insert_value(packed, limb, i)
+        b.ret(packed)
         return function
 
     def _columns(self, b: ir.IRBuilder, x: Number, y: Number, first: int) -> dict[int, Value]:
-        """Σ xᵢ yⱼ and half a unit of the result's last place by columns, from the first on.
+        """Return Σ xᵢ yⱼ and half a unit of the result's last place by columns, from the first on.
 
         Of the column above the result's highest limb the low bits are needed, or none: not where
         the highest column has room for the sign, and for carries that are still to come.
@@ -116,6 +119,7 @@ class Products(Carries):
         for i in range(count):
             for j in range(i + 1, count):
                 mixed.add(b, u[i], u[j], i + j, signed=j == count - 1)
+        # A square: the mixed products xᵢ xⱼ, i < j, are formed once and doubled.
         for c, value in mixed.total(b).items():
             columns.sums[c].add(b, b.add(value, value))
         for i in range(count):
@@ -123,8 +127,8 @@ class Products(Carries):
         return columns.total(b)
 
     def _start(self, first: int, top: int) -> dict[int, int]:
-        """What is added to columns so that all but the highest are not negative; it comes to
-        nothing in all."""
+        """Return numbers to add to columns so that all but the highest are not negative; their
+        sum is 0."""
         above = 0 if vectors.SHIFTS_SIGNS else _ABOVE
         start = dict.fromkeys(range(first, top + 1), 0)
         for c in range(first, top):
@@ -133,31 +137,31 @@ class Products(Carries):
         return start
 
     def _take_signs(self, b: ir.IRBuilder, columns: Columns, x: Number, y: Number) -> None:
-        """y away, as many columns higher as x has limbs, where x is negative and its factors do
-        not say so."""
+        """Subtract y, as many columns higher as x has limbs, where x is negative and its factors
+        are unsigned."""
         if self.multiply_add.signed:
             return
         for j, limb in enumerate(self.settle(b, y)):
             total = columns.sums.get(len(x.limbs) + j)
             if total is not None:
-                less = b.sub(total.vector, limb)
-                total.vector = b.select(self.negative(b, x), less, total.vector)
+                reduced = b.sub(total.vector, limb)
+                total.vector = b.select(self.negative(b, x), reduced, total.vector)
 
-    def _rounded(self, b: ir.IRBuilder, columns: Mapping[int, Value], width: int) -> list[Value]:
-        """The result's limbs, of the columns from the first that is known."""
+    def _round(self, b: ir.IRBuilder, columns: Mapping[int, Value], width: int) -> list[Value]:
+        """Return the result's limbs, from the columns beginning with the first known one."""
         down, drop = vectors.down_positive, self._drop
-        carried, count = dict(columns), count_of(width)
+        propagated, count = dict(columns), count_of(width)
         for c in range(min(columns), self._lowest):
-            carried[c + 1] = b.add(carried[c + 1], down(b, carried[c], DIGIT))
-        kept = [carried[c] for c in range(self._lowest, max(columns) + 1)]
+            propagated[c + 1] = b.add(propagated[c + 1], down(b, propagated[c], DIGIT))
+        kept_columns = [propagated[c] for c in range(self._lowest, max(columns) + 1)]
         limbs = [
-            self.multiply_add.raised(b, down(b, low, drop), above, DIGIT - drop)
-            for low, above in pairwise(kept)
+            self.multiply_add.add_shifted(b, down(b, low, drop), above, DIGIT - drop)
+            for low, above in pairwise(kept_columns)
         ][: count - 1]
-        if len(kept) > count:  # what lies above is multiples of 2^64 of the highest limb
-            high = down(b, kept[count - 1], drop)
-            limbs.append(b.add(high, vectors.up(b, kept[count], DIGIT - drop)))
+        if len(kept_columns) > count:  # what lies above is multiples of 2^64 of the highest limb
+            high = down(b, kept_columns[count - 1], drop)
+            limbs.append(b.add(high, vectors.up(b, kept_columns[count], DIGIT - drop)))
         else:  # of the highest column 52 bits count, the highest of them the sign
-            high = vectors.up(b, kept[-1], 64 - DIGIT)
+            high = vectors.up(b, kept_columns[-1], 64 - DIGIT)
             limbs.append(vectors.down(b, high, 64 - DIGIT + drop))
         return limbs

@@ -9,7 +9,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number, count_of
 from verify.arithmetic.lanes.columns import Columns
-from verify.arithmetic.lanes.fractions import constant, negated, settled, taken
+from verify.arithmetic.lanes.fractions import constant, negate, settle, subtract
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.functions import arb_integer
@@ -30,27 +30,28 @@ class Reduction:
         with working_precision(numbers.size + 256):
             exact = step()
             self.unit = arb_integer(exact, DIGIT * (self.count + 1))
+            # A float64 suffices: k may be off by one, and then the rest is still small.
             self.inverse = float((1 / exact).mid())
 
     def steps(self, b: ir.IRBuilder, x: Number) -> Value:
-        """x / step in float64, within 2^−50 of its size."""
+        """Return x / step in float64, within 2^−50 of its size."""
         return b.fmul(self.numbers.to_double(b, x), vectors.splat_double(self.inverse))
 
     def rest(self, b: ir.IRBuilder, x: Number, k: Value) -> list[Value]:
-        """x − k·step, which is below ½ in size; its highest limb has the sign."""
+        """Return x − k·step, which is below ½ in size; its highest limb has the sign."""
         below = b.icmp_signed("<", k, splat(0))
         size = b.select(below, b.sub(splat(0), k), k)
         # |k|·step, whose lowest limb is below a fraction's units. What is above them is whole
         # numbers, which x has as well, so that they need not be known.
-        multiple = settled(b, self._times(b, constant(self.unit, self.count + 1), size))[1:]
+        multiple = settle(b, self._times(b, constant(self.unit, self.count + 1), size))[1:]
         stretched = self._times(b, self.numbers.settle(b, x), splat(1 << self.spare))
-        rest = settled(b, taken(b, stretched, negated(b, below, multiple)))
+        rest = settle(b, subtract(b, stretched, negate(b, below, multiple)))
         # Of the highest limb 52 bits count, the highest of them the sign.
         high = vectors.down(b, vectors.up(b, rest[-1], 64 - DIGIT), 64 - DIGIT)
         return [*rest[:-1], high]
 
     def _times(self, b: ir.IRBuilder, limbs: Sequence[Value], factor: Value) -> list[Value]:
-        """The limbs of the product with one limb, but for what goes beyond the highest."""
+        """Return the limbs of the product with one limb, without what goes beyond the highest."""
         multiply_add = self.numbers.multiply_add
         columns = Columns(multiply_add, 0, len(limbs) - 1)
         by = multiply_add.factor(b, factor)

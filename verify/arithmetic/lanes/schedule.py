@@ -14,30 +14,32 @@ _BUSY = {ast.Mult: 17, ast.Call: 8}  # cycles that it keeps the multipliers busy
 _LEAST = 3
 
 
-def reordered(statements: Sequence[ast.stmt]) -> list[ast.stmt]:
-    """The same statements, each after all that it depends on."""
+def reorder(statements: Sequence[ast.stmt]) -> list[ast.stmt]:
+    """Return the same statements in a better order, each after all that it depends on."""
     before = _dependencies(statements)
     after: list[list[int]] = [[] for _ in statements]
-    for index, needed in enumerate(before):
-        for other in needed:
+    for index, predecessors in enumerate(before):
+        for other in predecessors:
             after[other].append(index)
     wait, busy = ([_cycles(s, table) for s in statements] for table in (_WAIT, _BUSY))
     way = [0] * len(statements)
     for index in reversed(range(len(statements))):
         way[index] = wait[index] + max((way[k] for k in after[index]), default=0)
-    left = [len(needed) for needed in before]
-    there = [0] * len(statements)  # when the operands are
-    ready = {index for index, count in enumerate(left) if not count}
+    unmet = [len(predecessors) for predecessors in before]
+    available_at = [0] * len(statements)  # when the operands are
+    ready = {index for index, count in enumerate(unmet) if not count}
     order, now = [], 0
     while ready:
-        index = min(ready, key=lambda k: (max(there[k], now), -way[k], k))
+        # List scheduling: the earliest start counts first, then the longest path to the end; the
+        # index makes the order reproducible.
+        index = min(ready, key=lambda k: (max(available_at[k], now), -way[k], k))
         ready.remove(index)
         order.append(statements[index])
-        now = max(now, there[index]) + busy[index]
+        now = max(now, available_at[index]) + busy[index]
         for k in after[index]:
-            there[k] = max(there[k], now + wait[index] - busy[index])
-            left[k] -= 1
-            if not left[k]:
+            available_at[k] = max(available_at[k], now + wait[index] - busy[index])
+            unmet[k] -= 1
+            if not unmet[k]:
                 ready.add(k)
     return order
 
@@ -47,26 +49,26 @@ def _cycles(statement: ast.stmt, table: dict[type, int]) -> int:
 
 
 def _dependencies(statements: Sequence[ast.stmt]) -> list[set[int]]:
-    """Of each the statements that must come before it: those whose names it reads, and those that
-    read or write what it writes."""
-    found: list[set[int]] = []
+    """Return, for each statement, those that must come before it: the writers of the names it
+    reads, and those that read or write what it writes."""
+    dependencies: list[set[int]] = []
     writer: dict[str, int] = {}
     readers: dict[str, set[int]] = {}
     last_return: set[int] = set()
     for index, statement in enumerate(statements):
         names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
-        written = {node.id for node in names if isinstance(node.ctx, ast.Store)}
+        names_written = {node.id for node in names if isinstance(node.ctx, ast.Store)}
         read = {node.id for node in names if isinstance(node.ctx, ast.Load)}
         if isinstance(statement, ast.If):  # where it does not hold the old value is kept
-            read |= written
-        needed = {writer[name] for name in read | written if name in writer}
-        needed |= {k for name in written for k in readers.get(name, ())}
+            read |= names_written
+        required = {writer[name] for name in read | names_written if name in writer}
+        required |= {k for name in names_written for k in readers.get(name, ())}
         if any(isinstance(node, ast.Return) for node in ast.walk(statement)):
-            needed |= set(range(index))  # it says where the loop ends: after all before it
+            required |= set(range(index))  # it says where the loop ends: after all before it
             last_return = {index}
-        found.append((needed | last_return) - {index})
+        dependencies.append((required | last_return) - {index})
         for name in read:
             readers.setdefault(name, set()).add(index)
-        for name in written:
+        for name in names_written:
             writer[name], readers[name] = index, set()
-    return found
+    return dependencies

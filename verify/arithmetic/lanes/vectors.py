@@ -18,7 +18,7 @@ _ABOVE = 1 << 62
 
 
 def splat(value: int) -> Value:
-    """The same word in all lanes."""
+    """Return the same word in all lanes."""
     return ir.Constant(WORDS, [value % (1 << 64)] * LANES)
 
 
@@ -27,41 +27,41 @@ def splat_double(value: float) -> Value:
 
 
 def same(b: ir.IRBuilder, value: Value, kind: ir.VectorType) -> Value:
-    """A scalar in all lanes."""
+    """Return a scalar in all lanes."""
     first = b.insert_element(ir.Constant(kind, ir.Undefined), value, ir.Constant(I64, 0))
     zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return b.shuffle_vector(first, ir.Constant(kind, ir.Undefined), zeros)
 
 
 def in_lanes(b: ir.IRBuilder, condition: Value) -> Value:
-    """A condition that may be one for all lanes, in each of them."""
+    """Return a condition that may be one for all lanes, in each of them."""
     return condition if condition.type == CONDITIONS else same(b, condition, CONDITIONS)
 
 
 def each(b: ir.IRBuilder, x: Value) -> list[Value]:
-    """The words of all lanes, as scalars."""
+    """Return the words of all lanes, as scalars."""
     return [b.extract_element(x, ir.Constant(I64, lane)) for lane in range(LANES)]
 
 
-def shuffled(b: ir.IRBuilder, x: Value, y: Value, places: Sequence[int]) -> Value:
-    """The elements at those places of both vectors one after the other."""
+def shuffle(b: ir.IRBuilder, x: Value, y: Value, places: Sequence[int]) -> Value:
+    """Return the elements at those places of both vectors, one after the other."""
     kind = ir.VectorType(ir.IntType(32), len(places))
     return b.shuffle_vector(x, y, ir.Constant(kind, list(places)))
 
 
-def masked(b: ir.IRBuilder, x: Value) -> Value:
-    """The low 52 bits."""
+def mask(b: ir.IRBuilder, x: Value) -> Value:
+    """Return the low 52 bits."""
     return b.and_(x, splat(_MASK))
 
 
-def settled(b: ir.IRBuilder, carried: Sequence[Value]) -> list[Value]:
-    """Limbs whose carries have moved, cut to the 52 bits that count, but for the highest."""
-    *low, high = carried
-    return [*(masked(b, limb) for limb in low), high]
+def settle(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
+    """Return limbs whose carries have moved, cut to the 52 bits that count, except the highest."""
+    *low, high = limbs
+    return [*(mask(b, limb) for limb in low), high]
 
 
 def down(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    """x / 2^by rounded down, x with its sign."""
+    """Return x / 2^by rounded down, x with its sign."""
     return b.ashr(x, splat(by)) if by else x
 
 
@@ -70,50 +70,54 @@ def up(b: ir.IRBuilder, x: Value, by: int) -> Value:
 
 
 def down_positive(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    """x / 2^by rounded down, x not negative where `SHIFTS_SIGNS` is not true."""
+    """Return x / 2^by rounded down, x not negative where `SHIFTS_SIGNS` is not true."""
     return down(b, x, by) if SHIFTS_SIGNS else b.lshr(x, splat(by))
 
 
-def carried(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
-    """The limbs, each below 2^62 in size, after their carries have moved.
+def carry(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
+    """Return the limbs, each below 2^62 in size, after their carries have moved.
 
     The highest has the sign, of all others the low 52 bits count.
     """
-    found: list[Value] = []
+    moved_limbs: list[Value] = []
+    # Without an arithmetic shift a limb is made positive by 2^62 before it is shifted; the same
+    # amount, shifted, is taken from the next limb, so that the sum is unchanged.
     above = 0 if SHIFTS_SIGNS else _ABOVE
     for i, limb in enumerate(limbs):
         start = (above if i + 1 < len(limbs) else 0) - (above >> DIGIT if i else 0)
         moved = b.add(limb, splat(start)) if start else limb
-        found.append(b.add(moved, down_positive(b, found[-1], DIGIT)) if found else moved)
-    return found
+        moved_limbs.append(
+            b.add(moved, down_positive(b, moved_limbs[-1], DIGIT)) if moved_limbs else moved
+        )
+    return moved_limbs
 
 
 def any_of(b: ir.IRBuilder, condition: Value) -> Value:
-    """Whether it is true in some lane."""
+    """Return True if the condition holds in some lane."""
     bits = b.bitcast(condition, ir.IntType(LANES))
     return b.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
 
 
-def declared(
+def declare(
     module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type]
 ) -> ir.Function:
-    """LLVM's function of that name."""
+    """Return LLVM's function of that name, declared where it is new."""
     if name not in module.globals:
         ir.Function(module, ir.FunctionType(result, arguments), name)
     return module.globals[name]
 
 
 def intrinsic(module: ir.Module, name: str) -> ir.Function:
-    """LLVM's function of that name, of one vector of doubles."""
-    return declared(module, f"llvm.{name}.v{LANES}f64", DOUBLES, [DOUBLES])
+    """Return LLVM's function of that name, of one vector of doubles."""
+    return declare(module, f"llvm.{name}.v{LANES}f64", DOUBLES, [DOUBLES])
 
 
 def absolute(b: ir.IRBuilder, x: Value) -> Value:
-    """|x| of float64."""
+    """Return |x| of float64."""
     return b.call(intrinsic(b.module, "fabs"), [x])
 
 
-def fused(b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
-    """x y + z, rounded once."""
+def multiply_add(b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
+    """Return x y + z, rounded once."""
     name, kinds = f"llvm.fma.v{LANES}f64", [DOUBLES] * 3
-    return b.call(declared(b.module, name, DOUBLES, kinds), [x, y, z])
+    return b.call(declare(b.module, name, DOUBLES, kinds), [x, y, z])

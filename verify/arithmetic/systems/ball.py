@@ -17,7 +17,7 @@ from verify.arithmetic.number_system import (
     Arithmetic,
     NumberSystem,
     bits_for,
-    interpreted,
+    interpret,
 )
 from verify.functions import in_rings
 
@@ -25,14 +25,14 @@ NAME = "ball"
 
 
 def make(digits: int) -> Arithmetic:
-    """Balls whose midpoints have the bits for `digits` decimal digits."""
+    """Return balls whose midpoints have the bits for `digits` decimal digits."""
     return at_bits(bits_for(digits))
 
 
 def at_bits(bits: int) -> Arithmetic:
     import flint
 
-    from verify.arithmetic.arb import middle_and_radius, rational_ball
+    from verify.arithmetic.arb import midpoint_and_radius, rational_ball
     from verify.arithmetic.flint_precision import working_precision
 
     context = partial(working_precision, bits)
@@ -42,7 +42,8 @@ def at_bits(bits: int) -> Arithmetic:
             return rational_ball(value)
 
     def in_range(x: Any) -> bool:
-        """In range, and not so wide that nothing is known of it: more precision helps then."""
+        """Return True if x is in range, and not so wide that nothing is known of it: then more
+        precision helps."""
         return bool(abs(x) < escape and (x.rel_accuracy_bits() > 0 or x.rad() < 1))
 
     escape = flint.arb(2) ** ESCAPE_BITS
@@ -52,8 +53,8 @@ def at_bits(bits: int) -> Arithmetic:
         name=NAME,
         bits=bits,
         number=number,
-        exact=lambda x: middle_and_radius(x)[0],
-        radius=lambda x: middle_and_radius(x)[1],
+        exact=lambda x: midpoint_and_radius(x)[0],
+        radius=lambda x: midpoint_and_radius(x)[1],
         finite=in_range,
         context=context,
         functions={
@@ -63,7 +64,7 @@ def at_bits(bits: int) -> Arithmetic:
             "minimum": flint.arb.min,
             "maximum": flint.arb.max,
         },
-        compile=interpreted,
+        compile=interpret,
         # NaN stays NaN, and exponents have no end, so that looking at the end of a chunk is enough;
         # in a chunk so short even cubing at every step makes no exponent that takes time.
         guard=None,

@@ -27,7 +27,8 @@ _THREE_LIMBS = 3 * 52  # bits; in lanes as fast as 128, for one orbit as 192
 
 
 def make(digits: int) -> Arithmetic:
-    """The narrowest format that rounds within 10^−digits: to 34, 42, 53, 72, 92, … digits."""
+    """Return the narrowest format that rounds within 10^−digits: to 34, 42, 53, 72, 92, …
+    digits."""
     # Half a unit, 2^(−bits − 1), is at most 10^−digits.
     least = size_of(math.ceil(digits * math.log2(10)) - 1)
     width = max(128, WORD * words_of(least))
@@ -35,7 +36,7 @@ def make(digits: int) -> Arithmetic:
 
 
 def at_bits(bits: int) -> Arithmetic:
-    """The format with so many bits after the point, 112 or more."""
+    """Return the format with so many bits after the point, 112 or more."""
 
     def number(value: Fraction) -> Any:
         from verify.arithmetic.compiled.engine import Fixed
@@ -43,10 +44,12 @@ def at_bits(bits: int) -> Arithmetic:
         return Fixed(round(value * 2**bits), bits)
 
     def compiled_source(source: str, name: str, names: Mapping[str, Any]) -> Callable[..., Any]:
-        from verify.arithmetic.compiled.engine import compiled
+        from verify.arithmetic.compiled.engine import compile_source
 
-        return compiled(source, bits, names)
+        return compile_source(source, bits, names)
 
+    # Fixed point: the error of an operation does not depend on the number's size, except through
+    # the functions' own units.
     def rounding(kind: str, degree: int, size: "Ball") -> "Ball":
         if kind == "root":  # of another degree it is a number; there is no function for it
             kind = "sqrt" if degree == 2 else "pi"
@@ -84,13 +87,13 @@ NUMBER_SYSTEM = NumberSystem(
 
 
 def functions() -> tuple[str, ...]:
-    """The names of the functions that there are in fixed point."""
+    """Return the names of the functions that exist in fixed point."""
     return (*(name for name, f in by_name().items() if f.fixed is not None), "cos_sin")
 
 
 @cache
 def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
-    """Each operation's error in units of the last place, by the size of its result.
+    """Return each operation's error in units of the last place, by the size of its result.
 
     See `verify.arithmetic.wide.functions`.
     """
@@ -111,13 +114,18 @@ def _units_of(fixed: FixedPoint) -> Callable[["Ball"], "Ball"]:
 
 
 def _walk(
-    kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any], beyond: int
+    kernel: Any,
+    every: int,
+    stops: int,
+    fixed: Sequence[Any],
+    state: Sequence[Any],
+    later_steps: int,
 ) -> Course[Any]:
-    """In one call, and in lanes where others walk in the same kernel."""
+    """Walk in one call, and in lanes where others walk in the same kernel."""
     from verify.arithmetic.compiled.engine import Walk
 
     try:
-        return (yield from meet(kernel, Walk(every, stops, fixed, state, beyond)))
+        return (yield from meet(kernel, Walk(every, stops, fixed, state, later_steps)))
     except OverflowError:  # a number is outside the format from the start
         return []
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
-from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
+from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpret
 from verify.functions import by_name, in_rings
 
 NAME = "float64"
@@ -22,7 +22,7 @@ _REPAID_SOLVING = 10_000  # steps with a loop in them, which solves equations: 4
 
 
 def make(digits: int) -> Arithmetic:
-    """float64 has 53 bits, whatever `digits` asks for."""
+    """Return float64 with its 53 bits, whatever `digits` asks for."""
     return Arithmetic(
         name=NAME,
         bits=53,
@@ -44,11 +44,11 @@ def make(digits: int) -> Arithmetic:
 
 
 def compiled_at_once(*, anew: bool = False) -> Arithmetic:
-    """The same number system, each kernel compiled at its first call: for timing it.
+    """Return the same number system, each kernel compiled at its first call: for timing it.
 
     `anew`: not from what is kept on disk, where LLVM compiles it.
     """
-    return replace(make(17), compile=partial(_compiled, anew=anew))
+    return replace(make(17), compile=partial(_compile_now, anew=anew))
 
 
 NUMBER_SYSTEM = NumberSystem(
@@ -61,7 +61,7 @@ NUMBER_SYSTEM = NumberSystem(
 
 
 def nearest_double(value: Fraction) -> float:
-    """The nearest float64; infinite beyond their range, where a run then ends."""
+    """Return the nearest float64; infinite beyond their range, where a run then ends."""
     try:
         return float(value)
     except OverflowError:
@@ -69,7 +69,7 @@ def nearest_double(value: Fraction) -> float:
 
 
 def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """The kernel, compiled once it has so many steps to do that it repays.
+    """Return the kernel, compiled once it has so many steps to do that it repays.
 
     Until then Python does them, with the same bits, as its operators and functions are those of
     IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
@@ -89,39 +89,40 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
                 done += steps
                 return result
         if compiled is None:
-            compiled = _compiled(source, name, namespace)
+            compiled = _compile_now(source, name, namespace)
         return compiled(first, *arguments)
 
     return kernel
 
 
 def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """The kernel in Python; what that refuses, as 1/0, is done again with functions that give
-    infinities and NaN, as IEEE and a compiled one do.
+    """Return the kernel in Python; what that refuses, as 1/0, is done again with functions that
+    give infinities and NaN, as IEEE and a compiled one do.
 
     A compiled kernel stays in memory for good, and orbits that escape are no rarity.
     """
-    plain = interpreted(source, name, namespace)
+    plain = interpret(source, name, namespace)
 
     @cache
-    def unrefused() -> Callable[..., Any]:
-        own = {f: _ieee(f) for f in by_name() if f in namespace}
+    def permissive() -> Callable[..., Any]:
+        functions = {f: _ieee(f) for f in by_name() if f in namespace}
         divided = _DIVISION.sub(r"over(\1, \2)", source)
-        return interpreted(divided, name, {**namespace, **own, **_OVER})
+        return interpret(divided, name, {**namespace, **functions, **_OVER})
 
     def kernel(*arguments: Any) -> Any:
         try:
             return plain(*arguments)
         except (ArithmeticError, ValueError):
-            return unrefused()(*arguments)
+            return permissive()(*arguments)
 
     return kernel
 
 
-def _compiled(
+def _compile_now(
     source: str, name: str, namespace: Mapping[str, Any], *, anew: bool = False
 ) -> Callable[..., Any]:
-    """By LLVM where it has a loop over steps; else a call takes longer than it does in Python."""
+    """Compile by LLVM where there is a loop over steps; otherwise a call takes longer than in
+    Python."""
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point
 
@@ -131,12 +132,13 @@ def _compiled(
 
 
 def _ieee(name: str) -> Callable[[float], float]:
-    """The function; where Python's own refuses, with the infinity or NaN that IEEE has there."""
+    """Return the function; where Python's own refuses, with the infinity or NaN that IEEE has
+    there."""
     function: Callable[[float], float] = getattr(math, name)
     pair = by_name()[name].pair
     odd = pair is not None and name == pair.odd
 
-    def made(x: float) -> float:
+    def call(x: float) -> float:
         try:
             return function(x)
         except OverflowError:
@@ -144,7 +146,7 @@ def _ieee(name: str) -> Callable[[float], float]:
         except ValueError:
             return math.nan if x else -math.inf  # at 0 only log is refused
 
-    return made
+    return call
 
 
 def _over(x: float, y: float) -> float:

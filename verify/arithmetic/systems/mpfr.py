@@ -21,7 +21,7 @@ from verify.arithmetic.number_system import (
     Arithmetic,
     NumberSystem,
     bits_for,
-    interpreted,
+    interpret,
     relative,
 )
 from verify.functions import in_rings
@@ -30,7 +30,7 @@ NAME = "mpfr"
 
 
 def make(digits: int) -> Arithmetic:
-    """MPFR with the bits for `digits` decimal digits."""
+    """Return MPFR with the bits for `digits` decimal digits."""
     return at_bits(bits_for(digits))
 
 
@@ -41,7 +41,7 @@ def at_bits(bits: int) -> Arithmetic:
     from verify.arithmetic.exact import fraction
 
     # A new gmpy2.context for each use: one that is entered twice forgets what it is to restore.
-    made = partial(
+    new_context = partial(
         gmpy2.context,
         precision=bits,
         round=gmpy2.RoundToNearest,
@@ -49,13 +49,13 @@ def at_bits(bits: int) -> Arithmetic:
         emax=gmpy2.get_emax_max(),
     )
 
-    own = made()
+    rounding_context = new_context()
 
     def number(value: Fraction) -> Any:
         # Rounded once; own.div of gmpy2 2.2 rounds to the bits of the caller's context.
-        return gmpy2.mpfr(gmpy2.mpq(value), bits, own)
+        return gmpy2.mpfr(gmpy2.mpq(value), bits, rounding_context)
 
-    with made():
+    with new_context():
         pi = gmpy2.const_pi()
     return Arithmetic(
         name=NAME,
@@ -63,7 +63,7 @@ def at_bits(bits: int) -> Arithmetic:
         number=number,
         exact=fraction,
         finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MOST_EXPONENT,
-        context=partial(_checked, made),
+        context=partial(_check_flags, new_context),
         functions={
             **{f: getattr(gmpy2, f) for f in (*in_rings(), "sin_cos", "sqrt")},
             "root": _root,
@@ -73,7 +73,7 @@ def at_bits(bits: int) -> Arithmetic:
             "escape": number(Fraction(2**ESCAPE_BITS)),
             "minus_escape": number(Fraction(-(2**ESCAPE_BITS))),
         },
-        compile=interpreted,
+        compile=interpret,
         guard="minus_escape < {x} < escape",
         pipelined=False,
         chunk=1 << 14,
@@ -82,8 +82,8 @@ def at_bits(bits: int) -> Arithmetic:
 
 
 @contextmanager
-def _checked(made: Callable[[], Any]) -> Iterator[None]:
-    with made() as flags:
+def _check_flags(new_context: Callable[[], Any]) -> Iterator[None]:
+    with new_context() as flags:
         yield
     if flags.invalid or flags.divzero or flags.overflow or flags.underflow:
         raise ArithmeticError("an operation was undefined or left the range of exponents")

@@ -15,7 +15,7 @@ from verify.arithmetic.number_system import (
     Arithmetic,
     NumberSystem,
     bits_for,
-    interpreted,
+    interpret,
     relative,
 )
 from verify.functions import in_rings
@@ -24,7 +24,7 @@ NAME = "mpmath"
 
 
 def make(digits: int) -> Arithmetic:
-    """mpmath with the bits for `digits` decimal digits."""
+    """Return mpmath with the bits for `digits` decimal digits."""
     return at_bits(bits_for(digits))
 
 
@@ -45,17 +45,17 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
     context.prec = bits
 
     def number(value: Fraction) -> Any:
-        made = libmp.from_rational(value.numerator, value.denominator, bits, "n")
-        return context.make_mpf(made)
+        rounded = libmp.from_rational(value.numerator, value.denominator, bits, "n")
+        return context.make_mpf(rounded)
 
     def real(function: Callable[..., Any]) -> Callable[..., Any]:
-        def checked(*arguments: Any) -> Any:
+        def check_real(*arguments: Any) -> Any:
             value = function(*arguments)
             if not isinstance(value, context.mpf):
                 raise ValueError("a complex value")
             return value
 
-        return checked
+        return check_real
 
     everywhere = [name for name, f in in_rings().items() if f.domain is None]
     inside = [name for name in in_rings() if name not in everywhere]
@@ -76,7 +76,7 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
             "wide": context.mpf,  # the exact value of a float64: 53 bits at least are there
             "pi": +context.pi,
         },
-        compile=interpreted,
+        compile=interpret,
         # |x| < 2^ESCAPE_BITS, read from x = mantissa · 2^exponent and the mantissa's bits: a
         # comparison of two numbers takes twenty times as long.
         guard=f"{{x}}._mpf_[2] + {{x}}._mpf_[3] <= {ESCAPE_BITS}",

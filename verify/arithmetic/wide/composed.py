@@ -16,7 +16,7 @@ MORE = WORD  # bits after the point that the finer numbers have
 
 @dataclass
 class Number:
-    """One of the finer numbers, with + and * rounded as there."""
+    """A finer number, with + and * rounded as in its format."""
 
     numbers: "FinerNumbers"
     value: Value
@@ -30,7 +30,7 @@ class Number:
 
 
 class FinerNumbers:
-    """What a function is composed of: see `verify.functions.function.FixedPoint`.
+    """Finer numbers in which a function is composed: see `verify.functions.function.FixedPoint`.
 
     `valid`: whether every function that was applied has a value.
     """
@@ -44,27 +44,27 @@ class FinerNumbers:
         return Number(self, constant(1 << self.functions.fraction, self.functions.width))
 
     def apply(self, name: str, x: Number) -> Number:
-        """The function of that name."""
+        """Apply the function of that name."""
         packed = self.b.call(self.functions.get(name), [x.value])
         self.valid = self.b.and_(self.valid, self.b.extract_value(packed, 1))
         return Number(self, self.b.extract_value(packed, 0))
 
     def absolute(self, x: Number) -> Number:
-        """|x|, which the least number has not."""
+        """Return |x|; the least number has no absolute value."""
         size, functions = self.signed(x, x), self.functions
         top = constant(1 << functions.fraction + INTEGER_BITS - 1, functions.width)
         self.valid = self.b.and_(self.valid, self.b.icmp_unsigned("<", size.value, top))
         return size
 
     def signed(self, size: Number, like: Number) -> Number:
-        """The number with its sign changed where `like` is negative."""
+        """Return the number with its sign changed where `like` is negative."""
         negative = self.b.icmp_signed("<", like.value, constant(0, self.functions.width))
         return self.where(negative, Number(self, self.b.neg(size.value)), size)
 
     def at_least(self, x: Number, least: Number) -> Value:
-        """Whether x ≥ least."""
+        """Return the condition x ≥ least."""
         return self.b.icmp_signed(">=", x.value, least.value)
 
     def where(self, condition: Value, x: Number, other: Number) -> Number:
-        """x where the condition holds, else the other."""
+        """Return x where the condition holds, else the other."""
         return Number(self, self.b.select(condition, x.value, other.value))

@@ -21,7 +21,7 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
-from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resized
+from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resize
 from verify.arithmetic.wide.products import Products
 from verify.arithmetic.wide.size import INTEGER_BITS, WORD, width_of
 
@@ -34,19 +34,19 @@ _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
 
 
 def arb_integer(value: flint.arb, shift: int) -> int:
-    """An arb's middle times 2^shift, to the nearest integer."""
+    """Return an arb's midpoint times 2^shift, rounded to the nearest integer."""
     mantissa, exponent = map(int, value.mid().man_exp())
     by = exponent + shift
     return mantissa << by if by >= 0 else round(Fraction(mantissa, 1 << -by))
 
 
 def _table_of(values: Sequence[int], width: int) -> ir.Constant:
-    """Integers of so many bits, each its limbs from the lowest."""
+    """Return integers of so many bits as a table, each its limbs from the lowest."""
     return limbs.words([(v >> 64 * i) & (2**64 - 1) for v in values for i in range(width // 64)])
 
 
-def _negated(b: ir.IRBuilder, where: Value, x: Value) -> Value:
-    """−x where that is so."""
+def _negate(b: ir.IRBuilder, where: Value, x: Value) -> Value:
+    """Return −x where the condition holds, else x."""
     mask = b.sext(where, x.type)
     return b.sub(b.xor(x, mask), mask)
 
@@ -56,7 +56,7 @@ def _negated(b: ir.IRBuilder, where: Value, x: Value) -> Value:
 
 @cache
 def _sines(width: int) -> ir.Constant:
-    """sin of all table steps of a quarter, with W − 2 fraction bits."""
+    """Return sin of all table steps of a quarter, with W − 2 fraction bits."""
     with working_precision(width + 128):
         unit = 2 * flint.arb.pi() / _ANGLES
         values = [arb_integer((unit * k).sin(), width - 2) for k in range(_QUARTER + 1)]
@@ -65,7 +65,7 @@ def _sines(width: int) -> ir.Constant:
 
 @cache
 def _powers(width: int) -> ir.Constant:
-    """2^x of all table steps below 1, with W − 2 fraction bits."""
+    """Return 2^x of all table steps below 1, with W − 2 fraction bits."""
     with working_precision(width + 128):
         unit = flint.arb(2).log() / _OCTAVE
         values = [arb_integer((unit * k).exp(), width - 2) for k in range(_OCTAVE)]
@@ -73,7 +73,7 @@ def _powers(width: int) -> ir.Constant:
 
 
 class Functions:
-    """Defines functions of one format in a module, each when it is first asked for.
+    """A writer of functions of one format into a module, each when it is first needed.
 
     `spare`: the bits in front of a number's fraction. `label`: what their names begin with, another
     for each format of a module.
@@ -89,7 +89,7 @@ class Functions:
         self._tables: dict[str, ir.GlobalVariable] = {}
 
     def get(self, name: str) -> ir.Function:
-        """The function of that name; it returns (value, …, valid)."""
+        """Return the function of that name; it returns (value, …, valid)."""
         if name not in self._made:
             self._made[name] = getattr(self, f"_{name}")()
         return self._made[name]
@@ -97,7 +97,8 @@ class Functions:
     # -- helpers ------------------------------------------------------------------------------
 
     def _define(self, name: str, results: int) -> tuple[ir.IRBuilder, Value]:
-        """A new function of one number that returns so many numbers and whether they are valid."""
+        """Define a new function of one number that returns so many numbers and whether they are
+        valid."""
         kind = ir.LiteralStructType([self.type] * results + [ir.IntType(1)])
         function = ir.Function(
             self.module, ir.FunctionType(kind, [self.type]), f"{self.label}_{name}"
@@ -123,21 +124,21 @@ class Functions:
         first = b.mul(index, constant(self.count, 64))
         for i in range(self.count):
             at = b.gep(table, [constant(0, 64), b.add(first, constant(i, 64))], inbounds=True)
-            part = resized(b, b.load(at, typ=I64), self.width)
+            part = resize(b, b.load(at, typ=I64), self.width)
             value = b.or_(value, limbs.shifted_up(b, part, 64 * i))
         return value
 
     def _multiple(
         self, b: ir.IRBuilder, x: Value, unit: flint.arb, offset: Fraction
     ) -> tuple[Value, Value]:
-        """(k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W fraction
-        bits.
+        """Return (k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W
+        fraction bits.
 
         k is found from the leading bits alone, so that it is the floor within 2^−18, or within
         2^−28 where |x| < 16; k·unit is right to a unit of r. What is multiplied is k + 2^28, which
         is not negative: |x| < 2^15, and the unit, an arb, is above 2^−13.
         """
-        high = resized(b, limbs.leading(b, x, self.fraction), 128, signed=True)
+        high = resize(b, limbs.leading(b, x, self.fraction), 128, signed=True)
         k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
         k = b.ashr(b.add(k, constant(int(offset * 2**80), 128)), constant(80, 128))
         k = b.trunc(k, I64)
@@ -145,13 +146,13 @@ class Functions:
         multiple = limbs.times_word(b, stretched, b.add(k, constant(_SURELY_POSITIVE, WORD)))
         scaled = limbs.shifted_up(b, x, self.spare)
         start = constant(arb_integer(unit * _SURELY_POSITIVE, self.width), self.width)
-        return k, b.sub(b.add(scaled, start), resized(b, multiple, self.width))
+        return k, b.sub(b.add(scaled, start), resize(b, multiple, self.width))
 
     def _series(
         self, b: ir.IRBuilder, t: Value, series: Sequence[Sequence[Fraction]], shift: int, sign: int
     ) -> list[Value]:
-        """c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + … of each, where t = τ·2^shift is a fraction, and
-        so is the result; the c are positive and fall fast, `sign` is ±1.
+        """Return c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + … of each, where t = τ·2^shift is a
+        fraction, and so is the result; the c are positive and fall fast, `sign` is ±1.
 
         A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
         All go on together: what one waits for, another has time for.
@@ -169,21 +170,21 @@ class Functions:
                 value = constant(scaled, size)
                 if totals[i] is not None:
                     short = limbs.top(b, t, totals[i].type.width // 64)
-                    part = resized(b, self.products.high(b, short, totals[i]), size)
+                    part = resize(b, self.products.high(b, short, totals[i]), size)
                     value = b.sub(value, part) if sign < 0 else b.add(value, part)
                 totals[i] = value
         return totals
 
     def _power(self, exponent: int) -> Value:
-        """2^exponent as a number."""
+        """Return 2^exponent as a number."""
         return constant(1 << self.fraction + exponent, self.width)
 
-    def _signed(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
-        """The magnitude with the sign of `like`."""
-        return _negated(b, b.icmp_signed("<", like, constant(0, like.type.width)), magnitude)
+    def _copy_sign(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
+        """Return the magnitude with the sign of `like`."""
+        return _negate(b, b.icmp_signed("<", like, constant(0, like.type.width)), magnitude)
 
-    def _rounded(self, b: ir.IRBuilder, mantissa: Value) -> Value:
-        """From W − 2 fraction bits to a number."""
+    def _round(self, b: ir.IRBuilder, mantissa: Value) -> Value:
+        """Round from W − 2 fraction bits to a number."""
         by = self.spare - 2
         return b.ashr(
             b.add(mantissa, constant(1 << (by - 1), self.width)), constant(by, self.width)
@@ -195,7 +196,7 @@ class Functions:
         b, x = self._define("cos_sin", 2)
         with working_precision(self.width + 128):
             k, r = self._multiple(b, x, 2 * flint.arb.pi() / _ANGLES, Fraction(1, 2))
-        sine, versine = self._small(b, self._signed(b, r, r))
+        sine, versine = self._small(b, self._copy_sign(b, r, r))
         # A quarter further cos is −sin and sin is cos, two further both change their signs.
         odd, half = (self._has(b, k, quarters * _QUARTER) for quarters in (1, 2))
         index = b.and_(k, constant(_QUARTER - 1, WORD))
@@ -205,15 +206,15 @@ class Functions:
         c = self._entry(b, table, b.select(odd, index, rest))
         high = self.products.high
         downwards = b.xor(b.icmp_signed("<", r, constant(0, self.width)), odd)
-        along, across = (_negated(b, downwards, high(b, each, sine)) for each in (c, s))
+        along, across = (_negate(b, downwards, high(b, each, sine)) for each in (c, s))
         sin = b.add(b.sub(s, high(b, s, versine)), along)
         cos = b.sub(b.sub(c, high(b, c, versine)), across)
-        sin_x = self._rounded(b, _negated(b, half, sin))
-        cos_x = self._rounded(b, _negated(b, b.xor(odd, half), cos))
+        sin_x = self._round(b, _negate(b, half, sin))
+        cos_x = self._round(b, _negate(b, b.xor(odd, half), cos))
         return self._result(b, ir.Constant(ir.IntType(1), 1), cos_x, sin_x)
 
     def _small(self, b: ir.IRBuilder, r: Value) -> tuple[Value, Value]:
-        """sin r and 1 − cos r of 0 ≤ r < 2^−12."""
+        """Return sin r and 1 − cos r of 0 ≤ r < 2^−12."""
         high = self.products.high
         u = limbs.shifted_up(b, r, _SHIFT)
         t = high(b, u, u)
@@ -222,7 +223,7 @@ class Functions:
         return (limbs.shifted_down(b, sine, _SHIFT), limbs.shifted_down(b, versine, 2 * _SHIFT))
 
     def _inverse_factorials(self, *first: int) -> list[list[Fraction]]:
-        """Of every second number from each of these."""
+        """Return the inverse factorials of every second number from each of these."""
         many = range(8 * self.count)
         return [[Fraction(1, factorial(2 * j + k)) for j in many] for k in first]
 
@@ -243,7 +244,7 @@ class Functions:
     # -- exp and its like -----------------------------------------------------------------------
 
     def _exponential(self, b: ir.IRBuilder, x: Value) -> tuple[Value, Value]:
-        """(m, a): e^x = m·2^a with m in W − 2 fraction bits, a as i64.
+        """Return (m, a): e^x = m·2^a with m in W − 2 fraction bits, a as i64.
 
         m is in [1, 2], and may exceed 2 by 2^−28 just above an x for which it would be 1.
         """
@@ -269,7 +270,7 @@ class Functions:
         shift = b.sub(constant(self.spare - 2, 64), a)
         most = constant(self.width - 1, 64)
         bounded = b.select(b.icmp_unsigned("<", shift, most), shift, most)
-        value = b.lshr(mantissa, resized(b, bounded, self.width))
+        value = b.lshr(mantissa, resize(b, bounded, self.width))
         fits = b.icmp_unsigned("<", value, self._power(INTEGER_BITS - 1))
         return self._result(b, b.and_(fits, b.icmp_signed(">=", shift, constant(0, 64))), value)
 

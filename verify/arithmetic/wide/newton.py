@@ -10,7 +10,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.composed import MORE, FinerNumbers, Number
 from verify.arithmetic.wide.functions import Functions, arb_integer
-from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.size import INTEGER_BITS, size_of, width_of
 from verify.functions import by_name
 
@@ -20,7 +20,7 @@ LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """x / 2^fraction as float64, from its leading 128 bits: within 2^−52 |x| + 2^−100.
+    """Return x / 2^fraction as float64, from its leading 128 bits: within 2^−52 |x| + 2^−100.
 
     The second part is 2^−36 for a sum, whose bits stand for 2^64 times as much.
     """
@@ -32,12 +32,12 @@ def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
 
 
 def units_of_words(more: int) -> tuple[float, float]:
-    """What the leading two words of a number count, with so many more bits before the point."""
+    """Return the units of a number's leading two words, with so many more bits before the point."""
     return 2.0 ** (INTEGER_BITS + more - 64), 2.0 ** (INTEGER_BITS + more - 128)
 
 
 def from_double(b: ir.IRBuilder, value: Value, fraction: int) -> Value:
-    """The float64 as a number; exact but for bits below 2^−fraction, which are cut.
+    """Return the float64 as a number; exact but for bits below 2^−fraction, which are cut.
 
     |value| must be below 2^15.
     """
@@ -49,7 +49,7 @@ def from_double(b: ir.IRBuilder, value: Value, fraction: int) -> Value:
     total = constant(0, width)
     for i in reversed(range(width // 64)):
         whole = b.call(floor, [rest])
-        part = resized(b, b.fptoui(whole, I64), width)
+        part = resize(b, b.fptoui(whole, I64), width)
         total = b.or_(total, limbs.shifted_up(b, part, 64 * i))
         rest = b.fmul(b.fsub(rest, whole), ir.Constant(DOUBLE, 2.0**64))
     negative = b.fcmp_ordered("<", value, ir.Constant(DOUBLE, 0.0))
@@ -57,7 +57,7 @@ def from_double(b: ir.IRBuilder, value: Value, fraction: int) -> Value:
 
 
 def iterations(fraction: int, *, quadratic: bool) -> int:
-    """Steps from 2^−48 to 16 bits below the last; each doubles the bits, or adds 48."""
+    """Return the steps from 2^−48 to 16 bits below the last; each doubles the bits, or adds 48."""
     done, steps = 48, 0
     while done < size_of(fraction):
         done = 2 * done if quadratic else done + 48
@@ -66,31 +66,31 @@ def iterations(fraction: int, *, quadratic: bool) -> int:
 
 
 class MoreFunctions(Functions):
-    """`Functions`, those found by iteration, and those that are composed of others."""
+    """The functions of `Functions`, those computed by iteration, and those composed of others."""
 
     def get(self, name: str) -> ir.Function:
         function = by_name().get(name)
         rule = function.fixed.composed if function and function.fixed else None
         if rule is not None and name not in self._made:
-            self._made[name] = self._composed(name, rule)
+            self._made[name] = self._compose(name, rule)
         return super().get(name)
 
     @cached_property
     def _finer(self) -> "MoreFunctions":
         return MoreFunctions(self.module, self.fraction + MORE, "finer")
 
-    def _composed(self, name: str, rule: Callable[[FinerNumbers, Number], Number]) -> ir.Function:
-        """A function by its rule in finer numbers, rounded to the nearest."""
+    def _compose(self, name: str, rule: Callable[[FinerNumbers, Number], Number]) -> ir.Function:
+        """Return a function by its rule in finer numbers, rounded to the nearest."""
         b, x = self._define(name, 1)
         finer, width = FinerNumbers(b, self._finer), self._finer.width
-        widened = limbs.shifted_up(b, resized(b, x, width, signed=True), MORE)
+        widened = limbs.shifted_up(b, resize(b, x, width, signed=True), MORE)
         total = b.add(rule(finer, Number(finer, widened)).value, constant(1 << MORE - 1, width))
-        value = resized(b, b.ashr(total, constant(MORE, width)), self.width)
+        value = resize(b, b.ashr(total, constant(MORE, width)), self.width)
         return self._result(b, finer.valid, value)
 
     def _inverse(self) -> ir.Function:
         b, x = self._define("inverse", 1)
-        size = self._signed(b, x, x)
+        size = self._copy_sign(b, x, x)
         valid = b.icmp_unsigned(">=", size, self._power(-LEAST_DIVISOR))
         one = ir.Constant(DOUBLE, 1.0)
         # Where x is out of range 1 is divided by, so that no infinity is turned into an integer.
@@ -119,7 +119,7 @@ class MoreFunctions(Functions):
         return self._result(b, valid, s)
 
     def _log(self) -> ir.Function:
-        """log x = log m + e·ln 2 with x = m·2^e, m in [½, 1)."""
+        """Define log x = log m + e·ln 2 with x = m·2^e, m in [½, 1)."""
         b, x = self._define("log", 1)
         width, places = self.width, self.width - 2
         valid = b.icmp_signed(">", x, constant(0, width))
@@ -134,7 +134,7 @@ class MoreFunctions(Functions):
         mantissa, a = self._exponential(b, minus)
         # e^−guess is m·2^a, with a = 1 near guess = −ln 2, and a = −1 near guess = 0.
         below = b.icmp_signed("<", a, constant(0, 64))
-        doubled = b.shl(mantissa, resized(b, b.select(below, constant(0, 64), a), width))
+        doubled = b.shl(mantissa, resize(b, b.select(below, constant(0, 64), a), width))
         power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
         # δ = m e^−guess − 1 is small: log m = guess + log(1 + δ).
         delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
@@ -143,15 +143,15 @@ class MoreFunctions(Functions):
         wide = width + 64
         with working_precision(width + 128):
             two = constant(arb_integer(flint.arb(2).log(), places + 32), wide)
-        exponent = b.sub(constant(self.spare, wide), resized(b, lead, wide))
+        exponent = b.sub(constant(self.spare, wide), resize(b, lead, wide))
         octaves = b.ashr(b.mul(exponent, two), constant(32, wide))
-        total = b.add(resized(b, total, wide, signed=True), octaves)
+        total = b.add(resize(b, total, wide, signed=True), octaves)
         by = self.spare - 2
         total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
-        return self._result(b, valid, resized(b, total, width))
+        return self._result(b, valid, resize(b, total, width))
 
     def _log1p(self, b: ir.IRBuilder, delta: Value) -> Value:
-        """log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
+        """Return log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
         width, places, high = self.width, self.width - 2, self.products.high
         stretched = limbs.shifted_up(b, delta, 40)
         terms = -(-width // 44)

@@ -8,7 +8,7 @@ from typing import Any
 from llvmlite import ir
 
 from verify.arithmetic.wide import limbs, memory
-from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, width_of
 from verify.functions import in_rings
@@ -54,7 +54,7 @@ class OneOrbit:
 
     def give(self, values: Callable[[], Sequence[Value]]) -> None:
         offset = 0
-        for v in (*values(), resized(self.b, self.load("valid"), 64)):
+        for v in (*values(), resize(self.b, self.load("valid"), 64)):
             offset = memory.write(self.b, self.b.function.args[1], offset, v)
         self.b.ret_void()
 
@@ -68,25 +68,26 @@ class OneOrbit:
             self.b.branch(after)
         self.b.position_at_end(after)
 
-    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
+    def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
         self.assign(name, constant(0, 64))
         head, inside, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
-        at = self.load(name)
-        self.b.cbranch(self.b.icmp_signed("<", at, limit), inside, after)
+        index = self.load(name)
+        self.b.cbranch(self.b.icmp_signed("<", index, limit), inside, after)
         self.b.position_at_end(inside)
+        # The innermost loop's end is the target of `break`; loops of one orbit may be nested.
         self._ends.append(after)
         body()
         self._ends.pop()
-        self.assign(name, self.b.add(at, constant(1, 64)))
+        self.assign(name, self.b.add(index, constant(1, 64)))
         self.b.branch(head)
         self.b.position_at_end(after)
 
     def leave(self) -> None:
         self.b.branch(self._ends[-1])
 
-    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+    def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return statements
 
     # -- variables and numbers ----------------------------------------------------------------
@@ -102,7 +103,7 @@ class OneOrbit:
             self._variables[name] = self.allocations.alloca(value.type, name=name)
         target = self._variables[name].allocated_type
         if value.type != target:
-            value = self.converted(value, self._kinds[str(target)])
+            value = self.convert(value, self._kinds[str(target)])
         self.b.store(value, self._variables[name])
 
     def integer(self, value: int) -> Value:
@@ -116,15 +117,15 @@ class OneOrbit:
     def kind(self, value: Value) -> str:
         return self._kinds[str(value.type)]
 
-    def converted(self, value: Value, kind: str) -> Value:
+    def convert(self, value: Value, kind: str) -> Value:
         target = self.types[kind]
         if value.type == I64 and kind == "float":
             return self.b.sitofp(value, DOUBLE)
         if value.type == I64:
-            number = resized(self.b, value, target.width, signed=True)
+            number = resize(self.b, value, target.width, signed=True)
             return limbs.shifted_up(self.b, number, self.fraction)
         if value.type == self.types["wide"] and kind == "sum":
-            return resized(self.b, value, target.width, signed=True)
+            return resize(self.b, value, target.width, signed=True)
         raise TypeError(f"{value.type} is no {target}; use wide(x) or approx(x)")
 
     # -- operations ---------------------------------------------------------------------------
@@ -161,12 +162,12 @@ class OneOrbit:
         return compare(order, x, y)
 
     def inside(self, x: Value, limit: Value) -> Value:
-        """|x| < limit, by the leading 64 bits alone: where it says so it is so; limit > 0."""
+        """Return |x| < limit, by the leading 64 bits alone: true only where it holds; limit > 0."""
         b = self.b
         x, limit = (limbs.leading(b, v, self.fraction) for v in (x, limit))
         # −limit < x < limit for integers is 0 < x + limit < 2·limit.
-        moved = b.sub(b.add(x, limit), constant(1, 64))
-        return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
+        biased = b.sub(b.add(x, limit), constant(1, 64))
+        return b.icmp_unsigned("<", biased, b.sub(b.add(limit, limit), constant(1, 64)))
 
     # -- functions ----------------------------------------------------------------------------
 
@@ -180,7 +181,7 @@ class OneOrbit:
         if name == "approx":
             return [to_double(b, x, self.fraction)]
         if name == "shifted":
-            return [self._shifted(x, values[1])]
+            return [self._shift_down(x, values[1])]
         if name == "wide":
             top = ir.Constant(DOUBLE, 2.0 ** (INTEGER_BITS - 1))
             self._require(b.fcmp_ordered("<", self._absolute(x), top))
@@ -195,50 +196,54 @@ class OneOrbit:
         return [b.extract_value(packed, i) for i in range(count)]
 
     def _require(self, condition: Value) -> None:
-        """`valid` only where this is true."""
+        """Make `valid` false unless the condition holds."""
         self.assign("valid", self.b.and_(self.load("valid"), condition))
 
     def _absolute(self, x: Value) -> Value:
         return self.b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
 
-    def _shifted(self, x: Value, by: Value) -> Value:
-        """x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not see by itself."""
+    def _shift_down(self, x: Value, by: Value) -> Value:
+        """Return x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not find by
+        itself."""
         b, count = self.b, x.type.width // 64
         kind = ir.FunctionType(I64, [I64] * 3)
         funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
         words = [limbs.limb(b, x, i) for i in range(count)]
+        # The word above the highest is its sign, repeated in all bits.
         above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
-        moved = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
-        return limbs.joined(b, moved)
+        shifted = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        return limbs.join(b, shifted)
 
     def _float_function(self, name: str, x: Value) -> Value:
         return self.b.call(float_function(self.module, name), [x])
 
     def _float_root(self, x: Value, n: Value) -> Value:
-        """As `verify.arithmetic.systems.float64` has it, operation by operation."""
+        """Return the root as `verify.arithmetic.systems.float64` computes it, operation by
+        operation."""
         b, zero, one = self.b, ir.Constant(DOUBLE, 0.0), ir.Constant(DOUBLE, 1.0)
-        power = _of_libm(self.module, "pow", 2)
+        power = _libm_function(self.module, "pow", 2)
         n = b.sitofp(n, DOUBLE)
         root = b.call(power, [x, b.fdiv(one, n)])
         excess = b.fsub(b.call(power, [root, n]), x)
         slope = b.fmul(n, b.call(power, [root, b.fsub(n, one)]))
         better = b.fsub(root, b.fdiv(excess, slope))
-        found = b.select(b.fcmp_ordered(">", root, zero), better, root)
-        return b.select(b.fcmp_ordered("<", x, zero), ir.Constant(DOUBLE, math.nan), found)
+        corrected = b.select(b.fcmp_ordered(">", root, zero), better, root)
+        return b.select(b.fcmp_ordered("<", x, zero), ir.Constant(DOUBLE, math.nan), corrected)
 
 
 def float_function(module: ir.Module, name: str) -> ir.Function:
-    """The function of one float64 that a source calls by that name; NotImplementedError."""
+    """Return the function of one float64 that a source calls by that name; else raise
+    NotImplementedError."""
     plain = name.removeprefix("f_")
     if plain in _INTRINSICS:
         return module.declare_intrinsic(f"llvm.{plain}", [DOUBLE])
     if plain not in {*in_rings(), "log1p"}:  # which kernels take beside those of formulas
         raise NotImplementedError(name)
-    return _of_libm(module, plain, 1)
+    return _libm_function(module, plain, 1)
 
 
-def _of_libm(module: ir.Module, name: str, count: int) -> ir.Function:
-    """The C library's function of so many float64."""
+def _libm_function(module: ir.Module, name: str, count: int) -> ir.Function:
+    """Return the C library's function of so many float64."""
     if name not in module.globals:
         ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * count), name)
     return module.globals[name]

@@ -1,4 +1,4 @@
-"""Products in a module: written out where they stand, or functions that are called.
+"""Products in a module: written out in place, or functions that are called.
 
 They are rounded to the nearest, so that other ways to form them, in lanes, give the same bits.
 
@@ -15,7 +15,7 @@ from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.size import width_of
 
-# What products may add to a kernel that has them written out, in some three instructions; functions
+# What products may add to a kernel that has them write out, in some three instructions; functions
 # have theirs called from so many limbs on.
 _MOST_IN_KERNEL = 3500
 _LEAST_CALLED = 8
@@ -26,14 +26,14 @@ class Products:
 
     def __init__(self, module: ir.Module, fraction: int) -> None:
         self.module, self.width, self.fraction = module, width_of(fraction), fraction
-        self._made: dict[str, ir.Function] = {}
+        self._functions: dict[str, ir.Function] = {}
 
     def too_many(self, count: int) -> bool:
-        """Whether a kernel of so many products had better call them."""
+        """Return True if a kernel of so many products should call them."""
         return count * ((self.width // 64) ** 2 + 4) > _MOST_IN_KERNEL
 
     def product(self, b: ir.IRBuilder, x: Value, y: Value, *, called: bool | None = None) -> Value:
-        """x y / 2^fraction, rounded to the nearest."""
+        """Return x y / 2^fraction, rounded to the nearest."""
         if called is None:
             called = self._long(x)
         return self._call(b, "product", self._product, x, y) if called else self._product(b, x, y)
@@ -49,30 +49,31 @@ class Products:
         whole = b.call(self._whole(), [x, y])
         b.branch(after)
         b.position_at_end(after)
-        found = b.phi(x.type)
-        found.add_incoming(near, before)
-        found.add_incoming(whole, cold)
-        return found
+        result = b.phi(x.type)
+        result.add_incoming(near, before)
+        result.add_incoming(whole, cold)
+        return result
 
     def _whole(self) -> ir.Function:
-        """The product from all columns, a function apart, since it is hardly ever called."""
+        """Return the product from all columns as a function apart, since it is hardly ever
+        called."""
         name, kind = f"fixed_whole_product_{self.width}", ir.IntType(self.width)
-        if name not in self._made:
+        if name not in self._functions:
             function = ir.Function(self.module, ir.FunctionType(kind, [kind] * 2), name)
-            self._made[name] = function
+            self._functions[name] = function
             function.linkage = "internal"
             function.attributes.add("noinline")
             inside = ir.IRBuilder(function.append_basic_block("entry"))
             x, y = function.args
             inside.ret(limbs.whole_product(inside, x, y, self.fraction))
-        return self._made[name]
+        return self._functions[name]
 
     def high(self, b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
-        def written(b: ir.IRBuilder, x: Value, y: Value) -> Value:
+        def write(b: ir.IRBuilder, x: Value, y: Value) -> Value:
             return limbs.high_product(b, x, y, signed=signed)
 
         name = "signed_high" if signed else "high"
-        return self._call(b, name, written, x, y) if self._long(x) else written(b, x, y)
+        return self._call(b, name, write, x, y) if self._long(x) else write(b, x, y)
 
     def _long(self, x: Value) -> bool:
         return bool(x.type.width >= 64 * _LEAST_CALLED)
@@ -81,16 +82,16 @@ class Products:
         self,
         b: ir.IRBuilder,
         name: str,
-        written: Callable[[ir.IRBuilder, Value, Value], Value],
+        write: Callable[[ir.IRBuilder, Value, Value], Value],
         x: Value,
         y: Value,
     ) -> Value:
         factors = [x] if x is y else [x, y]
         name = f"fixed_{name}_{x.type.width}_{len(factors)}"
-        if name not in self._made:
+        if name not in self._functions:
             kind = ir.FunctionType(x.type, [x.type] * len(factors))
-            function = self._made[name] = ir.Function(self.module, kind, name)
+            function = self._functions[name] = ir.Function(self.module, kind, name)
             function.linkage = "internal"
             inside = ir.IRBuilder(function.append_basic_block("entry"))
-            inside.ret(written(inside, function.args[0], function.args[-1]))
-        return b.call(self._made[name], factors)
+            inside.ret(write(inside, function.args[0], function.args[-1]))
+        return b.call(self._functions[name], factors)

@@ -10,21 +10,21 @@ MORE_OF_SUMS = 64  # integer bits of a sum beyond those of a number
 
 
 def size_of(fraction: int) -> int:
-    """Bits of a number with so many after the point."""
+    """Return the bits of a number with so many after the point."""
     return fraction + INTEGER_BITS
 
 
 def sizes_of(fraction: int) -> dict[str, int]:
-    """Bits of a number and of a sum, by the names that the language has for them."""
+    """Return the bits of a number and of a sum, by the names that the language has for them."""
     size = size_of(fraction)
     return {"wide": size, "sum": size + MORE_OF_SUMS}
 
 
 def words_of(size: int) -> int:
-    """The words for so many bits."""
+    """Return the words for so many bits."""
     return -(-size // WORD)
 
 
 def width_of(fraction: int) -> int:
-    """Bits of the words that a number takes."""
+    """Return the bits of the words that a number takes."""
     return WORD * words_of(size_of(fraction))

@@ -32,18 +32,18 @@ _SUMS = {ast.Add: "+", ast.Sub: "-"}
 
 
 class Target(Protocol):
-    """Writes a module: `i64 main(i64* in, i64* out)`, by the operations of one function."""
+    """A writer of a module `i64 main(i64* in, i64* out)`, by the operations of one function."""
 
     module: ir.Module
 
     def begin(self, arguments: Sequence[tuple[str, str]], products: int) -> None:
-        """The function's head, its arguments by name and kind; it has so many products."""
+        """Write the function's head, its arguments by name and kind; it has so many products."""
 
     def end(self) -> None:
-        """The function's end, where it is reached."""
+        """Write the function's end, where it is reached."""
 
     def has(self, name: str) -> bool:
-        """Whether there is a variable of that name; `valid` is one, and true at first."""
+        """Return True if there is a variable of that name; `valid` is one, and true at first."""
 
     def load(self, name: str) -> Value: ...
 
@@ -52,26 +52,27 @@ class Target(Protocol):
     def integer(self, value: int) -> Value: ...
 
     def constant(self, value: Any) -> Value:
-        """A number of the format, or a float64."""
+        """Return a number of the format, or a float64."""
 
     def kind(self, value: Value) -> str:
-        """Which of `KINDS`."""
+        """Return one of `KINDS`."""
 
-    def converted(self, value: Value, kind: str) -> Value:
-        """A number as one of a kind further on in `KINDS`; TypeError where that is none."""
+    def convert(self, value: Value, kind: str) -> Value:
+        """Convert a number to a kind further on in `KINDS`; TypeError where that is impossible."""
 
     def negative(self, x: Value) -> Value: ...
 
     def sum(self, sign: str, x: Value, y: Value) -> Value:
-        """x + y or x − y, both of one kind."""
+        """Return x + y or x − y, both of one kind."""
 
     def product(self, x: Value, y: Value) -> Value: ...
 
     def quotient(self, x: Value, y: Value) -> Value:
-        """Of two float64."""
+        """Return the quotient of two float64."""
 
     def function(self, name: str, values: Sequence[Value]) -> list[Value]:
-        """What a call gives; `valid` is false from then on where the function has no value."""
+        """Return the values of a call; `valid` is false from then on where the function has no
+        value."""
 
     def compare(self, order: str, x: Value, y: Value) -> Value: ...
 
@@ -85,21 +86,21 @@ class Target(Protocol):
 
     def when(self, condition: Value, body: Callable[[], None]) -> None: ...
 
-    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
-        """`for name in range(limit)`; `changed`: all variables that the body assigns."""
+    def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
+        """Write `for name in range(limit)`; `assigned`: all variables that the body assigns."""
 
     def leave(self) -> None:
-        """Ends the innermost loop; NotImplementedError where orbits would part."""
+        """End the innermost loop; NotImplementedError where orbits would part."""
 
-    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
-        """A loop's statements in the order in which they are best written."""
+    def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+        """Return a loop's statements in the order in which they are best written."""
 
     def give(self, values: Callable[[], Sequence[Value]]) -> None:
-        """Returns what they are, and whether they are valid."""
+        """Return the values, and whether they are valid."""
 
 
 class Translator:
-    """Translates one function; `results` then has the kinds of what it returns."""
+    """A translator of one function; `results` then has the kinds of its results."""
 
     def __init__(self, source: str, names: Mapping[str, Any], target: Target) -> None:
         parsed = ast.parse(source).body[0]
@@ -110,7 +111,7 @@ class Translator:
         self.returns_tuple = False
 
     def translate(self) -> ir.Module:
-        """The module."""
+        """Translate the function, and return the module."""
         products = sum(isinstance(node, ast.Mult) for node in ast.walk(self.definition))
         self.target.begin(self.arguments, products)
         self._block(self.definition.body)
@@ -121,13 +122,13 @@ class Translator:
 
     def _block(self, statements: list[ast.stmt]) -> None:
         for statement in statements:
-            known: dict[type, Callable[[Ours], None]] = {
+            handlers: dict[type, Callable[[Ours], None]] = {
                 ast.Assign: self._assignment, ast.If: self._if, ast.For: self._for,
                 ast.Break: self._break, ast.Return: self._return,
             }  # fmt: skip
-            if type(statement) not in known:
+            if type(statement) not in handlers:
                 raise NotImplementedError(ast.dump(statement))
-            known[type(statement)](statement)
+            handlers[type(statement)](statement)
 
     def _assignment(self, statement: Ours) -> None:
         names = statement.targets
@@ -139,19 +140,20 @@ class Translator:
             self.target.assign(name.id, value)
 
     def _if(self, statement: ast.If) -> None:
+        # The target decides how: one orbit branches, lanes execute the body and select.
         self.target.when(self._condition(statement.test), lambda: self._block(statement.body))
 
     def _for(self, statement: Ours) -> None:
-        """`for name in range(limit)`."""
-        changed = {
+        """Translate `for name in range(limit)`."""
+        assigned = {
             node.id
             for inside in statement.body
             for node in ast.walk(inside)
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
         }
         limit = self._expression(statement.iter.args[0])
-        body = self.target.ordered(statement.body)
-        self.target.loop(statement.target.id, limit, lambda: self._block(body), changed)
+        body = self.target.order(statement.body)
+        self.target.loop(statement.target.id, limit, lambda: self._block(body), assigned)
 
     def _break(self, _: Ours) -> None:
         self.target.leave()
@@ -161,13 +163,13 @@ class Translator:
 
         def values() -> list[Value]:
             if isinstance(value, ast.Tuple):
-                found = [self._expression(e) for e in value.elts]
+                results = [self._expression(e) for e in value.elts]
             else:
                 call = isinstance(value, ast.Call)
-                found = self._call(value) if call else [self._expression(value)]
-            self.returns_tuple = len(found) > 1 or isinstance(value, ast.Tuple)
-            self.results = [self.target.kind(v) for v in found]
-            return found
+                results = self._call(value) if call else [self._expression(value)]
+            self.returns_tuple = len(results) > 1 or isinstance(value, ast.Tuple)
+            self.results = [self.target.kind(v) for v in results]
+            return results
 
         self.target.give(values)
 
@@ -176,8 +178,8 @@ class Translator:
     def _expression(self, node: ast.expr) -> Value:
         match node:
             case ast.Name():
-                known = self.target.has(node.id)
-                return self.target.load(node.id) if known else self._constant(node.id)
+                is_variable = self.target.has(node.id)
+                return self.target.load(node.id) if is_variable else self._constant(node.id)
             case ast.Constant(value=int(value)):
                 return self.target.integer(value)
             case ast.UnaryOp(op=ast.USub()):
@@ -198,22 +200,25 @@ class Translator:
             case ast.Add() | ast.Sub():
                 return target.sum(_SUMS[type(node.op)], x, y)
             case ast.Mult():
+                # A square needs only half of the partial products: it is recognised by its text.
                 same = ast.dump(node.left) == ast.dump(node.right)
                 return target.product(x, x if same else y)
             case ast.Div() if target.kind(x) == "float":
                 return target.quotient(x, y)
             case ast.Div():
+                # There is no division of wide numbers: x/y is x·(1/y), with two roundings, which
+                # the bound of a kernel's rounding counts.
                 inverse = target.function("inverse", [y])[0]
                 one = isinstance(node.left, ast.Constant) and node.left.value == 1
                 return inverse if one else target.product(x, inverse)
         raise NotImplementedError(ast.dump(node))
 
     def _alike(self, x: Value, y: Value) -> tuple[Value, Value]:
-        """Both in the wider of the two kinds; an integer is taken for what the other is."""
+        """Return both in the wider of the two kinds; an integer becomes what the other is."""
         kinds = [self.target.kind(v) for v in (x, y)]
         wider = max(kinds, key=KINDS.index)
         x, y = (
-            v if kind == wider else self.target.converted(v, wider)
+            v if kind == wider else self.target.convert(v, wider)
             for v, kind in zip((x, y), kinds, strict=True)
         )
         return x, y

@@ -1,1 +1,1 @@
-"""What is wrong and matters, told so that it can be sent to those who can mend it."""
+"""Notes on mistakes that matter, which can be sent to those who can correct them."""

@@ -1,11 +1,9 @@
-"""A described mistake, with all that is measured of it; or why it is not told.
+"""A described mistake, with all that is measured of it; or why it is not reported.
 
-A table with entries changed, as a mend would have them.
-
-What a person has read of a mistake: the words that claim, the line to blame, and the mend.
-
-One TOML file a finding, `reports/audits/findings/NAME.toml`. Nothing in it is taken for true: the
-claims must be refuted where it is told, and the tables and programs are run again.
+A person has read of each mistake: the words that claim, the line to blame, and the correction. One
+TOML file describes one, `reports/audits/findings/NAME.toml`. Nothing in it is taken for true: the
+claims must be refuted where it is reported, and the tables and programs are run again, the tables
+also with the entries changed as the correction would have them.
 """
 
 import re
@@ -32,7 +30,7 @@ from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
 from verify.scenes.frozen import Frozen
-from verify.scenes.mistakes.values import one_line
+from verify.scenes.mistakes.values import describe_first_error
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.toml_file import read_toml
 from verify.schemes.printed.naming import Naming
@@ -41,7 +39,7 @@ from verify.verdict import Verdict
 Text = Annotated[str, Field(min_length=1, max_length=20000)]
 
 
-class Changed(Frozen):
+class TableCorrection(Frozen):
     """A printed table, by the first word of its file's title and its name; which of its claims; and
     the entries that the mend changes, by key, row and column from 1, to their texts."""
 
@@ -68,74 +66,77 @@ class Description(Frozen):
     mended: Text | None = None
     ran: str = ""
     output: str = ""
-    table: tuple[Changed, ...] = ()
+    table: tuple[TableCorrection, ...] = ()
 
     def tells_of(self, claim: str) -> bool:
-        """Whether it is about the claim of that id."""
+        """Return True if it is about the claim of that id."""
         return any(fnmatchcase(_plain(claim), _plain(pattern)) for pattern in self.claims)
 
 
 def _plain(text: str) -> str:
-    """Without the brackets that stand for more than themselves in a pattern."""
+    """Replace the brackets that stand for more than themselves in a pattern."""
     return text.replace("[", "(").replace("]", ")")
 
 
 def folder() -> Path:
-    """Where they lie."""
+    """Return the folder of the descriptions."""
     return Path(content("reports", "audits", "findings"))
 
 
 def descriptions() -> dict[str, Description]:
-    """By name. InputError for a file that is none."""
+    """Read all descriptions, by name. Raises InputError for a file that is none."""
     return {path.stem: read(path) for path in sorted(folder().glob("*.toml"))}
 
 
 def read(path: Path) -> Description:
-    """One of them. InputError names the file."""
+    """Read one description. InputError names the file."""
     try:
         return Description.model_validate(read_toml(path))
     except ValidationError as error:
-        found = one_line(error, f"finding {path.stem}", Description)
-        raise found from None
+        problem = describe_first_error(error, f"finding {path.stem}", Description)
+        raise problem from None
 
 
 RIGHT = "right"
 
 
 def entry_of(name: str) -> TableEntry:
-    """The printed table of that id. InputError for none."""
-    found = _entries().get(name)
-    if found is None:
+    """Return the printed table of that id. Raises InputError for none."""
+    entry = _entries().get(name)
+    if entry is None:
         raise InputError("table", name, "is none of the printed tables in reports/audits")
-    return found
+    return entry
 
 
 @cache
 def _entries() -> dict[str, TableEntry]:
-    """All printed tables of libraries, by id; the files are read once."""
-    each = map(read_tables, files())
-    return {f"{x.title.split()[0]}/{entry.name}": entry for x in each for entry, _ in x.entries}
+    """Read all printed tables of libraries, by id; the files are read once."""
+    table_files = map(read_tables, files())
+    return {
+        f"{x.title.split()[0]}/{entry.name}": entry for x in table_files for entry, _ in x.entries
+    }
 
 
-def changed(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
-    """The same with those entries. InputError for a key that it has not."""
+def change_entries(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
+    """Return the table with those entries. Raises InputError for a key that it has not."""
     data = entry.model_dump(exclude_unset=True)
     for key, value in changes.items():
         if key == "times" and value == RIGHT:
             data["times"] = _right_times(entry)
         else:
-            _put(data, key, value)
+            _put_entry(data, key, value)
     try:
-        made: TableEntry = kinds.get(entry.kind).Entry.model_validate(data)
+        table: TableEntry = kinds.get(entry.kind).Entry.model_validate(data)
     except ValidationError as error:
-        raise one_line(error, "changes", type(entry)) from None
-    return made.in_folder(entry.folder)
+        raise describe_first_error(error, "changes", type(entry)) from None
+    return table.in_folder(entry.folder)
 
 
-def _put(data: dict[str, Any], key: str, value: str) -> None:
+def _put_entry(data: dict[str, Any], key: str, value: str) -> None:
     *path, last = [int(x) - 1 if x.isdigit() else x for x in key.split(".")]
     place: Any = data
     for step in path:
+        # Models hold tuples: on the way down each is replaced by a list that can be changed.
         place[step] = list(place[step]) if isinstance(place[step], tuple) else place[step]
         place = place[step]
     if isinstance(last, int) and not last < len(place):
@@ -144,7 +145,8 @@ def _put(data: dict[str, Any], key: str, value: str) -> None:
 
 
 def _right_times(entry: TableEntry) -> list[str]:
-    """Each part reads the time that the other kind's parts before it add up to."""
+    """Return the time that each part should read: what the other kind's parts before it add up
+    to."""
     if not isinstance(entry, AlternatingEntry):
         raise InputError("changes", "times", "are made right of kicks and drifts alone")
     naming = Naming(entry.numbers)
@@ -154,7 +156,7 @@ def _right_times(entry: TableEntry) -> list[str]:
     for name, size in zip(names, sizes, strict=True):
         other = "drift" if name == "kick" else "kick"
         times.append(str(sympy.N(totals[other], 60)))
-        totals[name] += naming.printed.at_print(naming.printed.entry(size))
+        totals[name] += naming.printed_numbers.at_print(naming.printed_numbers.entry(size))
     return times
 
 
@@ -164,8 +166,8 @@ _WITHIN = 0.3  # of the order that a program prints
 
 
 @dataclass(frozen=True)
-class Ran:
-    """What a program printed, and the orders that it names, by problem; `failed`: why it did not
+class ProgramOutput:
+    """The output of a program, and the orders that it names, by problem; `failed`: why it did not
     end well."""
 
     printed: str
@@ -174,7 +176,7 @@ class Ran:
 
 
 @dataclass(frozen=True)
-class Shown:
+class TableEvidence:
     """One table: its claimed order, its steps' orders as printed, and with the mend."""
 
     name: str
@@ -184,41 +186,43 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Confirmed:
-    """All that a finding tells: the description, the refuted claims, and what was run."""
+class ConfirmedFinding:
+    """A confirmed finding: the description, the refuted claims, and what was run."""
 
     name: str
     described: Description
     claims: tuple[ClaimResult, ...]
-    tables: tuple[Shown, ...] = ()
-    program: Ran | None = None
-    mended: Ran | None = None
+    tables: tuple[TableEvidence, ...] = ()
+    program: ProgramOutput | None = None
+    mended: ProgramOutput | None = None
 
 
 class NotConfirmedError(Exception):
-    """Why it is not told, one clause."""
+    """The reason why a mistake is not reported, one clause."""
 
 
-def confirm(name: str, described: Description, claims: Sequence[ClaimResult]) -> Confirmed:
-    """Of the claims that were judged just now. Raises NotConfirmedError where one that it tells of
-    is not refuted, or where a table or a program does not show it, or not the mend."""
-    own = tuple(claim for claim in claims if described.tells_of(claim.id))
-    if not own:
+def confirm(name: str, described: Description, claims: Sequence[ClaimResult]) -> ConfirmedFinding:
+    """Confirm a mistake on the claims that were judged just now. Raises NotConfirmedError where one
+    that it is about is not refuted, or where a table or a program does not show it, or not the
+    correction."""
+    # Only claims that were judged in this run count: a newer version of the library may be right.
+    matching = tuple(claim for claim in claims if described.tells_of(claim.id))
+    if not matching:
         raise NotConfirmedError("none of its claims was judged: its library is not installed")
-    for claim in own:
+    for claim in matching:
         if claim.verdict is not Verdict.REFUTED:
             raise NotConfirmedError(f"{claim.id} is {claim.verdict}, not refuted")
-    tables = tuple(_shown(each) for each in described.table)
-    made = None
+    tables = tuple(_confirm_table(each) for each in described.table)
+    program = None
     mended = None
     if described.language == "python":
-        made = _ran(described.program)
-        mended = _ran(described.mended) if described.mended else None
-        _compare(made, mended)
-    return Confirmed(name, described, own, tables, made, mended)
+        program = _run_confirmed(described.program)
+        mended = _run_confirmed(described.mended) if described.mended else None
+        _compare(program, mended)
+    return ConfirmedFinding(name, described, matching, tables, program, mended)
 
 
-def _shown(each: Changed) -> Shown:
+def _confirm_table(each: TableCorrection) -> TableEvidence:
     try:
         entry = entry_of(each.id)
         claimed = claimed_of(entry, each.kind)
@@ -227,28 +231,33 @@ def _shown(each: Changed) -> Shown:
         printed = at_table(entry, each.kind, claimed)
         mended: tuple[Slopes, ...] = ()
         if each.changes:
-            mended = at_table(changed(entry, each.changes), each.kind, claimed).slopes
+            mended = at_table(change_entries(entry, each.changes), each.kind, claimed).slopes
     except InputError as error:
         raise NotConfirmedError(str(error)) from None
-    if not printed.shown:
+    if not printed.confirms:
         raise NotConfirmedError(f"{each.id}: its steps do not show it")
-    seen = [x.order for x in mended if x.order is not None]
-    if each.changes and (not seen or min(seen) < claimed or any(x.below(claimed) for x in mended)):
+    corrected_orders = [x.order for x in mended if x.order is not None]
+    # A correction is reported only if the corrected steps show the claimed order by themselves.
+    if each.changes and (
+        not corrected_orders
+        or min(corrected_orders) < claimed
+        or any(x.below(claimed) for x in mended)
+    ):
         raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")
-    return Shown(each.id, claimed, printed.slopes, mended)
+    return TableEvidence(each.id, claimed, printed.slopes, mended)
 
 
-def _ran(program: str) -> Ran:
-    found = run(program)
-    if found.failed:
-        raise NotConfirmedError(f"its program fails: {found.failed}")
-    return found
+def _run_confirmed(program: str) -> ProgramOutput:
+    result = run(program)
+    if result.failed:
+        raise NotConfirmedError(f"its program fails: {result.failed}")
+    return result
 
 
-def _compare(made: Ran, mended: Ran | None) -> None:
-    """With the mend every order must be higher by nearly one, at least."""
+def _compare(program: ProgramOutput, mended: ProgramOutput | None) -> None:
+    """Check that the correction raises every order by nearly one, at least."""
     for problem, order in (mended.orders if mended else {}).items():
-        before = made.orders.get(problem)
+        before = program.orders.get(problem)
         if before is None or order < before + 1 - _WITHIN:
             raise NotConfirmedError(f"the mend does not raise the order on {problem}")
 
@@ -256,8 +265,8 @@ def _compare(made: Ran, mended: Ran | None) -> None:
 # -- a program in Python, where its library is installed ------------------------------------------
 
 
-def run(program: str) -> Ran:
-    """Runs the lines; nothing that it does is let through but what it prints."""
+def run(program: str) -> ProgramOutput:
+    """Run the lines of a program; only what it prints is let through."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.py"
         path.write_text(program, encoding="utf-8")
@@ -271,7 +280,7 @@ def run(program: str) -> Ran:
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            return Ran("", {}, f"does not end within {_SECONDS:.0f} s")
-    found = {name: float(order) for name, order in _ORDER.findall(done.stdout)}
+            return ProgramOutput("", {}, f"does not end within {_SECONDS:.0f} s")
+    orders = {name: float(order) for name, order in _ORDER.findall(done.stdout)}
     last = done.stderr.strip().splitlines()[-1:] if done.returncode else []
-    return Ran(done.stdout.strip(), found, " ".join(last))
+    return ProgramOutput(done.stdout.strip(), orders, " ".join(last))

@@ -20,18 +20,18 @@ _FILES = Catalogue(__name__, __path__)
 
 @cache
 def names() -> tuple[str, ...]:
-    """The files' names; those that need no library last."""
+    """Return the files' names; those that need no library last."""
     return tuple(sorted(_FILES.names, key=lambda name: (get(name).LIBRARY is None, name)))
 
 
 def get(name: str) -> ModuleType:
-    """The module of that name."""
-    found: ModuleType = _FILES.module(name)
-    return found
+    """Return the module of that name."""
+    module: ModuleType = _FILES.module(name)
+    return module
 
 
-def installed(name: str) -> str | None:
-    """The version of the library that it needs; "" where it needs none, None where it is not
+def installed_version(name: str) -> str | None:
+    """Return the version of the library that it needs; "" where it needs none, None where it is not
     installed."""
     library = get(name).LIBRARY
     if library is None:

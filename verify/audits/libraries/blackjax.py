@@ -4,7 +4,7 @@ it says nothing."""
 from collections.abc import Iterator
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driven, scripted
+from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
 
 TITLE = "blackjax"
 LIBRARY = "blackjax"
@@ -13,7 +13,7 @@ LEFT_OUT = (
     ("isokinetic_…", "preserve the length of p: no flow of H = T(p) + V(q)"),
     ("implicit_midpoint", "solves its equations to a tolerance of its own"),
 )
-_STEP = Driven(
+_STEP = Driver(
     """\
 import jax
 import jax.numpy as jnp
@@ -47,7 +47,7 @@ q, p = np.asarray(state.position), np.asarray(state.momentum)
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    said = "the documentation of blackjax.mcmc.integrators: “Symplectic, time-reversible”"
+    claim = "the documentation of blackjax.mcmc.integrators: “Symplectic, time-reversible”"
     for method in ("velocity_verlet", "mclachlan", "yoshida", "omelyan"):
         problems = TWO_WAVES, HENON_HEILES
-        yield from scripted(method, _STEP, method, said, None, True, problems)
+        yield from drive_problems(method, _STEP, method, claim, None, True, problems)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driven, scripted
-from verify.audits.methods.tabled import tabled
+from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
+from verify.audits.methods.tabled import table_integrator
 
 TITLE = "desolver"
 LIBRARY = "desolver"
@@ -17,7 +17,7 @@ LEFT_OUT = (
     ("generate_richardson_integrator", "makes methods of variable order"),
 )
 _SOURCE = "desolver.integrators.{}.__order__: “{}”"
-_STEP = Driven(
+_STEP = Driver(
     """\
 import numpy as np
 from desolver.integrators import {method}
@@ -43,27 +43,27 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         if not hasattr(method, "tableau_final"):
             yield _splitting(method, name, order, source)
             plain = TWO_WAVES, HENON_HEILES
-            yield from scripted(f"{name}, as a step", _STEP, name, source, order, True, plain)
+            yield from drive_problems(f"{name}, as a step", _STEP, name, source, order, True, plain)
         elif order <= _HIGHEST:
             yield _tableau(method, name, order, source)
 
 
 def _methods() -> Iterator[Any]:
-    import desolver.integrators as found
+    import desolver.integrators as library
     from desolver.integrators.integrator_types import TableauIntegrator
 
-    for name in dir(found):
-        each: Any = getattr(found, name)
+    for name in dir(library):
+        each: Any = getattr(library, name)
         if isinstance(each, type) and issubclass(each, TableauIntegrator):
             yield from [each] if getattr(each, "__order__", None) else []
 
 
 def _splitting(method: Any, name: str, order: int, source: str) -> ReleasedIntegrator:
-    """Each row is a drift or a kick, the first not 0 of its last two numbers."""
+    """Read each row as a drift or a kick, the first not 0 of its last two numbers."""
     rows = [(float(drift), float(kick)) for _, drift, kick in method.tableau_intermediate]
     parts = [("kick", kick) if kick else ("drift", drift) for drift, kick in rows]
     driven = "its class's tableau_intermediate: columns 1 and 2, of drifts and kicks"
-    return tabled(
+    return table_integrator(
         name, "splitting", driven, source,
         order=order, first=parts[0][0], sizes=[size for _, size in parts], symplectic=True,
     )  # fmt: skip
@@ -73,7 +73,7 @@ def _tableau(method: Any, name: str, order: int, source: str) -> ReleasedIntegra
     table, weights = method.tableau_intermediate, method.tableau_final
     pair = _PAIR.search(method.__doc__ or "")
     embedded = int(pair[2]) if pair and int(pair[1]) == order and len(weights) > 1 else None
-    return tabled(
+    return table_integrator(
         name,
         "runge-kutta",
         "its class's tableau_intermediate and tableau_final, of which the first row is the method",

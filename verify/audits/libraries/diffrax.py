@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import EACH, Driven, scripted
-from verify.audits.methods.tabled import full, tabled
+from verify.audits.methods.scripted import EACH, Driver, drive_problems
+from verify.audits.methods.tabled import full, table_integrator
 
 TITLE = "diffrax"
 LIBRARY = "diffrax"
@@ -20,7 +20,7 @@ LEFT_OUT = (
     ),
     ("solvers of stochastic equations", "have no deterministic step"),
 )
-_STEP = Driven(
+_STEP = Driver(
     """\
 import jax
 import jax.numpy as jnp
@@ -47,8 +47,8 @@ def integrators() -> Iterator[ReleasedIntegrator]:
 
     for name in _NAMES:
         yield _table(name, getattr(diffrax, name))
-    said = "its documentation, “Symplectic method”, and order(terms) = 1"
-    yield from scripted("SemiImplicitEuler", _STEP, "SemiImplicitEuler", said, 1, True, EACH)
+    claim = "its documentation, “Symplectic method”, and order(terms) = 1"
+    yield from drive_problems("SemiImplicitEuler", _STEP, "SemiImplicitEuler", claim, 1, True, EACH)
 
 
 def _table(name: str, solver: Any) -> ReleasedIntegrator:
@@ -56,19 +56,21 @@ def _table(name: str, solver: Any) -> ReleasedIntegrator:
     diagonal = [0.0] * (len(table.c) + 1) if table.a_diagonal is None else table.a_diagonal
     lower = [[], *table.a_lower]
     rows = [[*map(float, row), float(x)] for row, x in zip(lower, diagonal, strict=True)]
-    said = _EMBEDDED.search(solver.__doc__ or "")
+    embedded_match = _EMBEDDED.search(solver.__doc__ or "")
     weights = [float(x) for x in table.b_sol]
+    # b_error holds the differences of the weights from the embedded ones.
     embedded = [b - float(e) for b, e in zip(weights, table.b_error, strict=True)]
     stages = len(weights)
-    return tabled(
+    return table_integrator(
         name,
         "runge-kutta",
         "the solver's tableau: a_lower, a_diagonal, b_sol and b_sol − b_error",
-        f"diffrax.{name}: order(terms) = {order}" + (f", “{said[0]}”" if said else ""),
+        f"diffrax.{name}: order(terms) = {order}"
+        + (f", “{embedded_match[0]}”" if embedded_match else ""),
         order=order,
-        embedded_order=int(said[1]) if said else None,
+        embedded_order=int(embedded_match[1]) if embedded_match else None,
         a=full(rows, stages),
         b=weights,
         c=[float(table.c1), *map(float, table.c)],
-        embedded=embedded if said else None,
+        embedded=embedded if embedded_match else None,
     )

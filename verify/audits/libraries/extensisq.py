@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import DRIVEN, HENON_HEILES, Driven, scripted
-from verify.audits.methods.tabled import full, tabled
+from verify.audits.methods.scripted import DRIVEN, HENON_HEILES, Driver, drive_problems
+from verify.audits.methods.tabled import full, table_integrator
 
 TITLE = "extensisq"
 LIBRARY = "extensisq"
@@ -19,7 +19,7 @@ LEFT_OUT = (
     ("BS5, Ts5, Fi5N, Pr7 …, as steps", "their errors are too small in float64; their tables are"),
     ("ESDIRK methods, as steps", "solve their equations to a tolerance of their own"),
 )
-_STEP = Driven(
+_STEP = Driver(
     """\
 import numpy as np
 from extensisq import {method}
@@ -44,9 +44,9 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         source = f"extensisq.{name}: order, order_secondary and its documentation"
         yield _table(name, solver, source)
     for name, order in (("CK5", 5), ("Me4", 4), ("Fi4N", 4), ("Mu5Nmb", 5)):
-        said = f"extensisq.{name}: order = {order}, fun(t, y)"
+        claim = f"extensisq.{name}: order = {order}, fun(t, y)"
         problems = DRIVEN, HENON_HEILES
-        yield from scripted(f"{name}, as a step", _STEP, name, said, order, None, problems)
+        yield from drive_problems(f"{name}, as a step", _STEP, name, claim, order, None, problems)
 
 
 def _solvers() -> Iterator[tuple[str, Any]]:
@@ -76,7 +76,7 @@ def _table(name: str, solver: Any, source: str) -> ReleasedIntegrator:
         common["c"] = [*common["c"], 1.0]
         weights = [*weights, 0.0]
     embedded = [x + e for x, e in zip(weights, errors, strict=False)]
-    return tabled(
+    return table_integrator(
         name, "runge-kutta", "its class's A, B, C and E", source, _SCRIPT.replace("{method}", name),
         a=rows, b=weights, embedded=embedded, embedded_order=second, **common,
     )  # fmt: skip
@@ -86,7 +86,7 @@ def _nystrom(
     name: str, solver: Any, source: str, rows: list[list[float]], common: dict[str, Any]
 ) -> ReleasedIntegrator:
     driven = "its class's A, B, Bp and C, for q'' = f(t, q)"
-    return tabled(
+    return table_integrator(
         name, "runge-kutta-nystrom", driven, source,
         a=rows, b=solver.Bp, b_bar=solver.B, row_sums=False, **common,
     )  # fmt: skip

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from verify.audits.methods.integrator import Compared, ReleasedIntegrator
-from verify.audits.methods.scripted import Driven, scripted
+from verify.audits.methods.integrator import Comparison, ReleasedIntegrator
+from verify.audits.methods.scripted import Driver, drive_problems
 from verify.audits.methods.tabled import text
 from verify.verdict import Verdict
 
@@ -13,7 +13,7 @@ LEFT_OUT = (
     ("DOPRI853Integrator", "chooses its steps by itself: no map of a fixed h"),
     ("the same in C", "take gala's potentials alone, and are by the same formulas"),
 )
-_IN_PYTHON = Driven(
+_IN_PYTHON = Driver(
     """\
 import numpy as np
 from gala.integrate import {method}
@@ -31,37 +31,37 @@ q, p = np.split(orbit.w()[:, -1], 2)
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for method, order, symplectic, said in (
+    for method, order, symplectic, claim in (
         ("LeapfrogIntegrator", 2, True, "“second-order”, “Symplectic”"),
         ("Ruth4Integrator", 4, True, "“Fourth-order accuracy”, “Symplectic”; func(t, w)"),
         ("RK5Integrator", 5, None, "“Fifth-order accuracy for smooth problems”; func(t, w)"),
     ):
-        source = f"the documentation of gala.integrate.{method}: {said}"
-        yield from scripted(method, _IN_PYTHON, method, source, order, symplectic)
+        source = f"the documentation of gala.integrate.{method}: {claim}"
+        yield from drive_problems(method, _IN_PYTHON, method, source, order, symplectic)
     yield ReleasedIntegrator(
         "RK5Integrator's coefficients",
         "A and C of gala.integrate.pyintegrators.rk5",
         "its documentation: “using the Dormand-Prince coefficients”",
-        Compared("its nodes are those of Dormand and Prince", _nodes, "documentation"),
+        Comparison("its nodes are those of Dormand and Prince", _nodes, "documentation"),
         reproduction=_NODES,
     )
 
 
 def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
-    """Its nodes beside those of Dormand and Prince, and of Cash and Karp."""
+    """Compare its nodes with those of Dormand and Prince, and of Cash and Karp."""
     from gala.integrate.pyintegrators import rk5
 
-    own = [text(float(x)) for x in rk5.A]
+    nodes_of_gala = [text(float(x)) for x in rk5.A]
     rows: tuple[tuple[str, ...], ...] = (
-        ("of", *(f"c{k + 1}" for k in range(len(own)))),
-        ("gala", *own),
+        ("of", *(f"c{k + 1}" for k in range(len(nodes_of_gala)))),
+        ("gala", *nodes_of_gala),
     )
-    others = {"Dormand and Prince": _DORMAND_PRINCE, "Cash and Karp": _CASH_KARP}
-    rows += tuple((name, *nodes) for name, nodes in others.items())
-    if own == [*_DORMAND_PRINCE]:
+    published = {"Dormand and Prince": _DORMAND_PRINCE, "Cash and Karp": _CASH_KARP}
+    rows += tuple((name, *nodes) for name, nodes in published.items())
+    if nodes_of_gala == [*_DORMAND_PRINCE]:
         return Verdict.PROVED, "they are", rows
-    alike = " and are those of Cash and Karp" if own == [*_CASH_KARP] else ""
-    return Verdict.REFUTED, f"they are {', '.join(own)}{alike}", rows
+    alike = " and are those of Cash and Karp" if nodes_of_gala == [*_CASH_KARP] else ""
+    return Verdict.REFUTED, f"they are {', '.join(nodes_of_gala)}{alike}", rows
 
 
 _DORMAND_PRINCE = ("0", "1/5", "3/10", "4/5", "8/9", "1")

@@ -100,6 +100,8 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for tag, driven, source, formula, lines, where in _EACH:
         for name, order in _ORDERS.items():
             text = lines.replace("{method}", name)
+            # Only the integrators whose names say so are claimed to be symplectic, and of driven
+            # ones det J is not looked at again.
             symplectic = None if name.startswith("rk") or tag == ", driven" else True
             yield by_script(
                 f"{name}{tag}", driven, source, formula, text, order, symplectic, *where[order]

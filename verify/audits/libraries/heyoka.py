@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from verify.algebra.enclosure import enclosed
-from verify.arithmetic.arb import middle_and_radius
-from verify.audits.methods.integrator import Compared, ReleasedIntegrator
+from verify.algebra.enclosure import enclose_defined
+from verify.arithmetic.arb import midpoint_and_radius
+from verify.audits.methods.integrator import Comparison, ReleasedIntegrator
 from verify.audits.methods.scripted import by_script
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.verdict import Verdict
@@ -100,12 +100,12 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         "Taylor and lieη",
         f"{_DRIVEN}, with the variational equations",
         "both are the Taylor series of the flow, cut off after h^η",
-        Compared("One step and its Jacobian are those of lieη, to rounding", _agreement),
+        Comparison("One step and its Jacobian are those of lieη, to rounding", _agreement),
     )
 
 
 def _integrator(formula: str, eta: int) -> Any:
-    """A Taylor integrator of the system's variational equations."""
+    """Build a Taylor integrator of the system's variational equations."""
     import heyoka as hy
 
     p, q = hy.make_vars("p", "q")
@@ -115,10 +115,10 @@ def _integrator(formula: str, eta: int) -> Any:
     }[formula]()
     equations: Any = [(p, -hy.diff(h, q)), (q, hy.diff(h, p))]
     varied = hy.var_ode_sys(equations, hy.var_args.vars, order=1)
-    found = hy.taylor_adaptive(varied, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
-    if found.order != eta:
-        raise RuntimeError(f"heyoka took order {found.order}")
-    return found
+    integrator = hy.taylor_adaptive(varied, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
+    if integrator.order != eta:
+        raise RuntimeError(f"heyoka took order {integrator.order}")
+    return integrator
 
 
 def _agreement() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
@@ -130,16 +130,16 @@ def _agreement() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
             worst = max(worst, state, tangent)
             rows.append((name, str(eta), f"{state:.2f} u", f"{tangent:.2f} u"))
     verdict = _verdict(worst)
-    said = (
+    evidence = (
         f"the largest difference from lieη, evaluated exactly, is {worst:.2f} u max(1, |x|), "
         f"u = 2⁻⁵³, over {len(_SYSTEMS)} Hamiltonians, η = 2, 3, 4 and {len(_POINTS)} points, "
         f"h = {_STEP}; {_ALLOWED} are what rounding may make"
     )
-    return verdict, said, tuple(rows)
+    return verdict, evidence, tuple(rows)
 
 
 def _verdict(worst: float) -> Verdict:
-    """Of a distance in units of rounding; other machines may round a little worse, which is no
+    """Judge a distance in units of rounding; other machines may round a little worse, which is no
     other method: one term more than order 4 has is h⁵/120, some 2,000 units."""
     if worst <= _ALLOWED:
         return Verdict.MEASURED
@@ -147,21 +147,22 @@ def _verdict(worst: float) -> Verdict:
 
 
 def _distance(formula: str, eta: int) -> tuple[float, float]:
-    """The largest differences of the state and of the Jacobian, in units of rounding."""
+    """Return the largest differences of the state and of the Jacobian, in units of rounding."""
     from verify.schemes import get
 
     taylor = _integrator(formula, eta)
-    own = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).flat
-    found = [0.0, 0.0]
+    step_map = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).flat
+    largest = [0.0, 0.0]
     for p, q in _POINTS:
         for k, x in enumerate((p, q, 1, 0, 0, 1)):
             taylor.state[k] = float(x)
         taylor.step(max_delta_t=float(_STEP))
-        exact = (*own.elements, *(x for row in own.jacobian for x in row))
+        # The state first, then the Jacobian by rows, as heyoka's variational state has them.
+        exact = (*step_map.elements, *(x for row in step_map.jacobian for x in row))
         for k, element in enumerate(exact):
-            ball = enclosed(own.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
-            middle, _ = middle_and_radius(ball)
+            ball = enclose_defined(step_map.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
+            middle, _ = midpoint_and_radius(ball)
             gap = abs(Fraction(float(taylor.state[k])) - middle)
             units = float(gap) / (_UNIT * max(1.0, abs(float(middle))))
-            found[k >= 2] = max(found[k >= 2], units)
-    return found[0], found[1]
+            largest[k >= 2] = max(largest[k >= 2], units)
+    return largest[0], largest[1]

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driven, scripted
-from verify.audits.methods.tabled import tabled
+from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
+from verify.audits.methods.tabled import table_integrator
 
 TITLE = "jax-md"
 LIBRARY = "jax_md"
@@ -14,7 +14,7 @@ LEFT_OUT = (
     ("nvt_…, npt_…, brownian", "are of other equations than H's, or of chance"),
     ("the weights of one step", "are 1"),
 )
-_STEP = Driven(
+_STEP = Driver(
     """\
 import jax
 import jax.numpy as jnp
@@ -40,9 +40,9 @@ _SOURCE = (
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    said = "the documentation of simulate.nve: “a standard velocity Verlet integration scheme”"
+    claim = "the documentation of simulate.nve: “a standard velocity Verlet integration scheme”"
     problems = TWO_WAVES, HENON_HEILES
-    yield from scripted("velocity_verlet", _STEP, "velocity_verlet", said, 2, True, problems)
+    yield from drive_problems("velocity_verlet", _STEP, "velocity_verlet", claim, 2, True, problems)
     yield from _weights()
 
 
@@ -51,7 +51,7 @@ def _weights() -> Iterator[ReleasedIntegrator]:
 
     for count, weights in simulate.SUZUKI_YOSHIDA_WEIGHTS.items():
         if count > 1:
-            yield tabled(
+            yield table_integrator(
                 f"SUZUKI_YOSHIDA_WEIGHTS[{count}]",
                 "composition",
                 "the weights as they stand in simulate",

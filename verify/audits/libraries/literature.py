@@ -9,7 +9,7 @@ from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
 from verify.content import content
-from verify.integrators.tables.splittings.claims import alternating, mirrored
+from verify.integrators.tables.splittings.claims import alternating, mirror
 from verify.scenes.toml_file import read_toml
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable
@@ -46,8 +46,8 @@ def integrators() -> Iterator[ReleasedIntegrator]:
 
 
 def table_of(entry: Mapping[str, Any]) -> PrintedTable:
-    """The table of one entry of the file."""
-    sizes = entry.get("sizes") or mirrored(entry["half"])
+    """Return the table of one entry of the file."""
+    sizes = entry.get("sizes") or mirror(entry["half"])
     parts = tuple(zip(_names(entry, len(sizes)), sizes, strict=True))
     return PrintedTable(entry["kind"], parts, PrintedNumbers(entry.get("numbers", {})))
 
@@ -59,7 +59,7 @@ def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
 
 
 def _script(entry: Mapping[str, Any]) -> str:
-    """The step in plain Python, for the pendulum, and the slope of its error."""
+    """Write the step in plain Python, for the pendulum, and the slope of its error."""
     table = table_of(entry)
     numbers = [f"{name} = {value.strip()}\n" for name, value in table.printed.numbers.items()]
     parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)

@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy
 
-from verify.audits.methods.integrator import Compared, ExactTableau, ReleasedIntegrator
+from verify.audits.methods.integrator import Comparison, ExactTableau, ReleasedIntegrator
 from verify.audits.methods.scripted import by_script
 from verify.audits.methods.tableau import order_of
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
@@ -40,19 +40,19 @@ _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    methods = _loaded()
+    methods = _load_methods()
     for key, method in methods.items():
-        order, embedded = claimed(key, method.name)
+        order, embedded = claimed_orders(key, method.name)
         title = key if method.name in key else f"{key} ({method.name})"
         yield _by_weights(title, key, method, "b", _claim_source(key, method.name), order)
         if hasattr(method, "bhat") and embedded is not None:
-            said = f"its name, {method.name}"
-            yield _by_weights(f"{key}, embedded", key, method, "bhat", said, embedded)
+            claim = f"its name, {method.name}"
+            yield _by_weights(f"{key}, embedded", key, method, "bhat", claim, embedded)
     yield ReleasedIntegrator(
         "nodes",
         "c and A of each of these methods",
         "its documentation: it solves u' = f(t, u)",
-        Compared(
+        Comparison(
             "The nodes c are the row sums of A, so that the order holds for f(t, u), too", _nodes
         ),
         reproduction=_NODES_SCRIPT,
@@ -69,7 +69,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         "order()",
         "what it returns for each of these methods, by default",
         "its documentation: conditions are checked to within its tolerance, by default 1e-14",
-        Compared(
+        Comparison(
             "order() returns the order of each method that loadRKM loads", _check_order_method
         ),
         reproduction=_ORDER_SCRIPT,
@@ -79,14 +79,14 @@ def integrators() -> Iterator[ReleasedIntegrator]:
 def _by_weights(
     title: str, key: str, method: Any, weights: str, source: str, order: int | None
 ) -> ReleasedIntegrator:
-    """The method with those of its weights."""
+    """Build the integrator of the method with those of its weights."""
     driven = f"the exact coefficients A and {weights} of rk.loadRKM('{key}')"
-    table, shown = tableau_of(method.A, getattr(method, weights)), _script(key, weights)
-    return ReleasedIntegrator(title, driven, source, table, order, reproduction=shown)
+    table, script = tableau_of(method.A, getattr(method, weights)), _script(key, weights)
+    return ReleasedIntegrator(title, driven, source, table, order, reproduction=script)
 
 
-def claimed(key: str, name: str) -> tuple[int | None, int | None]:
-    """The order of the method that its names claim, and that of the embedded one."""
+def claimed_orders(key: str, name: str) -> tuple[int | None, int | None]:
+    """Return the order of the method that its names claim, and that of the embedded one."""
     pair = _PAIR.search(name)
     if pair:
         return int(pair[1]), int(pair[2])
@@ -107,29 +107,32 @@ def _claim_source(key: str, name: str) -> str:
     )
 
 
-def _loaded() -> dict[str, Any]:
+def _load_methods() -> dict[str, Any]:
     from nodepy import rk
 
     with contextlib.redirect_stdout(io.StringIO()):
-        found: dict[str, Any] = rk.loadRKM()
+        methods: dict[str, Any] = rk.loadRKM()
+    # loadRKM names some methods twice: each is judged once, by its first name.
     unique: dict[int, str] = {}
-    for key, method in found.items():
+    for key, method in methods.items():
         unique.setdefault(id(method), key)
-    return {key: found[key] for key in unique.values()}
+    return {key: methods[key] for key in unique.values()}
 
 
 def tableau_of(a: Any, b: Any) -> ExactTableau:
-    """nodepy's arrays, which hold sympy's numbers or floats."""
+    """Read nodepy's arrays, which hold sympy's numbers or floats."""
     count = len(b)
     rows = [[_number(a[i, j]) for j in range(count)] for i in range(count)]
     weights = [_number(x) for x in b]
     rounded = any(was for row in (*rows, weights) for _, was in row)
-    exact = ImplicitTableau.of([[x for x, _ in row] for row in rows], [x for x, _ in weights])
+    exact = ImplicitTableau.from_numbers(
+        [[x for x, _ in row] for row in rows], [x for x, _ in weights]
+    )
     return ExactTableau(exact, rounded)
 
 
 def _number(x: Any) -> tuple[sympy.Expr, bool]:
-    """The exact number, and whether it was a float that is no short binary fraction."""
+    """Return the exact number, and whether it was a float that is no short binary fraction."""
     if isinstance(x, sympy.Basic) and not x.has(sympy.Float):
         return sympy.radsimp(x) if not x.is_Rational else x, False
     numerator, denominator = float(x).as_integer_ratio()
@@ -137,56 +140,65 @@ def _number(x: Any) -> tuple[sympy.Expr, bool]:
 
 
 def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
-    """Whether a stage reads f at the time that its place is for; the rest of f(t, u) is then that
-    of an autonomous system with one more unknown."""
+    """Check that each stage reads f at the time that its place is for; the rest of f(t, u) is then
+    that of an autonomous system with one more unknown."""
     wrong, rounded = [], 0
-    methods = _loaded()
+    methods = _load_methods()
     for key, method in methods.items():
         count = len(method.b)
-        off = [_number(method.c[i])[0] - sum(_number(method.A[i, j])[0] for j in range(count))
+        gaps = [_number(method.c[i])[0] - sum(_number(method.A[i, j])[0] for j in range(count))
                for i in range(count)]  # fmt: skip
-        exact = [sympy.radsimp(sympy.expand(x)) == 0 for x in off]
+        exact = [sympy.radsimp(sympy.expand(x)) == 0 for x in gaps]
         if not all(exact):
-            close = all(abs(float(x)) <= _LOOSE for x in off)
+            close = all(abs(float(x)) <= _LOOSE for x in gaps)
             rounded += close
             wrong += [] if close else [key]
     if wrong:
         return Verdict.REFUTED, f"not of {', '.join(wrong)}", ()
     if rounded:
-        said = f"exactly for {len(methods) - rounded} of {len(methods)} methods, of the others, "
-        return Verdict.MEASURED, f"{said}whose coefficients are floats, but for their rounding", ()
+        prefix = f"exactly for {len(methods) - rounded} of {len(methods)} methods, of the others, "
+        return (
+            Verdict.MEASURED,
+            f"{prefix}whose coefficients are floats, but for their rounding",
+            (),
+        )
     return Verdict.PROVED, f"exactly, for all {len(methods)} methods", ()
 
 
 def _check_order_method() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     rows = [("method", "order() returns", "proved or measured")]
     wrong, coarse = [], []
-    methods = _loaded()
+    methods = _load_methods()
     for key, method in methods.items():
-        own = _order_by_nodepy(method)
+        returned = _order_by_nodepy(method)
         table = tableau_of(method.A, method.b)
-        found = order_of(table.tableau, own + 1, table.rounded).order
-        rows.append((key, str(own), str(found)))
-        if own == found:
+        order = order_of(table.tableau, returned + 1, table.rounded).order
+        rows.append((key, str(returned), str(order)))
+        if returned == order:
             continue
-        told = f"{key}: {own}, and it is {found}"
-        if table.rounded and _order_by_nodepy(method, tol=_LOOSE) == found:
-            coarse.append(f"{told}, which order(tol={_LOOSE}) returns")
+        sentence = f"{key}: {returned}, and it is {order}"
+        # The default tolerance is below the rounding of these floats: that is no mistake of the
+        # method's order.
+        if table.rounded and _order_by_nodepy(method, tol=_LOOSE) == order:
+            coarse.append(f"{sentence}, which order(tol={_LOOSE}) returns")
         else:
-            wrong.append(told)
+            wrong.append(sentence)
     return _order_method(len(methods), wrong, coarse, tuple(rows))
 
 
 def _order_method(
     count: int, wrong: Sequence[str], coarse: Sequence[str], rows: tuple[tuple[str, ...], ...]
 ) -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
-    """`coarse`: where its floats' rounding exceeds the default tolerance, and a larger one does."""
+    """Judge order(). `coarse`: where its floats' rounding exceeds the default tolerance, and a
+    larger one does."""
     if wrong:
         return Verdict.REFUTED, f"of {count} methods, {'; '.join(wrong)}", rows
     if coarse:
-        said = f"it is right for {count - len(coarse)} of {count} methods by default; for floats "
-        said += f"whose rounding exceeds that tolerance it is not: {'; '.join(coarse)}"
-        return Verdict.MEASURED, said, rows
+        evidence = (
+            f"it is right for {count - len(coarse)} of {count} methods by default; for floats "
+        )
+        evidence += f"whose rounding exceeds that tolerance it is not: {'; '.join(coarse)}"
+        return Verdict.MEASURED, evidence, rows
     return Verdict.PROVED, f"it is right for all {count} methods", rows
 
 

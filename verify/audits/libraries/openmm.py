@@ -10,9 +10,9 @@ from verify.audits.methods.integrator import ReleasedIntegrator
 from verify.audits.methods.scripted import (
     HENON_HEILES,
     TWO_WAVES,
-    Driven,
+    Driver,
     Problem,
-    scripted,
+    drive_problems,
 )
 
 TITLE = "OpenMM"
@@ -59,10 +59,10 @@ _EACH = (
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for name, method, order, said in _EACH:
+    for name, method, order, claim in _EACH:
         for problem, potential in _POTENTIALS.items():
-            driven = Driven(
+            driven = Driver(
                 _HEAD.replace("{potential}", potential), _BODY, "one step on the reference platform"
             )
             symplectic = True if name == "VerletIntegrator" else None
-            yield from scripted(name, driven, method, said, order, symplectic, (problem,))
+            yield from drive_problems(name, driven, method, claim, order, symplectic, (problem,))

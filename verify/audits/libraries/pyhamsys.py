@@ -13,10 +13,10 @@ from verify.audits.methods.scripted import (
     EACH,
     HENON_HEILES,
     TWO_WAVES,
-    Driven,
-    scripted,
+    Driver,
+    drive_problems,
 )
-from verify.audits.methods.tabled import tabled, text
+from verify.audits.methods.tabled import table_integrator, text
 
 TITLE = "pyhamsys"
 LIBRARY = "pyhamsys"
@@ -59,10 +59,10 @@ _OF_KICKS = {"PEFRL": 4, "RKN6a": 6}
 _OF_DRIFTS = {"VEFRL": 4, "RKN4b": 4, "RKN6b": 6}
 
 
-def _driven(first: str, second: str) -> Driven:
+def _driven(first: str, second: str) -> Driver:
     body = _BODY.replace("{first}", first).replace("{second}", second)
-    said = f"one step of the integrator, chi a {first} and then a {second}"
-    return Driven(_HEAD, body, said)
+    description = f"one step of the integrator, chi a {first} and then a {second}"
+    return Driver(_HEAD, body, description)
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
@@ -75,18 +75,22 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         for method, order in orders.items():
             source = f"its README, “{method} (order {order}…”; autonomous and non-autonomous"
             yield _table(method, order, source, first)
-            seen = problems if order < _HIGH else problems[1:2]
-            yield from scripted(f"{method}, as a step", driven, method, source, order, True, seen)
+            selected_problems = problems if order < _HIGH else problems[1:2]
+            yield from drive_problems(
+                f"{method}, as a step", driven, method, source, order, True, selected_problems
+            )
 
 
 def _table(method: str, order: int, source: str, first: str) -> ReleasedIntegrator:
-    """Kicks and drifts of a chi and the chi_star that follows are made at once."""
+    """Build the table, in which the parts of a chi and the chi_star that follows are merged."""
     from pyhamsys.pyhamsys import SymplecticIntegrator
 
     shares = [text(float(x)) for x, _ in SymplecticIntegrator(method, 1.0)._sequence]
+    # chi and the chi_star after it begin and end with the same kind of part, so that these two
+    # parts are one.
     between = [f"({x})+({y})" for x, y in itertools.pairwise(shares)]
     kind = "splitting" if method in _EITHER and method != "EFRL" else "nystrom"
-    return tabled(
+    return table_integrator(
         method, kind, f"the integrator's sequence, chi a {first} first", source,
         order=order, first=first, sizes=[shares[0], *between, shares[-1]], symplectic=True,
     )  # fmt: skip

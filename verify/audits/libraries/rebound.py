@@ -49,15 +49,17 @@ class _Problem:
     mass: float
     softening: float
     forced: bool
-    said: str
+    description: str
     driven: bool = False
 
     @property
     def in_time(self) -> "_Problem":
         """The same with cos(6 t/5)/4 as an additional force."""
         formula = f"{self.hamiltonian} - q*cos(6*t/5)/4"
-        said = f"{self.said}; and cos(6 t/5)/4 as additional force, t the simulation's time"
-        return replace(self, hamiltonian=formula, said=said, driven=True)
+        description = (
+            f"{self.description}; and cos(6 t/5)/4 as additional force, t the simulation's time"
+        )
+        return replace(self, hamiltonian=formula, description=description, driven=True)
 
 
 # A star of mass 8 at (−3, 0), in whose frame the particle is; the softened one is at 0.
@@ -108,18 +110,20 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         yield _integrator(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
     for name, order in (("LF", 2), ("LF4", 4), ("LF6", 6), ("LF8", 8), ("PMLF4", 4), ("PMLF6", 6)):
         yield _integrator(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
-    for given in _with_forces():
-        yield _integrator(_FORCED, *given)
+    for arguments in _with_forces():
+        yield _integrator(_FORCED, *arguments)
     yield from _in_space()
     yield from _in_time()
 
 
 def _in_space() -> Iterator[ReleasedIntegrator]:
-    """One of each kind, in the plane of two coordinates."""
+    """Yield one integrator of each kind, in the plane of two coordinates."""
     for name, settings, order in (
         ("leapfrog", "order = 2", 2), ("leapfrog", "order = 4", 4), ("janus", "order = 4", 4),
         ("whfast", "", 2), ("saba", "type = '2'", 2), ("eos", "phi1 = 'LF4'", 4),
     ):  # fmt: skip
+        # The others take no softening: the star then stands aside, so that the particle stays away
+        # from the singularity.
         softened = name in ("leapfrog", "janus")
         text = _IN_SPACE.replace("{name}", name)
         setting = f"    s.integrator.{settings}\n" if settings else ""
@@ -138,7 +142,7 @@ def _in_space() -> Iterator[ReleasedIntegrator]:
 
 
 def _with_forces() -> Iterator[tuple[Any, ...]]:
-    """Those that take additional forces."""
+    """Yield the arguments of those that take additional forces."""
     yield "whfast", "WHFAST", 2
     for name in ("1", "2", "3", "4"):
         yield "saba", f"SABA{name}", 2, f"type = '{name}'"
@@ -147,23 +151,25 @@ def _with_forces() -> Iterator[tuple[Any, ...]]:
 
 
 def _in_time() -> Iterator[ReleasedIntegrator]:
-    """One of each kind that reads a time by itself, and of each order where that is another one."""
+    """Yield one of each kind that reads a time by itself, and of each order where that is another
+    one."""
     for order in (2, 4):
         yield _driven(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
         yield _driven(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
     for name, order in (("LF", 2), ("LF4", 4)):  # additional forces belong to the outer splitting
         settings = f"phi0 = '{name}'", "phi1 = 'LF8'"
         yield _driven(_FREE, "eos", f"EOS, phi0 = {name}, phi1 = LF8", order, *settings)
-    for given in _with_forces():
-        yield _driven(_FORCED, *given)
+    for arguments in _with_forces():
+        yield _driven(_FORCED, *arguments)
 
 
-def _driven(problem: _Problem, *given: Any) -> ReleasedIntegrator:
-    """The same with a force that depends on time, of whose order nothing is said."""
-    made = _integrator(problem.in_time, *given)
-    shown = "\n".join((made.reproduction, *_TIMES))
-    return replace(made, name=f"{made.name}, driven", order=None, area_preserving=None,
-                   reproduction=shown)  # fmt: skip
+def _driven(problem: _Problem, *arguments: Any) -> ReleasedIntegrator:
+    """Build the same with a force that depends on time, of whose order nothing is said."""
+    # Nothing is claimed in time: what is measured is reported, and refutes nothing.
+    integrator = _integrator(problem.in_time, *arguments)
+    script = "\n".join((integrator.reproduction, *_TIMES))
+    return replace(integrator, name=f"{integrator.name}, driven", order=None, area_preserving=None,
+                   reproduction=script)  # fmt: skip
 
 
 def _integrator(
@@ -172,10 +178,15 @@ def _integrator(
     points: tuple[Point, ...] = () if problem.softening else _AWAY
     ladder: tuple[Fraction, ...] = ()
     if order >= 8:
+        # A high order shows between steps that are too large for it and rounding: at one place,
+        # with a fine ladder.
         points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
     elif order == 6 and problem is _FREE:
         points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
-    text, driven = _script(problem, integrator, settings), f"one step of dt = h: {problem.said}"
+    text, driven = (
+        _script(problem, integrator, settings),
+        f"one step of dt = h: {problem.description}",
+    )
     return by_script(name, driven, _SOURCE, problem.hamiltonian, text, order, True, points, ladder)
 
 

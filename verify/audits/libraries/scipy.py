@@ -19,7 +19,7 @@ from verify.audits.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
-from verify.audits.methods.scripted import HENON_HEILES, Driven, by_script, scripted
+from verify.audits.methods.scripted import HENON_HEILES, Driver, by_script, drive_problems
 from verify.audits.methods.tabled import full, quotient
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 
@@ -39,7 +39,7 @@ _DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
 _POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
 _PLAIN: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)  # elsewhere h⁷ hides h⁶
 _SOURCE = "the documentation of scipy.integrate.{}"
-_IN_SPACE = Driven(
+_IN_SPACE = Driver(
     """\
 import numpy as np
 from scipy.integrate import {method}
@@ -95,18 +95,22 @@ def integrators() -> Iterator[ReleasedIntegrator]:
                 *where,
             )  # fmt: skip
     for name, order in (("RK23", 3), ("RK45", 5)):
-        said, title = _SOURCE.format(name), f"{name}, as a step"
-        yield from scripted(title, _IN_SPACE, name, said, order, None, (HENON_HEILES,))
-    said = _SOURCE.format("Radau")
+        source_text, title = _SOURCE.format(name), f"{name}, as a step"
+        yield from drive_problems(title, _IN_SPACE, name, source_text, order, None, (HENON_HEILES,))
+    source_text = _SOURCE.format("Radau")
     driven = "the collocation equations of scipy's Radau, by its own solver, to rounding"
-    still = FloatStep(_PENDULUM, lambda: _without_time(_radau(_field)))
+    autonomous = FloatStep(_PENDULUM, lambda: _without_time(_radau(_field)))
     moving = FloatStep(_DRIVEN, lambda: _radau(_driven), _PLAIN)
-    yield ReleasedIntegrator("Radau, as a step", driven, said, still, 5)
-    yield ReleasedIntegrator("Radau, as a step, driven", driven, f"{said}: y' = f(t, y)", moving, 5)
+    yield ReleasedIntegrator("Radau, as a step", driven, source_text, autonomous, 5)
+    yield ReleasedIntegrator(
+        "Radau, as a step, driven", driven, f"{source_text}: y' = f(t, y)", moving, 5
+    )
     for name, order, pair in (("RK23", 3, 2), ("RK45", 5, 4), ("DOP853", 8, None)):
         yield from _tables(name, order, pair)
     nodes = "the collocation method of scipy's nodes, (4 ∓ √6)/10 and 1"
-    yield ReleasedIntegrator("Radau, its table", nodes, said, ExactTableau(_radau_tableau()), 5)
+    yield ReleasedIntegrator(
+        "Radau, its table", nodes, source_text, ExactTableau(_radau_tableau()), 5
+    )
 
 
 def _field(_: float, z: Any) -> Any:
@@ -146,8 +150,8 @@ def _radau(field: Any) -> Map:
 
 
 def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegrator]:
-    """The coefficients inside the solver: of RK23 and RK45 quotients, which round to its floats; of
-    DOP853 decimals, taken as floats."""
+    """Read the coefficients inside the solver: of RK23 and RK45 quotients, which round to its
+    floats; of DOP853 decimals, taken as floats."""
     from scipy import integrate
 
     solver = getattr(integrate, name)
@@ -164,6 +168,8 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegra
         f"{name}, its table", driven, source, ExactTableau(table, not quotients), order
     )
     if pair is not None:
+        # E holds the differences of the embedded weights from B, with one more stage for the next
+        # step's first.
         estimate = [x + e for x, e in zip([*weights, 0.0], map(float, solver.E), strict=True)]
         whole = [*([*row, 0.0] for row in rows), [*weights, 0.0]]
         embedded = ExactTableau(_tableau(whole, estimate, quotients))
@@ -172,7 +178,7 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegra
 
 def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:
     exact = _quotient if quotients else _binary
-    return ImplicitTableau.of(
+    return ImplicitTableau.from_numbers(
         [[exact(x) for x in row] for row in rows], [exact(x) for x in weights]
     )
 
@@ -192,8 +198,8 @@ def _radau_tableau() -> ImplicitTableau:
     x = sympy.Symbol("x")
     basis = []
     for i, c in enumerate(nodes):
-        others = [d for j, d in enumerate(nodes) if j != i]
-        basis.append(sympy.expand(sympy.prod([(x - d) / (c - d) for d in others])))
+        other_nodes = [d for j, d in enumerate(nodes) if j != i]
+        basis.append(sympy.expand(sympy.prod([(x - d) / (c - d) for d in other_nodes])))
     # The weights are the last row, as the last node is 1.
     rows = [[sympy.radsimp(sympy.integrate(b, (x, 0, c))) for b in basis] for c in nodes]
-    return ImplicitTableau.of(rows, rows[-1])
+    return ImplicitTableau.from_numbers(rows, rows[-1])

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import DRIVEN, HENON_HEILES, Driven, scripted
-from verify.audits.methods.tabled import tabled
+from verify.audits.methods.scripted import DRIVEN, HENON_HEILES, Driver, drive_problems
+from verify.audits.methods.tabled import table_integrator
 
 TITLE = "torchdiffeq"
 LIBRARY = "torchdiffeq"
@@ -14,7 +14,7 @@ LEFT_OUT = (
     ("explicit_adams, implicit_adams", "are multistep methods: no one-step maps"),
     ("scipy_solver", "is scipy's"),
 )
-_STEP = Driven(
+_STEP = Driver(
     """\
 import numpy as np
 import torch
@@ -42,14 +42,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for name in _FIXED:
         order = int(SOLVERS[name].order)
         source = f"torchdiffeq, method='{name}', order = {order}"
-        yield from scripted(name, _STEP, name, source, order, None, (DRIVEN, HENON_HEILES))
+        yield from drive_problems(name, _STEP, name, source, order, None, (DRIVEN, HENON_HEILES))
 
 
 def _table(name: str, solver: Any, order: int) -> ReleasedIntegrator:
-    """c_error is the weights less those of the embedded method, of which no order is said."""
+    """Build the table; c_error is the weights less those of the embedded method, of which no order
+    is stated."""
     table = solver.tableau
     rows = [[], *([float(x) for x in row] for row in table.beta)]
-    return tabled(
+    return table_integrator(
         name,
         "runge-kutta",
         "the solver's alpha, beta and c_sol",

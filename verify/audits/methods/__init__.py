@@ -1,1 +1,1 @@
-"""What is judged: how a method of others is driven or read, and what is found of it at once."""
+"""Methods by which an integrator is driven or read, and what is measured of it at once."""

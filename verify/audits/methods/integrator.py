@@ -31,7 +31,7 @@ class FloatStep:
 
     @property
     def exact(self) -> Hamiltonian:
-        """H."""
+        """The Hamiltonian H."""
         return Hamiltonian.parse(self.hamiltonian)
 
 
@@ -45,9 +45,9 @@ class ExactTableau:
 
 
 @dataclass(frozen=True)
-class Compared:
-    """What is compared as a whole: `compare` returns the verdict, the evidence and a table. `kind`
-    ends the claim's id."""
+class Comparison:
+    """A comparison as a whole: `compare` returns the verdict, the evidence and a table. `kind` ends
+    the claim's id."""
 
     statement: str
     compare: Callable[[], tuple[Verdict, str, tuple[tuple[str, ...], ...]]]

@@ -1,4 +1,4 @@
-"""What is seen of a step in floats, by the probe of `verify check-integrator`."""
+"""The finding on a step in floats, by the probe of `verify check-integrator`."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -9,17 +9,17 @@ from verify.audits.methods.scripted import POINTS
 from verify.errors import InputError
 from verify.integrators.measured import finding_of
 from verify.integrators.measures.order import Distances
-from verify.integrators.measures.still_clock import measured_mistakes
+from verify.integrators.measures.still_clock import measure_clock_mistakes
 from verify.integrators.measures.survey import NOWHERE, places_of_field
 from verify.integrators.places.place import Place
 from verify.integrators.places.units import Field
 from verify.integrators.probes.floats import FloatProbe
 from verify.integrators.results import Finding
 from verify.integrators.trial import Trial
-from verify.integrators.user_code.faults import examined
+from verify.integrators.user_code.faults import find_faults
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import StepError, last_line
-from verify.prose import joined, prose, read_prose
+from verify.prose import join_prose, prose, read_prose
 from verify.verdict import Verdict
 
 # A library may raise anything, and leave the program too.
@@ -28,10 +28,10 @@ _SECONDS = 60.0
 _SPAN = 1.9  # times the least step of a stretch its largest must be, for a power to count
 
 
-def _undecided(finding: Finding, first: float, last: float) -> Finding:
-    """Of a power that is seen over a short stretch only, as one may be in passing."""
-    said = f"a power of h is seen from h = `{first:.2g}` to `{last:.2g}` only, too short a stretch"
-    reason = prose(read_prose(said), "; ", finding.reason.partition("; ")[2])
+def _mark_undecided(finding: Finding, first: float, last: float) -> Finding:
+    """Leave a power undecided that is seen over a short stretch only, as one may be in passing."""
+    text = f"a power of h is seen from h = `{first:.2g}` to `{last:.2g}` only, too short a stretch"
+    reason = prose(read_prose(text), "; ", finding.reason.partition("; ")[2])
     return replace(
         finding, verdict=Verdict.UNDECIDED, reason=reason, convergence_order=None,
         order_decided=False,
@@ -39,23 +39,24 @@ def _undecided(finding: Finding, first: float, last: float) -> Finding:
 
 
 def _places(method: FloatStep) -> list[Place]:
-    """Those that it names, with steps of 1 and less; else those that fit its H."""
+    """Return the places that the method names, with steps of 1 and less; else those that fit its
+    H."""
     exact = method.exact
     usual = places_of_field(Field(exact), exact.time_dependent, NOWHERE)
     points = method.points or (POINTS if exact.degrees == 1 else ())
     if not points:
         return [replace(x, step=Fraction(1)) for x in usual[:6]]
-    made = []
+    places = []
     for z in points:
         t = (1 + 2 * z[0] + z[1]) / 4 if exact.time_dependent else Fraction(0)
-        made.append(replace(usual[0], z=tuple(z), t=t, step=Fraction(1)))
-    return made
+        places.append(replace(usual[0], z=tuple(z), t=t, step=Fraction(1)))
+    return places
 
 
 @lru_cache(maxsize=256)
 def finding(method: FloatStep) -> Finding:
-    """Its order, and whether an area defect is seen. UNDECIDED, with the reason, where it cannot be
-    measured."""
+    """Measure its order, and if an area defect is seen. UNDECIDED, with the reason, where it cannot
+    be measured."""
     hamiltonian = method.exact
     timed = hamiltonian.time_dependent
     try:
@@ -67,32 +68,33 @@ def finding(method: FloatStep) -> Finding:
         step.moving = timed
         step.foreign = True  # nothing but floats goes in
         trial = Trial(step, hamiltonian, _places(method))
-        faults, first = examined(step, trial.places)
+        faults, first = find_faults(step, trial.places)
         fatal = next((fault for fault in faults if fault.fatal), None)
         if fatal is not None:
             return Finding(fatal.allows, prose(fatal.text), "calls")
         if not first:
-            step.at([float(x) for x in trial.places[0].z], 0.125, float(trial.places[0].t))
+            step.evaluate([float(x) for x in trial.places[0].z], 0.125, float(trial.places[0].t))
         structure, distances = trial.measure("floats", [1 / h for h in method.ladder])
         assert distances is not None  # noqa: S101 - there is an H
-        made = finding_of(trial, structure, distances)
-        run = _stretch(distances, made.convergence_order)
+        result = finding_of(trial, structure, distances)
+        run = _stretch(distances, result.convergence_order)
+        # Two powers of h may look like a third in passing: only a long stretch counts.
         if run is not None and run[0] < _SPAN * run[1]:
-            return _undecided(made, *run)
+            return _mark_undecided(result, *run)
         mistakes = []
         if timed and hamiltonian.degrees == 1:
-            order = made.convergence_order
-            mistakes = measured_mistakes(FloatProbe(step), hamiltonian, trial.places, order)
-        return replace(made, reason=joined("; ", (made.reason, *mistakes)))
+            order = result.convergence_order
+            mistakes = measure_clock_mistakes(FloatProbe(step), hamiltonian, trial.places, order)
+        return replace(result, reason=join_prose("; ", (result.reason, *mistakes)))
     except FAILURES as error:
-        said = error.said if isinstance(error, StepError) else last_line(error)
+        problem = error.said if isinstance(error, StepError) else last_line(error)
         if isinstance(error, InputError):
-            said = str(error)
-        return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", said), "calls")
+            problem = str(error)
+        return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", problem), "calls")
 
 
 def _stretch(distances: Distances, order: int | None) -> tuple[float, float] | None:
-    """The step sizes on which the order is seen, at the place where it is seen longest."""
+    """Return the step sizes on which the order is seen, at the place where it is seen longest."""
     runs = [x.run for x in distances.places if x.run is not None and x.power == (order or 0) + 1]
     if order is None or not runs:
         return None

@@ -25,30 +25,30 @@ class Problem:
     """`said`: what it is, for people. `force`: its lines of Python, force(t, q) of an array q, with
     numpy as np. `tag`: what is appended to a method's name."""
 
-    said: str
+    description: str
     hamiltonian: str
     force: str
     tag: str = ""
 
     @property
     def exact(self) -> Hamiltonian:
-        """H."""
+        """The Hamiltonian H."""
         return Hamiltonian.parse(self.hamiltonian)
 
     @property
-    def timed(self) -> bool:
-        """Whether the force depends on time."""
+    def depends_on_time(self) -> bool:
+        """True if the force depends on time."""
         return self.exact.time_dependent
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
+        """The degrees of freedom."""
         return self.exact.degrees
 
     @property
     def arguments(self) -> str:
-        """Of a step for it."""
-        return "p, q, t, h" if self.timed else "p, q, h"
+        """The arguments of a step for it."""
+        return "p, q, t, h" if self.depends_on_time else "p, q, h"
 
 
 def _force(line: str) -> str:
@@ -104,18 +104,18 @@ USUAL = tuple(
 
 
 def step_of(text: str) -> Map:
-    """The step(p, q, h), or step(p, q, t, h), that lines of Python define with nothing but the
-    library that they import. They are ours: nothing that is read from elsewhere is in them. Raises
-    what the library raises."""
+    """Return the step(p, q, h), or step(p, q, t, h), that lines of Python define with nothing but
+    the library that they import. They are ours: nothing that is read from elsewhere is in them.
+    Raises what the library raises."""
     names: dict[str, Any] = {}
     exec(compile(text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
-    made: Map = names["step"]
-    return made
+    step: Map = names["step"]
+    return step
 
 
 @dataclass(frozen=True)
-class Driven:
-    """How the steps of a library are driven.
+class Driver:
+    """A way of driving the steps of a library.
 
     `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the
     lines of a step, from p, q, t and h, of arrays, to p and q; `{method}` stands for the method.
@@ -124,11 +124,11 @@ class Driven:
 
     head: str
     body: str
-    said: str
+    description: str
 
     def script(self, problem: Problem, method: str) -> str:
-        """The lines for one problem and one method."""
-        begin = [] if problem.timed else ["t = 0.0"]
+        """Return the lines for one problem and one method."""
+        begin = [] if problem.depends_on_time else ["t = 0.0"]
         inside = [*begin, *self.body.strip().splitlines(), _END[problem.degrees]]
         lines = [
             self.head.replace("{method}", method).strip(),
@@ -154,26 +154,28 @@ def by_script(
     points: Sequence[tuple[Fraction, ...]] = (),
     ladder: Sequence[Fraction] = (),
 ) -> ReleasedIntegrator:
-    """The integrator whose step the lines of `text` define, which are what is shown of it."""
+    """Build the integrator whose step the lines of `text` define, which are also what is shown of
+    it."""
     step = FloatStep(hamiltonian, partial(step_of, text), tuple(points), tuple(ladder))
     return ReleasedIntegrator(name, driven, source, step, order, symplectic, text)
 
 
-def scripted(
+def drive_problems(
     name: str,
-    driven: Driven,
+    driven: Driver,
     method: str,
     source: str,
     order: int | None,
     symplectic: bool | None = None,
     problems: Iterable[Problem] = EACH,
 ) -> Iterator[ReleasedIntegrator]:
-    """One for each problem."""
+    """Yield one integrator for each problem."""
     for problem in problems:
         first, second = (
             by_script(
-                f"{name}{each.tag}", f"{driven.said}, for {each.said}", source, each.hamiltonian,
-                driven.script(each, method), order, symplectic if each is not DRIVEN else None,
+                f"{name}{each.tag}", f"{driven.description}, for {each.description}", source,
+                each.hamiltonian, driven.script(each, method), order,
+                symplectic if each is not DRIVEN else None,
                 *_where(each, order or 0),
             )
             for each in (problem, AGAIN[problem])
@@ -184,7 +186,7 @@ def scripted(
 def _where(
     problem: Problem, order: int
 ) -> tuple[Sequence[tuple[Fraction, ...]], Sequence[Fraction]]:
-    """Points and steps with which an order is seen."""
+    """Return points and steps with which an order is seen."""
     high = order >= _HIGH
     points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
     return points, LONG if high else USUAL

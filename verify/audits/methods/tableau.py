@@ -24,7 +24,7 @@ from verify.schemes.conditions.coloured_trees import (
     Tree,
     condition_text,
     equation_text,
-    grafted,
+    graft,
     vertices,
 )
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau, Numbers
@@ -49,15 +49,18 @@ class TableauOrder:
 
 
 def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> TableauOrder:
-    """The order, looked at up to `most` at least, by simplifying assumptions if they do."""
+    """Return the order, looked at up to `most` at least, by simplifying assumptions if they do."""
     if not rounded:
         simple = _simple(tableau.numbers)
         if simple is not None:
             return simple
+    # One order beyond the claimed one is looked at, so that the report can name the condition that
+    # ends the order.
     largest, reach, by = 0.0, min(most + 1, MOST_ORDER), "the conditions of all rooted trees"
     for n in range(1, reach + 1):
         for tree, gap in gaps_of(tableau, n).items():
             size = abs(value(tableau.numbers, gap))
+            # Coefficients that are floats satisfy a true condition up to their rounding only.
             if size == 0 or (rounded and size < float(ROUNDING)):
                 largest = max(largest, size)
                 continue
@@ -66,12 +69,12 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
 
 
 def value(numbers: Numbers, x: Poly) -> float:
-    """A number of the ring as a float; 0 only where it is exactly 0."""
+    """Return a number of the ring as a float; 0 only where it is exactly 0."""
     return float(numbers.condition("", 0, x).residue)
 
 
 def _simple(numbers: Numbers) -> TableauOrder | None:
-    """By B(p), C(η) and D(ζ), where they decide the order exactly."""
+    """Decide the order by B(p), C(η) and D(ζ), where they decide it exactly."""
     b, a, ring = numbers.b, numbers.a, numbers.ring
     one, s = ring.one, range(len(numbers.b))
     powers = [[one] * len(b)]
@@ -96,7 +99,7 @@ def _simple(numbers: Numbers) -> TableauOrder | None:
         return dot(b, column) - (b[j] - b[j] * power(k)[j]) / k
 
     def count(gap: Callable[[int, int], Poly], parts: Sequence[int], most: int) -> int:
-        """Up to which k all the parts of the assumption hold."""
+        """Return the largest k up to which all the parts of the assumption hold."""
 
         def holds(k: int) -> bool:
             return all(ring.decide(ring.reduce(gap(k, i))).zero is True for i in parts)
@@ -105,6 +108,7 @@ def _simple(numbers: Numbers) -> TableauOrder | None:
 
     p = count(gap_b, [0], 2 * len(b) + 1)
     eta, zeta = count(gap_c, s, p), count(gap_d, s, p)
+    # Beyond these bounds B(p) alone implies no order p (Butcher 1964): the trees have to decide.
     if p > min(eta + zeta + 1, 2 * eta + 2):
         return None
     gap = gap_b(p + 1, 0)
@@ -117,27 +121,29 @@ class Symplecticity:
     """`holds`: None where it is not decided; `said`: what shows it."""
 
     holds: bool | None
-    said: Prose
+    evidence: Prose
 
 
 def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplecticity:
-    """Whether the method is symplectic for every H in any dimension."""
+    """Decide if the method is symplectic for every H in any dimension."""
     if all(c.holds for c in tableau.area_conditions()):
-        said = read_prose("`b_i a_ij + b_j a_ji = b_i b_j` holds exactly for all i, j")
-        return Symplecticity(True, said)
-    least = float(WRONG) if rounded else 0.0
+        evidence = read_prose("`b_i a_ij + b_j a_ji = b_i b_j` holds exactly for all i, j")
+        return Symplecticity(True, evidence)
+    # Of floats a failing pair counts only where it fails by far more than rounding, so that a
+    # symplectic method is never refuted.
+    threshold = float(WRONG) if rounded else 0.0
     weights = tableau.numbers.tree_weights
     for u, v in _pairs():
         gap = (
-            weights.weight(grafted(u, v)) + weights.weight(grafted(v, u))
+            weights.weight(graft(u, v)) + weights.weight(graft(v, u))
             - tableau.numbers.ring.multiply(weights.weight(u), weights.weight(v))
         )  # fmt: skip
         size = abs(value(tableau.numbers, tableau.numbers.ring.reduce(gap)))
-        if size > least:
-            left = f"{condition_text(grafted(u, v))} + {condition_text(grafted(v, u))}"
+        if size > threshold:
+            left_side = f"{condition_text(graft(u, v))} + {condition_text(graft(v, u))}"
             right = f"({condition_text(u)})({condition_text(v)})"
-            said = prose(Formula(f"{left} = {right}"), " fails by ", Number(f"{size:.3g}"))
-            return Symplecticity(False, said)
+            evidence = prose(Formula(f"{left_side} = {right}"), " fails by ", Number(f"{size:.3g}"))
+            return Symplecticity(False, evidence)
     return Symplecticity(None, prose("no pair of trees that was looked at fails"))
 
 
@@ -151,22 +157,24 @@ def _pairs() -> Iterator[tuple[Tree, Tree]]:
 
 
 def repair(tableau: ImplicitTableau, order: int) -> Prose:
-    """A sentence that names the two entries, their sum kept, and what they would have to be.
+    """Name in a sentence the two entries, their sum kept, and the values that they would have to
+    have.
 
     Empty where no such pair makes it that order, or several do. Of rational coefficients.
     """
     numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
     if not all(x.is_Rational for x in numbers):
         return Prose()
-    found = []
+    repairs = []
     for i in range(tableau.stages):
         for j, k in combinations(range(i), 2):
-            changed = _changed(tableau, i, j, k)
+            changed = _change_entries(tableau, i, j, k)
             if changed is not None and order_of(changed, order).order >= order:
-                found.append((i, j, k, changed))
-    if len(found) != 1:
+                repairs.append((i, j, k, changed))
+    if len(repairs) != 1:
         return Prose()
-    ((i, j, k, changed),) = found
+    # A single repair is likely to be the misprint; of several none is preferred.
+    ((i, j, k, changed),) = repairs
     before, after = tableau.rows[i], changed.rows[i]
     return read_prose(
         f"With `a_{i + 1}{j + 1}`, `a_{i + 1}{k + 1}` = `{after[j]}`, `{after[k]}` in place of "
@@ -174,11 +182,12 @@ def repair(tableau: ImplicitTableau, order: int) -> Prose:
     )
 
 
-def _changed(tableau: ImplicitTableau, i: int, j: int, k: int) -> ImplicitTableau | None:
-    """With a_ij + t and a_ik − t, t such that b·A(c) = 1/6; c stays as it is."""
+def _change_entries(tableau: ImplicitTableau, i: int, j: int, k: int) -> ImplicitTableau | None:
+    """Return the tableau with a_ij + t and a_ik − t, t such that b·A(c) = 1/6; c stays as it is."""
     c = [sum(row, sympy.S.Zero) for row in tableau.rows]
     ac = [sum((a * x for a, x in zip(row, c, strict=True)), sympy.S.Zero) for row in tableau.rows]
     gap = sum((b * x for b, x in zip(tableau.weights, ac, strict=True)), sympy.S.Zero)
+    # b·A(c) is linear in t, with this slope: the row sums and so c do not change.
     slope = tableau.weights[i] * (c[j] - c[k])
     if slope == 0:
         return None
@@ -187,4 +196,4 @@ def _changed(tableau: ImplicitTableau, i: int, j: int, k: int) -> ImplicitTablea
         return None
     rows = [list(row) for row in tableau.rows]
     rows[i][j], rows[i][k] = rows[i][j] + t, rows[i][k] - t
-    return ImplicitTableau.of(rows, tableau.weights)
+    return ImplicitTableau.from_numbers(rows, tableau.weights)

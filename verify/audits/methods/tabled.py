@@ -24,17 +24,18 @@ class FloatTable:
     entry: TableEntry
 
 
-def tabled(
+def table_integrator(
     name: str, kind: str, driven: str, source: str, code: str = "", **keys: Any
 ) -> ReleasedIntegrator:
-    """One table, with the keys of its kind; numbers in lists, of floats or as texts."""
-    said = {key: _texts(value) for key, value in keys.items() if value is not None}
-    entry = kinds.get(kind).Entry.model_validate({"name": name, "kind": kind, **said})
+    """Build the integrator of one table, with the keys of its kind; numbers in lists, of floats or
+    as texts."""
+    texts = {key: _texts(value) for key, value in keys.items() if value is not None}
+    entry = kinds.get(kind).Entry.model_validate({"name": name, "kind": kind, **texts})
     return ReleasedIntegrator(name, driven, source, FloatTable(entry), reproduction=code)
 
 
 def _texts(value: Any) -> Any:
-    """Numbers as texts, within lists and arrays; the rest as it is."""
+    """Return numbers as texts, within lists and arrays; the rest as it is."""
     if isinstance(value, str | bool | int):
         return value
     if isinstance(value, float) or (
@@ -45,16 +46,17 @@ def _texts(value: Any) -> Any:
 
 
 def text(x: float) -> str:
-    """The quotient of a short denominator that rounds to x, but for one unit; else x."""
+    """Return the quotient of a short denominator that rounds to x, but for one unit; else x."""
     near = quotient(x)
     return repr(x) if near is None else str(near)
 
 
 def quotient(x: float, digits: int = 5) -> Fraction | None:
-    """The one of the smallest denominator, of so many digits at most, that rounds to x but for one
-    unit; None where there is none."""
+    """Return the quotient of the smallest denominator, of so many digits at most, that rounds to x
+    but for one unit; None where there is none."""
     exact = Fraction(x)
     for n in range(1, digits + 1):
+        # Short denominators first: of several quotients that round to x the simplest is meant.
         near = exact.limit_denominator(10**n)
         if abs(near - exact) <= _ROUNDING * max(Fraction(1), abs(exact)):
             return near
@@ -62,6 +64,6 @@ def quotient(x: float, digits: int = 5) -> Fraction | None:
 
 
 def full(rows: Iterable[Iterable[float]], stages: int) -> list[list[float]]:
-    """Rows of a lower triangle, all as long as there are stages."""
-    made = [([*map(float, row)] + [0.0] * stages)[:stages] for row in rows]
-    return made[:stages]
+    """Fill the rows of a lower triangle with zeros, to as many entries as there are stages."""
+    padded = [([*map(float, row)] + [0.0] * stages)[:stages] for row in rows]
+    return padded[:stages]

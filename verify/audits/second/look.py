@@ -1,4 +1,4 @@
-"""Whether a second look shows what the first one found; where it does not, nothing is refuted."""
+"""A second look at what the first one refuted; where it does not confirm it, nothing is refuted."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -34,48 +34,56 @@ class Look:
     """`shown`: whether all that was looked at has a lower order than is claimed. `said`: one clause
     of what was seen. `slopes`: of a table's steps."""
 
-    shown: bool
-    said: str
+    confirms: bool
+    sentence: str
     slopes: tuple[Slopes, ...] = ()
 
 
-def looked_at_again(
+def look_again(
     verdict: Verdict, evidence: Prose, severity: str, look: Callable[[], Look | None]
 ) -> tuple[Verdict, Prose]:
-    """UNDECIDED where an order is refuted and a second look does not show it; with what it shows.
-    `look` is called for such an order alone, and returns None where there is no other means."""
-    told = look() if verdict is Verdict.REFUTED and severity in OF_ORDERS else None
-    if told is None:
+    """Return UNDECIDED where an order is refuted and a second look does not show it; with what it
+    shows.
+
+    `look` is called for such an order alone, and returns None where there is no other means.
+    """
+    second = look() if verdict is Verdict.REFUTED and severity in OF_ORDERS else None
+    if second is None:
         return verdict, evidence
-    return verdict if told.shown else Verdict.UNDECIDED, prose(evidence, f"; {told.said}")
+    return verdict if second.confirms else Verdict.UNDECIDED, prose(
+        evidence, f"; {second.sentence}"
+    )
 
 
 def at_claim(entry: TableEntry, kind: str) -> Look | None:
-    """At the order that an entry claims in its claim of that kind; None where it claims none."""
+    """Look at the order that an entry claims in its claim of that kind; None where it claims
+    none."""
     claimed = claimed_of(entry, kind)
     return None if claimed is None else at_table(entry, kind, claimed)
 
 
 def at_table(entry: TableEntry, kind: str, claimed: int, exact: bool = False) -> Look:
-    """At a printed table's claim of that kind: its steps at 60 digits, for two systems.
-    `exact`: its numbers stand for no others, so that steps may be as small as a residue asks."""
+    """Look at a printed table's claim of that kind: its steps at 60 digits, for two systems.
+
+    `exact`: its numbers stand for no others, so that steps may be as small as a residual needs.
+    """
     embedded, timed = kind.startswith("embedded"), kind.startswith(("order in time", "row sums"))
     for first in ("kick", "drift"):
         if kind.endswith(_FIRST.format(first)):
             entry = entry.model_copy(update={"first": first})
     try:
-        found = slopes_of(entry, timed, embedded)
-        if exact and not any(x.below(claimed) for x in found):
-            found = slopes_of(entry, timed, embedded, small=True)
+        slopes = slopes_of(entry, timed, embedded)
+        if exact and not any(x.below(claimed) for x in slopes):
+            slopes = slopes_of(entry, timed, embedded, small=True)
     except TypeError:
         return Look(False, f"steps of a {entry.kind} are not made a second time")
-    orders = [x.order for x in found]
-    shown = all(x.below(claimed) for x in found) and orders != [None, None]
-    return Look(shown, _seen(orders, "steps at 60 digits"), found)
+    orders = [x.order for x in slopes]
+    confirms = all(x.below(claimed) for x in slopes) and orders != [None, None]
+    return Look(confirms, _describe_orders(orders, "steps at 60 digits"), slopes)
 
 
 def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
-    """At a step in floats: its own convergence, and the probe at a second problem if there is
+    """Look at a step in floats: its own convergence, and the probe at a second problem if there is
     one."""
     method: FloatStep = integrator.method
     orders: list[int | None] = []
@@ -84,24 +92,26 @@ def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
         second = integrator.again
         if second is not None:
             orders.append(order_of_step(second.make(), second.exact, second.points))
-            found = finding(second)
-            orders.append(found.convergence_order if found.order_decided else None)
+            second_finding = finding(second)
+            orders.append(
+                second_finding.convergence_order if second_finding.order_decided else None
+            )
     except FAILURES as error:
         return Look(False, f"a second look fails: {type(error).__name__}")
-    shown = all(x is not None and x < claimed for x in orders)
-    return Look(shown, _seen(orders, "its own steps, halved"))
+    confirms = all(x is not None and x < claimed for x in orders)
+    return Look(confirms, _describe_orders(orders, "its own steps, halved"))
 
 
-def _seen(orders: Sequence[int | None], how: str) -> str:
-    known = [f"order {x}" for x in dict.fromkeys(orders) if x is not None]
-    return f"a second look, by {how}, shows {' and '.join(known) or 'no order'}"
+def _describe_orders(orders: Sequence[int | None], how: str) -> str:
+    order_texts = [f"order {x}" for x in dict.fromkeys(orders) if x is not None]
+    return f"a second look, by {how}, shows {' and '.join(order_texts) or 'no order'}"
 
 
 def claimed_of(entry: Any, kind: str) -> int | None:
-    """The order that an entry claims in its claim of that kind."""
+    """Return the order that an entry claims in its claim of that kind."""
     if kind.startswith("embedded"):
-        found: int | None = entry.embedded_order
-        return found
+        order: int | None = entry.embedded_order
+        return order
     return getattr(entry, "order", None)
 
 
@@ -111,15 +121,18 @@ def claimed_of(entry: Any, kind: str) -> int | None:
 def order_of_step(
     step: Map, hamiltonian: Hamiltonian, points: Sequence[tuple[Fraction, ...]]
 ) -> int | None:
-    """From errors of one step against 32 steps of a 32nd, for h = 1/2 … 1/256; None where no whole
-    power is seen above rounding. Raises what the step raises."""
+    """Estimate the order from errors of one step against 32 steps of a 32nd, for h = 1/2 … 1/256;
+    None where no whole power is seen above rounding. Raises what the step raises."""
     degrees, timed = hamiltonian.degrees, hamiltonian.time_dependent
     rows = []
     for h in _SIZES:
+        # The finer steps share every mistake of the map but its truncation: its own limit is what
+        # is compared, so that no exact flow is needed.
         error = max(_error(step, z, h, timed, degrees) for z in _starts(points, degrees))
         if error > _NOISE * 100:
             rows.append((h, error))
     powers = [math.log2(x / y) for (_, x), (_, y) in pairwise(rows)]
+    # From the smallest step sizes up, two neighbouring slopes must agree on a whole power.
     for one, other in reversed([*pairwise(powers)]):
         power = round(other)
         if abs(one - power) <= _WITHIN and abs(other - power) <= _WITHIN:
@@ -129,23 +142,23 @@ def order_of_step(
 
 def _starts(points: Sequence[tuple[Fraction, ...]], degrees: int) -> list[tuple[Any, Any]]:
     if degrees == 1:
-        own = points or ((Fraction(1, 3), Fraction(3, 5)),)
-        return [(float(p), float(q)) for p, q in own]
+        states = points or ((Fraction(1, 3), Fraction(3, 5)),)
+        return [(float(p), float(q)) for p, q in states]
     import numpy as np
 
     return [(np.linspace(0.2, 0.35, degrees), np.linspace(0.3, -0.15, degrees))]
 
 
 def _error(step: Map, z: tuple[Any, Any], h: float, timed: bool, degrees: int) -> float:
-    """Of a step of size h against the same in parts, which are far smaller."""
+    """Return the distance of a step of size h from the same in parts, which are far smaller."""
 
-    def made(z: tuple[Any, Any], t: float, size: float) -> tuple[Any, Any]:
+    def take_step(z: tuple[Any, Any], t: float, size: float) -> tuple[Any, Any]:
         p, q = step(*z, t, size) if timed else step(*z, size)
         return p, q
 
-    one, many = made(z, _TIME, h), z
+    one, end_in_parts = take_step(z, _TIME, h), z
     for k in range(_PARTS):
-        many = made(many, _TIME + k * h / _PARTS, h / _PARTS)
+        end_in_parts = take_step(end_in_parts, _TIME + k * h / _PARTS, h / _PARTS)
     if degrees == 1:
-        return max(abs(float(x) - float(y)) for x, y in zip(one, many, strict=True))
-    return max(float(abs(x - y).max()) for x, y in zip(one, many, strict=True))
+        return max(abs(float(x) - float(y)) for x, y in zip(one, end_in_parts, strict=True))
+    return max(float(abs(x - y).max()) for x, y in zip(one, end_in_parts, strict=True))

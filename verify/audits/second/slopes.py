@@ -37,17 +37,17 @@ Vector = list[Any]
 class System:
     """H = T(p) + b(t) V(q), by T', V' and b."""
 
-    said: str
+    formula: str
     speed: Callable[[Any], Any]
     slope: Callable[[Any], Any]
     b: Callable[[Any], Any]
 
     def kick(self, t: Any, p: Any, q: Any) -> Any:
-        """p' at that time."""
+        """Return p' at that time."""
         return -self.b(t) * self.slope(q)
 
     def drift(self, t: Any, p: Any, q: Any) -> Any:
-        """q' at that time."""
+        """Return q' at that time."""
         return self.speed(p)
 
 
@@ -61,15 +61,15 @@ _QUARTIC = "p²/2 + p⁴/4"
 
 @cache
 def systems(timed: bool, quadratic: bool) -> tuple[System, System]:
-    """A pendulum, and an oscillator of degree 4; with a kinetic energy of degree 4 for methods of
-    any T(p); driven, where a time is judged."""
+    """Return a pendulum, and an oscillator of degree 4; with a kinetic energy of degree 4 for
+    methods of any T(p); driven, where a time is judged."""
     speed = mp.mpf if quadratic else _cubic
     kinetic = _QUADRATIC if quadratic else _QUARTIC
     rate = (lambda t: 1 + mp.cos(2 * t) / 2) if timed else (lambda t: mp.mpf(1))
-    said = "(1 + cos(2t)/2) " if timed else ""
+    factor = "(1 + cos(2t)/2) " if timed else ""
     return (
-        System(f"H = {kinetic} − {said}cos q", speed, mp.sin, rate),
-        System(f"H = {kinetic} + {said}(q²/2 + q⁴/4)", speed, _cubic, rate),
+        System(f"H = {kinetic} − {factor}cos q", speed, mp.sin, rate),
+        System(f"H = {kinetic} + {factor}(q²/2 + q⁴/4)", speed, _cubic, rate),
     )
 
 
@@ -78,16 +78,17 @@ Step = Callable[[System, Any, Any, Any, Any], Vector]  # of t, p, q, h
 
 @dataclass(frozen=True)
 class Slopes:
-    """Of one system: step sizes with the errors of one step, and the order that those show which
-    are above what rounded numbers leave; None where no whole power is seen."""
+    """The convergence on one system: step sizes with the errors of one step, and the order that
+    those show which are above what rounded numbers leave; None where no whole power is seen."""
 
-    said: str
+    formula: str
     rows: tuple[tuple[float, float], ...]
     order: int | None
     last: tuple[float, ...] = ()
 
     def below(self, claimed: int) -> bool:
-        """Whether the order is seen to be lower: a whole power, or slopes that stay below it."""
+        """Return True if the order is seen to be lower: a whole power, or slopes that stay below
+        it."""
         if self.order is not None:
             return self.order < claimed
         return len(self.last) > 1 and max(self.last) < claimed + 1 - _WITHIN
@@ -96,35 +97,42 @@ class Slopes:
 def slopes_of(
     entry: TableEntry, timed: bool, embedded: bool = False, small: bool = False
 ) -> tuple[Slopes, Slopes]:
-    """Of the table as it is printed, at both systems. `embedded`: with its embedded weights;
-    `small`: of steps so small that a small residue of a low order is seen."""
+    """Measure the table as it is printed, at both systems.
+
+    `embedded`: with its embedded weights; `small`: of steps so small that a small residual of a low
+    order is seen.
+    """
     with mp.workdps(_DIGITS):
         step, naming = _step(entry, embedded)
-        units = [float(x) for x in naming.printed.units.values() if x < _SHORT]
+        units = [float(x) for x in naming.printed_numbers.units.values() if x < _SHORT]
         noise = _ABOVE * max(units, default=0.0)  # what they leave in a step, in parts of h
         pair = systems(timed, entry.kind == "nystrom")
-        found = [_of(system, step, noise, _SMALL if small else _SIZES) for system in pair]
-        if not small and any(slopes.order is None for slopes in found):
-            found = [_of(system, step, noise, _LARGE) for system in pair]
-    return found[0], found[1]
+        by_system = [
+            _measure_slopes(system, step, noise, _SMALL if small else _SIZES) for system in pair
+        ]
+        # Where the rounded numbers hide the power, larger steps show it above their error.
+        if not small and any(slopes.order is None for slopes in by_system):
+            by_system = [_measure_slopes(system, step, noise, _LARGE) for system in pair]
+    return by_system[0], by_system[1]
 
 
-def _of(system: System, step: Step, noise: float, sizes: Sequence[Any]) -> Slopes:
+def _measure_slopes(system: System, step: Step, noise: float, sizes: Sequence[Any]) -> Slopes:
     (t, p, q), flow = _solution(system)
     errors = []
     for h in sizes:
-        there = step(system, t, p, q, h)
-        errors.append(max(abs(x - y) for x, y in zip(there, flow(t + h), strict=True)))
+        end = step(system, t, p, q, h)
+        errors.append(max(abs(x - y) for x, y in zip(end, flow(t + h), strict=True)))
     rows = tuple((float(h), float(error)) for h, error in zip(sizes, errors, strict=True))
-    seen = [row for row in rows if row[1] > noise * row[0]]
-    powers = [math.log(x / y) / math.log(h / k) for (h, x), (k, y) in pairwise(seen)]
+    # Rounded digits leave an error of about noise · h in one step: below it no power is seen.
+    clear_rows = [row for row in rows if row[1] > noise * row[0]]
+    powers = [math.log(x / y) / math.log(h / k) for (h, x), (k, y) in pairwise(clear_rows)]
     last = tuple(powers[-2:])
-    return Slopes(system.said, rows, _order(last), last)
+    return Slopes(system.formula, rows, _order(last), last)
 
 
 @cache
 def _solution(system: System) -> tuple[Vector, Callable[[Any], Vector]]:
-    """t, p and q at the start, and the solution from there: the same for all tables."""
+    """Return t, p and q at the start, and the solution from there: the same for all tables."""
     t, p, q = mp.mpf(3) / 4, mp.mpf(1) / 3, mp.mpf(3) / 5
     return [t, p, q], mp.odefun(
         lambda s, z: [system.kick(s, *z), system.drift(s, *z)], t, [p, q], tol=mp.mpf(10) ** -45
@@ -132,7 +140,7 @@ def _solution(system: System) -> tuple[Vector, Callable[[Any], Vector]]:
 
 
 def _order(powers: Sequence[float]) -> int | None:
-    """Of two slopes that agree, at the smallest steps above the noise."""
+    """Return the order of two slopes that agree, at the smallest steps above the noise."""
     if len(powers) < 2 or any(abs(x - round(powers[-1])) > _WITHIN for x in powers):
         return None
     return round(powers[-1]) - 1
@@ -147,7 +155,7 @@ def _step(entry: TableEntry, embedded: bool) -> tuple[Step, Naming]:
 
 
 def _numbers(naming: Naming, texts: Sequence[str]) -> Vector:
-    printed = naming.printed
+    printed = naming.printed_numbers
     exact = (printed.at_print(printed.entry(text)) for text in texts)
     return [mp.mpf(str(sympy.N(x, _DIGITS + 10))) for x in exact]
 
@@ -156,11 +164,11 @@ def _numbers(naming: Naming, texts: Sequence[str]) -> Vector:
 def _(entry: AlternatingEntry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
     kinds, sizes, times = parts_of(entry, naming)
-    own = _numbers(naming, sizes)
-    told = _numbers(naming, [x or "0" for x in times or ["0"] * len(own)])
+    parts = _numbers(naming, sizes)
+    moments = _numbers(naming, [x or "0" for x in times or ["0"] * len(parts)])
 
     def step(system: System, t: Any, p: Any, q: Any, h: Any) -> Vector:
-        for kind, size, moment in zip(kinds, own, told, strict=True):
+        for kind, size, moment in zip(kinds, parts, moments, strict=True):
             if kind == "kick":
                 p += size * h * system.kick(t + moment * h, p, q)
             else:
@@ -188,13 +196,17 @@ def _(entry: composition.Entry, embedded: bool) -> tuple[Step, Naming]:
 
 @_step.register
 def _(entry: BlocksEntry, embedded: bool) -> tuple[Step, Naming]:
-    """z' = f_1 + f_2 + …: of one part all of the field; of two the kicks and the drifts."""
+    """Step z' = f_1 + f_2 + …: of one part all of the field; of two the kicks and the drifts."""
     naming, blocks = Naming(entry.numbers), []
-    for number, given in enumerate(entry.blocks):
-        own = block_of(given, naming, f"_{number}" if number else "", entry.folder)
-        rows = [_numbers(naming, row) for row in own.printed.matrix]
-        weights = own.embedded if embedded and own.embedded else own.printed.weights
-        times = own.printed.times
+    for number, block in enumerate(entry.blocks):
+        named_block = block_of(block, naming, f"_{number}" if number else "", entry.folder)
+        rows = [_numbers(naming, row) for row in named_block.printed.matrix]
+        weights = (
+            named_block.embedded
+            if embedded and named_block.embedded
+            else named_block.printed.weights
+        )
+        times = named_block.printed.times
         nodes = [sum(row) for row in rows] if times is None else _numbers(naming, times)
         blocks.append((rows, _numbers(naming, weights), nodes))
     stages = range(len(blocks[0][1]))
@@ -207,6 +219,8 @@ def _(entry: BlocksEntry, embedded: bool) -> tuple[Step, Naming]:
             return [kick, drift]
 
         slopes = [[fields(k, i, [p, q]) for i in stages] for k in range(len(blocks))]
+        # Explicit stages are exact after as many sweeps as there are stages; implicit ones are
+        # iterated to a fixed point.
         explicit = all(row[j] == 0 for rows, _, _ in blocks
                        for i, row in enumerate(rows) for j in stages if j >= i)  # fmt: skip
         for _ in range(len(stages) if explicit else _TURNS):

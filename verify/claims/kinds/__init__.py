@@ -17,10 +17,10 @@ _FILES = Catalogue(__name__, __path__)
 
 @cache
 def models() -> Mapping[str, type[Claim]]:
-    """The model of each kind, by the kind's name, in alphabetical order."""
-    found = [
+    """Return the model of each kind, by the kind's name, in alphabetical order."""
+    kinds = [
         (kind, model)
         for model in (_FILES.module(file).CLAIM for file in _FILES.names)
         for kind in get_args(model.model_fields["kind"].annotation)
     ]
-    return dict(sorted(found, key=lambda each: each[0]))
+    return dict(sorted(kinds, key=lambda each: each[0]))

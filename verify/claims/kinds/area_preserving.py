@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from verify.claims.findings import Findings
-from verify.claims.orders import as_claimed, judge_vanishing, order_of
+from verify.claims.orders import judge_vanishing, order_of, vanishing_verdict
 from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim
 from verify.proof.every_proof import EveryProof
 from verify.scenes.results.claim import ClaimResult
@@ -18,13 +18,13 @@ class AreaClaim(QuantifiedClaim):
 
     kind: Literal["area_preserving"]
     area_preserving: Annotated[bool, Field(strict=True)]
-    """Whether det J ≡ 1 is claimed, or that it is not so."""
+    """True if det J ≡ 1 is claimed, false if the opposite is."""
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         return judge_vanishing(self, order_of(self, findings, "ΔJ"), self.area_preserving)
 
     def judge_every(self, proof: EveryProof) -> ClaimResult:
-        verdict = as_claimed(proof.area_preserving, self.area_preserving)
+        verdict = vanishing_verdict(proof.area_preserving, self.area_preserving)
         return self.result(verdict, proof.reason, domain=proof.domain)
 
     def why_only_here(self) -> str:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.arithmetic.arb import Ball, rational_ball, shown
+from verify.arithmetic.arb import Ball, format_ball, rational_ball
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
@@ -25,39 +25,40 @@ class BoundedClaim(RunClaim):
     only_here = ""
     kind: Literal["bounded"]
     bound: Annotated[ExactNumber, Field(ge=0)]
-    """What |Λ| is not to pass."""
+    """The bound of |Λ|."""
 
-    def closer(self, scene: Scene) -> Scene | None:
-        """Twice as many digits, where max |Λ| and the bound share all that are known."""
+    def refined_scene(self, scene: Scene) -> Scene | None:
+        """Return the scene with twice as many digits, for values too close to the bound."""
         grid = scene.grid
         if grid is None or grid.digits is None or grid.digits > _MOST_DIGITS // 2:
             return None
-        more = grid.model_copy(update={"digits": 2 * grid.digits})
-        return scene.model_copy(update={"grid": more})
+        finer_grid = grid.model_copy(update={"digits": 2 * grid.digits})
+        return scene.model_copy(update={"grid": finer_grid})
 
     def compare(self, findings: Findings) -> ClaimResult:
         runs = [run for row in self.run_rows(findings) for run in row]
         largest = [QUANTITIES["lambda_max"](run) for run in runs]
+        # Compared exactly as balls: a float would be too coarse near the bound.
         bound = rational_ball(self.bound)
         holds = [sign(bound - x, zero=True) for x in largest]
-        wrong = [i for i, held in enumerate(holds) if held is False]
-        at = wrong[0] if wrong else max(range(len(runs)), key=lambda i: float(largest[i].mid()))
-        run, among = runs[at], ""
+        wrong = [i for i, answer in enumerate(holds) if answer is False]
+        index = wrong[0] if wrong else max(range(len(runs)), key=lambda i: float(largest[i].mid()))
+        run, comparison = runs[index], ""
         if len(runs) > 1:
-            among = f", the greatest of {len(runs)} runs"
-            among = f", the first of {len(wrong)} beyond it" if wrong else among
+            comparison = f", the greatest of {len(runs)} runs"
+            comparison = f", the first of {len(wrong)} beyond it" if wrong else comparison
         evidence = prose(
-            "max |Λ| = ", number(_told(largest[at], bound)), f" over {run.steps} steps of ",
-            Number(run.step_size), " from ", start_of(run), among, "; bound ",
-            Number(text(self.bound)),
+            "max |Λ| = ", number(_format_beside(largest[index], bound)),
+            f" over {run.steps} steps of ", Number(run.step_size), " from ", start_of(run),
+            comparison, "; bound ", Number(text(self.bound)),
         )  # fmt: skip
         return self.result(all_hold(holds), evidence)
 
 
-def _told(x: Ball, bound: Ball) -> str:
-    """x with six digits, or with so many that it is seen to differ from the bound."""
-    texts = ((shown(x, n), shown(bound, n)) for n in (6, 12, 25, 50, 100, _MOST_DIGITS))
-    return next((x for x, other in texts if x != other), shown(x))
+def _format_beside(x: Ball, bound: Ball) -> str:
+    """Format x with six digits, or with as many as show that it differs from the bound."""
+    texts = ((format_ball(x, n), format_ball(bound, n)) for n in (6, 12, 25, 50, 100, _MOST_DIGITS))
+    return next((x for x, other in texts if x != other), format_ball(x))
 
 
 CLAIM = BoundedClaim

@@ -9,7 +9,7 @@ from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.quantified import OF_DELTA_J, OF_LAMBDA, marks_for_scene
 from verify.execution.task import Task
-from verify.prose import Prose, joined, prose
+from verify.prose import Prose, join_prose, prose
 from verify.scenes.observables import CLOSED_FORM
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.run_sections import Grid
@@ -17,6 +17,7 @@ from verify.scenes.scene import Scene
 from verify.studies.kinds.proofs import proof_task
 from verify.verdict import Verdict
 
+# Criteria 1 and 2 are about ΔJ as a function; 3 and 4 may also need numbers of runs.
 _BY_PROOF_ALONE = {1, 2}
 
 
@@ -34,7 +35,7 @@ class CriteriaClaim(RunClaim):
         return CLOSED_FORM
 
     def check_grid(self, name: str, scene: Scene) -> None:
-        """A proof may decide them without a run."""
+        """Accept a scene without a grid, for a proof may decide the criteria without a run."""
 
     def _with_grid(
         self, label: str, scene: Scene, base: Grid | None, runs: Mapping[str, Any]
@@ -49,21 +50,24 @@ class CriteriaClaim(RunClaim):
         yield proof_task(scene, self.scheme)
 
     def judge(self, findings: Findings) -> ClaimResult:
-        """The weakest of the criteria's verdicts."""
+        """Return the weakest of the criteria's verdicts."""
         return self.compare(findings)
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        """What is known of ΔJ, and what follows for Λ."""
-        if found.verdict is not Verdict.PROVED:
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Return the marks of the proof about ΔJ, and for criterion 4 also about Λ."""
+        if result.verdict is not Verdict.PROVED:
             return ()
         about = OF_DELTA_J | OF_LAMBDA if 4 in self.numbers else OF_DELTA_J
         return marks_for_scene(self, findings, about)
 
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene(self.scene)
-        judged = [findings.criterion(scene, self.scheme, n) for n in self.numbers]
-        evidence = joined("; ", (prose(f"criterion {c.number}: ", c.evidence) for c in judged))
-        verdicts = [c.verdict for c in judged]
+        criteria = [findings.criterion(scene, self.scheme, n) for n in self.numbers]
+        evidence = join_prose(
+            "; ", (prose(f"criterion {c.number}: ", c.evidence) for c in criteria)
+        )
+        verdicts = [c.verdict for c in criteria]
+        # The claim on all of them is as strong as the weakest verdict.
         for weak in (Verdict.REFUTED, Verdict.UNDECIDED, Verdict.MEASURED):
             if weak in verdicts:
                 return self.result(weak, evidence)

@@ -1,8 +1,8 @@
 """ΔJ is `formula`: exactly, or up to O(h^up_to).
 
 `delta_j`: printed as ΔJ itself. `mse_summand`: printed inside the square of Eq. 15.
-`lambda_factor`: printed as the factor det J of Eq. 16. Of every H, with the derivatives of H as
-names, up to the first term.
+`lambda_factor`: printed as the factor det J of Eq. 16. A formula for every H has the derivatives of
+H as names, and is checked up to the leading term.
 """
 
 import re
@@ -17,7 +17,7 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import read, symbol
 from verify.algebra.symbols import H_STEP
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps, within
+from verify.claims.formulas import FormulaClaim, condition_text, gaps
 from verify.claims.orders import Order
 from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim, marks_for_hamiltonian
 from verify.errors import NOT_GIVEN, InputError
@@ -26,7 +26,7 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.maps.step_map import grouped
+from verify.schemes.maps.step_map import group_by_powers
 from verify.verdict import Verdict
 
 _NAME = re.compile(r"[A-Za-z]\w*")
@@ -57,22 +57,24 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         return _PRINTED_AS[self.kind]
 
     @property
-    def _against(self) -> str:
-        """What the formula is held against, as it is printed."""
+    def _reference(self) -> str:
+        """The name of the expression with which the printed formula is compared."""
         return "det J" if self.kind == "lambda_factor" else "det J − 1"
 
     def _delta_j(self, formula: sympy.Expr) -> sympy.Expr:
-        """ΔJ as the claim's formula prints it."""
+        """Return the ΔJ that the claim's formula states."""
         return formula - 1 if self.kind == "lambda_factor" else formula
 
     # -- who checked it ---------------------------------------------------------------------------
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        """A certificate tells the first term alone: it says nothing of what is printed beyond."""
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Return the marks of the certificate, if the claim goes no further than it does."""
+        # A certificate covers the leading term alone. It does not check a formula that is claimed
+        # to be exact, or to agree beyond that term.
         if self.up_to is None:
             return ()
         if self.every is not None:
-            return super().checked_by(found, findings)
+            return super().checked_by(result, findings)
         step_map = self.read(findings).step_map  # with the formula's own symbols
         power = leading_of(step_map).power
         if power is None or self.up_to > power + 1:
@@ -86,15 +88,15 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         printed = self._delta_j(formulas["formula"])
         gap = gaps(step_map, [(self._what, printed, step_map.delta_j)], domain)[0]
         if self.up_to is None:
-            holds = f"agrees with {self._against} exactly, for all p, q, h and parameters"
-            evidence = f"{self._what}, as printed, {holds}" + within(domain)
+            holds = f"agrees with {self._reference} exactly, for all p, q, h and parameters"
+            evidence = f"{self._what}, as printed, {holds}" + condition_text(domain)
             return self.from_gaps([gap], evidence, domain)
         wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to, domain)
-        difference = to_text(-grouped(gap.ring, gap.difference))
+        difference = to_text(-group_by_powers(gap.ring, gap.difference))
         evidence = prose(
-            f"{self._what} as printed differs from {self._against} by O(",
+            f"{self._what} as printed differs from {self._reference} by O(",
             Formula(f"h^{self.up_to}"), "): the difference is ", Formula(difference),
-            within(domain),
+            condition_text(domain),
         )  # fmt: skip
         return wrong or self.result(Verdict.PROVED, evidence, domain=domain)
 
@@ -112,54 +114,57 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         _read_every(self.formula, self.id)
 
     def judge_every(self, proof: EveryProof) -> ClaimResult:
-        """Up to the first term, which is what is known of ΔJ for every H."""
+        """Judge up to the leading term, beyond which ΔJ is not known for every H."""
         if proof.area_preserving is not True and (proof.order is None or not proof.leading):
             return self.result(Verdict.UNDECIDED, proof.reason)
         up_to = self.up_to or 0
-        computed, beyond = sympy.S.Zero, up_to
+        leading_term, known_power = sympy.S.Zero, up_to
         if proof.area_preserving is not True and proof.order is not None:
             leading, _ = self._every(proof.leading)
-            computed, beyond = H_STEP**proof.order * leading, proof.order + 1
+            leading_term, known_power = H_STEP**proof.order * leading, proof.order + 1
         formula, domain = self._every(self.formula)
-        difference, domain = self._delta_j(formula) - computed, proof.domain & domain
+        difference, domain = self._delta_j(formula) - leading_term, proof.domain & domain
         names = {s.name for s in difference.free_symbols} | {"p", "q", "h"}
         ring, (x,) = embed([difference], sorted(names))
-        wrong = self.differs_below(self._what, ring, x, min(up_to, beyond), domain)
+        wrong = self.differs_below(self._what, ring, x, min(up_to, known_power), domain)
         if wrong is not None:
             return wrong
-        if up_to > beyond:
+        # Beyond the leading term the printed formula can neither be confirmed nor refuted.
+        if up_to > known_power:
             evidence = prose(
-                f"{self._what}: for every H it is known up to O(", Formula(f"h^{beyond}"),
+                f"{self._what}: for every H it is known up to O(", Formula(f"h^{known_power}"),
                 "), and so far is as printed",
             )  # fmt: skip
             return self.result(Verdict.UNDECIDED, evidence, domain=domain)
-        holds = prose(f"{self._what} is as printed for every H: ", proof.reason, within(domain))
+        holds = prose(
+            f"{self._what} is as printed for every H: ", proof.reason, condition_text(domain)
+        )
         return self.result(Verdict.PROVED, holds, domain=domain)
 
     def _every(self, formula: str) -> tuple[sympy.Expr, Domain]:
         return _normal(*_read_every(formula, self.id), separable=self.of_separable)
 
-    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+    def for_hamiltonian(self, hamiltonian: Hamiltonian) -> Self:
         if self.every is None:
             return self
-        written, _ = _read_every(self.formula, self.id)
-        own = _put_in(written, hamiltonian)
-        return self.model_copy(update={"every": None, "formula": own})
+        expression, _ = _read_every(self.formula, self.id)
+        formula = _substitute(expression, hamiltonian)
+        return self.model_copy(update={"every": None, "formula": formula})
 
 
 # -- formulas made of every H: in h, p, q and its derivatives, such as H_pq or H_11 ----------------
 
 
 def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
-    """The formula of that claim as an expression, and where it is defined.
+    """Parse the claim's formula for every H; return it with the domain where it is defined.
 
-    InputError where it names more than derivatives of H.
+    Raises InputError if it names anything but h, p, q and derivatives of H.
     """
     derivatives = {name for name in _NAME.findall(formula) if _DERIVATIVE.fullmatch(name)}
     key = f"claim {claim}: formula"
     try:
-        found, asked = read(formula, ("p", "q", "h", *derivatives), source=key)
-        return found, Domain.of(asked)
+        expression, requirements = read(formula, ("p", "q", "h", *derivatives), source=key)
+        return expression, Domain.from_requirements(requirements)
     except InputError as error:
         if "unknown name" not in error.problem:
             raise
@@ -168,33 +173,34 @@ def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
 
 
 def _normal(formula: sympy.Expr, domain: Domain, *, separable: bool) -> tuple[sympy.Expr, Domain]:
-    """The same with one name for each derivative; of a separable H the mixed ones are zero."""
-    put = {}
+    """Give each derivative of H a single name; of a separable H the mixed ones are zero."""
+    # ∂²H/∂p∂q has several names; with one name for each, equal formulas have equal normal forms.
+    substitution = {}
     for s, (p_times, q_times) in _derivatives(formula).items():
         zero = separable and p_times and q_times
-        put[s] = sympy.S.Zero if zero else symbol("H_" + "p" * p_times + "q" * q_times)
-    return formula.xreplace(put), domain.replaced(put)
+        substitution[s] = sympy.S.Zero if zero else symbol("H_" + "p" * p_times + "q" * q_times)
+    return formula.xreplace(substitution), domain.substitute(substitution)
 
 
-def _put_in(formula: sympy.Expr, hamiltonian: Hamiltonian) -> str:
-    """The formula's text with the derivatives of this H put in. InputError where it is too long."""
+def _substitute(formula: sympy.Expr, hamiltonian: Hamiltonian) -> str:
+    """Substitute the derivatives of this H into the formula. InputError if it gets too long."""
     p, q = symbol("p"), symbol("q")
-    put = {
+    substitution = {
         s: hamiltonian.exact.diff((p, p_times), (q, q_times))
         for s, (p_times, q_times) in _derivatives(formula).items()
     }
-    return to_text(formula.xreplace(put))
+    return to_text(formula.xreplace(substitution))
 
 
 def _derivatives(formula: sympy.Expr) -> dict[sympy.Symbol, tuple[int, int]]:
-    """The derivatives of H in it, with how often each is taken by p, and by q."""
-    found = {}
+    """Return the derivatives of H in the formula, with their orders in p and in q."""
+    derivatives = {}
     for s in formula.free_symbols:
         if match := _DERIVATIVE.fullmatch(s.name):
             by = match[1]
             digits = (int(by[0]), int(by[1])) if by.isdecimal() else None
-            found[s] = digits or (by.count("p"), by.count("q"))
-    return found
+            derivatives[s] = digits or (by.count("p"), by.count("q"))
+    return derivatives
 
 
 CLAIM = DeltaJClaim

@@ -1,4 +1,4 @@
-"""The map preserves the region's area: exactly, or changes it by this part of it at most."""
+"""The map preserves the region's area exactly, or changes it by at most this part of it."""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
@@ -9,8 +9,8 @@ from pydantic import Field
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
-from verify.claims.regions import HEAD, FlowClaim, Image, within
-from verify.effort import unless_long
+from verify.claims.regions import HEAD, FlowClaim, Image, judge_sizes
+from verify.effort import answer_unless_long
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Formula, Number, Prose, prose
 from verify.scenes.results.claim import ClaimResult
@@ -22,7 +22,7 @@ _LIOUVILLE = Formula("∂(−H_q)/∂p + ∂H_p/∂q = 0")
 
 
 class FlowAreaClaim(FlowClaim):
-    """Exactly by proof; or within so much, by what was measured."""
+    """The area is preserved exactly, by proof, or within a bound, by measurement."""
 
     kind: Literal["flow_area"]
     within: Annotated[ExactNumber, Field(gt=0)] | None = None
@@ -31,19 +31,22 @@ class FlowAreaClaim(FlowClaim):
     def judge(self, findings: Findings) -> ClaimResult:
         images = self.images(findings)
         details = [[*HEAD, "change of area", "its error", "mean of Λ"], *map(_row, images)]
-        known = [image for image in images if image.found.area_change is not None]
+        measured_images = [image for image in images if image.result.area_change is not None]
         scene = findings.scene(self.scene)
         if self.scheme == EXACT_FLOW and conserves_area(scene.exact_hamiltonian()):
-            said = prose(_LIOUVILLE, " identically, so that det ≡ 1; ", _largest(known))
-            return self.result(Verdict.PROVED, said, details)
-        if images and all(image.found.area_preserving for image in images):
-            return self.result(Verdict.PROVED, "det J ≡ 1; " + _largest(known), details)
-        doubtful = [i for i in images if i.found.problem or i.found.agree is False]
-        certain = [image for image in known if image not in doubtful]
+            evidence = prose(
+                _LIOUVILLE, " identically, so that det ≡ 1; ", _largest(measured_images)
+            )
+            return self.result(Verdict.PROVED, evidence, details)
+        if images and all(image.result.area_preserving for image in images):
+            return self.result(Verdict.PROVED, "det J ≡ 1; " + _largest(measured_images), details)
+        # The two measures of area are independent; where they disagree, neither is trusted.
+        doubtful = [i for i in images if i.result.problem or i.result.agree is False]
+        certain = [image for image in measured_images if image not in doubtful]
         ends = [image.change for image in certain]
         refuted = any(low > (self.within or 0) for low, _ in ends)  # one image is enough
-        if not refuted and (doubtful or not known):
-            reasons = (image.found.problem for image in doubtful if image.found.problem)
+        if not refuted and (doubtful or not measured_images):
+            reasons = (image.result.problem for image in doubtful if image.result.problem)
             reason = next(reasons, "the two measures disagree")
             return self.result(Verdict.UNDECIDED, reason, details)
         if self.within is None:
@@ -53,20 +56,20 @@ class FlowAreaClaim(FlowClaim):
             _largest(certain), f", the largest of {len(certain)} changes; allowed here: ",
             Number(text(self.within)),
         )  # fmt: skip
-        return self.result(within(ends, self.within), against, details)
+        return self.result(judge_sizes(ends, self.within), against, details)
 
 
 def conserves_area(hamiltonian: Hamiltonian) -> bool:
-    """Liouville's theorem, checked for this H: its vector field has no divergence."""
+    """Return True if the vector field of H has no divergence (Liouville's theorem)."""
     h, p, q = hamiltonian.expression, symbol("p"), symbol("q")
     divergence = sympy.diff(-sympy.diff(h, q), p) + sympy.diff(sympy.diff(h, p), q)
-    return unless_long(lambda: bool(sympy.expand(divergence) == 0), otherwise=False)
+    return answer_unless_long(lambda: bool(sympy.expand(divergence) == 0), otherwise=False)
 
 
 def _row(image: Image) -> list[str]:
-    found = image.found
-    change = found.area_change or "unknown"
-    return [*image.cells, change, found.probe_error or "unknown", _mean(found)]
+    result = image.result
+    change = result.area_change or "unknown"
+    return [*image.cells, change, result.probe_error or "unknown", _mean(result)]
 
 
 def _mean(image: FlowImage) -> str:
@@ -75,13 +78,13 @@ def _mean(image: FlowImage) -> str:
     return prose(Number(image.mean_lambda), " ± ", Number(image.mean_lambda_error or ""))
 
 
-def _largest(known: Sequence[Image]) -> Prose:
-    if not known:
+def _largest(images: Sequence[Image]) -> Prose:
+    if not images:
         return prose("nothing was measured")
-    image = max(known, key=lambda each: each.change.high)
+    image = max(images, key=lambda each: each.change.high)
     return prose(
-        "the area of the region changes by ", Number(image.found.area_change or ""), " ± ",
-        Number(image.found.probe_error or ""), " of it (", image.place, ")",
+        "the area of the region changes by ", Number(image.result.area_change or ""), " ± ",
+        Number(image.result.probe_error or ""), " of it (", image.place, ")",
     )  # fmt: skip
 
 

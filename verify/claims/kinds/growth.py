@@ -1,9 +1,9 @@
-"""How the greatest |Λ| of [0, t] grows as t goes on to the end of the run.
+"""The growth of the greatest |Λ| of [0, t] up to the end of the run.
 
 It is read from runs to T/8, T/4, T/2 and T: the greatest |Λ| of [0, t] does not decrease in t, and
 each doubling of t multiplies it by some 2^e. The growth is `linear` where every e is within 1/8 of
-1, and `bounded` where every e is within 1/8 of 0; what is neither is UNDECIDED. This is of [0, T],
-and MEASURED at best: what holds for all times is for a proof to say.
+1, and `bounded` where every e is within 1/8 of 0; otherwise the claim is UNDECIDED. The verdict is
+about [0, T], and MEASURED at best: only a proof can cover all times.
 """
 
 from collections.abc import Sequence
@@ -13,13 +13,13 @@ from typing import Literal
 
 import flint
 
-from verify.arithmetic.arb import Ball, fixed, in_reach, rational_ball, shown
+from verify.arithmetic.arb import Ball, format_ball, format_fixed, is_representable, rational_ball
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, NoValueError
 from verify.errors import InputError
-from verify.prose import Formula, Number, joined, number, prose
+from verify.prose import Formula, Number, join_prose, number, prose
 from verify.runs.task import RunTask
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
@@ -42,25 +42,29 @@ class GrowthClaim(RunClaim):
     only_here = ""
     kind: Literal["growth"]
     growth: Literal["bounded", "linear"]
-    """How max |Λ| over [0, t] grows, t = T/8 … T."""
+    """The growth of max |Λ| over [0, t], t = T/8 … T."""
 
     def check_scene(self, scene: Scene) -> None:
         self.tasks(scene)
 
     def tasks(self, scene: Scene) -> list[RunTask]:
-        """The runs to T/8, T/4, T/2 and T. InputError where there are several, or short ones."""
+        """Return the runs to T/8, T/4, T/2 and T.
+
+        Raises InputError if the grid has several runs, or too few steps.
+        """
         grid = scene.grid
         if grid is None or len(grid.step_sizes) > 1 or len(grid.initial_values) > 1:
             raise InputError("growth", scene.name, "speaks of one run; give step_size, q and p")
         whole = grid_task(scene, self.scheme, grid.step_sizes[0], 0)
         if whole.steps < _LEAST_STEPS:
             raise InputError("growth", whole.steps, f"needs {_LEAST_STEPS} steps or more")
+        # Halving by shifts rounds down, so that all four runs have whole numbers of steps.
         halved = [whole.steps >> k for k in range(_DOUBLINGS, -1, -1)]
         return [whole.model_copy(update={"steps": steps}) for steps in halved]
 
     def judge(self, findings: Findings) -> ClaimResult:
-        """MEASURED at best, however rigorous the bounds are: four runs are not all times."""
-        return self.compared(findings)
+        """Judge with MEASURED at best: even with rigorous bounds four runs are not all times."""
+        return self.compare_or_undecided(findings)
 
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene_of(self)
@@ -70,22 +74,25 @@ class GrowthClaim(RunClaim):
             holds = self.growth == "bounded"
             evidence = "ΔJ ≡ 0 is proved: Λ is exactly 0 after every step"
             return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence)
+        # max |Λ| over [0, t] grows like t^e between t and 2t if its ratio is 2^e.
         values = [_largest(run) for run in runs]
         exponents = [_exponent(x, y) for x, y in pairwise(values)]
-        found = (
-            prose(number(shown(value, 4)), " to t = ", Number(_end(run)))
+        maxima = (
+            prose(number(format_ball(value, 4)), " to t = ", Number(_end(run)))
             for value, run in zip(values, runs, strict=True)
         )
-        by = ("unknown" if not in_reach(e) else number(fixed(e, 2)) for e in exponents)
+        by = (
+            "unknown" if not is_representable(e) else number(format_fixed(e, 2)) for e in exponents
+        )
         evidence = prose(
-            "max |Λ| is ", joined(", ", found), ": it grows like ", Formula("t^e"), ", e = ",
-            joined(", ", by),
+            "max |Λ| is ", join_prose(", ", maxima), ": it grows like ", Formula("t^e"), ", e = ",
+            join_prose(", ", by),
         )  # fmt: skip
         return self.result(_judge(self.growth, exponents), evidence)
 
 
 def _is_zero(run: RunResult) -> bool:
-    """Whether Λ is proved to be 0."""
+    """Return True if Λ is proved to be 0."""
     value = run.values.get("lambda_max") if "lambda_max" in run.exact else None
     return value is not None and Fraction(value.value) == Fraction(value.bound) == 0
 
@@ -101,7 +108,7 @@ def _end(run: RunResult) -> str:
 
 
 def _exponent(first: Ball, last: Ball) -> Ball:
-    """e in last = first · 2^e; not finite where one of them may be 0."""
+    """Return e in last = first · 2^e; not finite if one of them may be 0."""
     return (last / first).log() / flint.arb(2).log()
 
 

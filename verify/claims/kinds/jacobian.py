@@ -3,7 +3,7 @@
 from typing import Literal
 
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps, within
+from verify.claims.formulas import FormulaClaim, condition_text, gaps
 from verify.scenes.results.claim import ClaimResult
 
 _NAMES = (("∂p′/∂p", "∂p′/∂q"), ("∂q′/∂p", "∂q′/∂q"))
@@ -24,7 +24,7 @@ class JacobianClaim(FormulaClaim):
         step_map, read, domain = self.read(findings)
         computed = step_map.jacobian
         pairs = [(_NAMES[i][j], read[f"entries.{i}.{j}"], computed[i, j]) for i, j in _CELLS]
-        holds = "all four entries are those of the exact Jacobian" + within(domain)
+        holds = "all four entries are those of the exact Jacobian" + condition_text(domain)
         return self.from_gaps(gaps(step_map, pairs, domain), holds, domain)
 
 

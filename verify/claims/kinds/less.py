@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.arithmetic.arb import in_reach, shown
+from verify.arithmetic.arb import format_ball, is_representable
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, Quantity, all_hold, middle, sign
@@ -28,8 +28,9 @@ class LessClaim(RunClaim):
         one, two = QUANTITIES[self.quantity], QUANTITIES[self.than]
         runs = [run for row in rows for run in row]
         verdicts = [sign(two(run) - one(run)) for run in runs]
-        ratios = [r for r in (one(run) / two(run) for run in runs) if in_reach(r)]
-        largest = shown(max(ratios, key=middle), 2) if ratios else "unknown"
+        # A quotient whose denominator may be 0 has no bound, and is left out of the evidence alone.
+        ratios = [r for r in (one(run) / two(run) for run in runs) if is_representable(r)]
+        largest = format_ball(max(ratios, key=middle), 2) if ratios else "unknown"
         evidence = prose(
             f"{one.label} is at most ", number(largest),
             f" times {two.label} in {len(ratios)} of {len(runs)} runs",

@@ -1,6 +1,6 @@
-"""At `step_size` each quantity is about 10^its exponent: its lg within ½ of it.
+"""Each quantity is about 10^exponent at `step_size`: its lg differs from the exponent by at most ½.
 
-For some initial value of the grid, or for every one.
+This holds for some initial value of the grid, or for every one.
 """
 
 from collections.abc import Sequence
@@ -9,13 +9,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.arithmetic.arb import lg, rational_ball, shown
+from verify.arithmetic.arb import format_ball, lg, rational_ball
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, some_hold, start_of
 from verify.errors import InputError
-from verify.prose import Formula, Prose, joined, number, prose
+from verify.prose import Formula, Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import StepSize
@@ -30,7 +30,7 @@ class MagnitudeClaim(RunClaim):
     exponents: Annotated[dict[Quantity, int], Field(min_length=1)]
     """The power of ten of each quantity."""
     quantifier: Literal["some", "every"]
-    """Of how many of the initial values."""
+    """The number of initial values for which it holds: some, or every one."""
 
     def quantities(self) -> tuple[str, ...]:
         return tuple(self.exponents)
@@ -53,14 +53,21 @@ class MagnitudeClaim(RunClaim):
             run = self.run_at(row, self.step_size)
             values = {name: QUANTITIES[name](run) for name in names}
             off = [abs(lg(values[n]) - self.exponents[n]) for n in names]
+            # "About 10^e" is read as: nearer to 10^e than to any other power of ten.
             near = [sign(rational_ball(Fraction(1, 2)) - x) for x in off]
             holds.append(_every(near))
-            wrong = [n for n, held in zip(names, near, strict=True) if held is False]
-            found = [prose(f"{QUANTITIES[n].label} = ", number(shown(values[n], 2))) for n in wrong]
-            failing.append(prose(start_of(row[0]), ": ", joined(", ", found)))
-            details.append([start_of(row[0]), *(shown(values[n], 4) for n in names)])
-        yes = [start_of(row[0]) for row, held in zip(rows, holds, strict=True) if held is True]
-        no = [said for said, held in zip(failing, holds, strict=True) if held is False]
+            wrong = [n for n, answer in zip(names, near, strict=True) if answer is False]
+            parts = [
+                prose(f"{QUANTITIES[n].label} = ", number(format_ball(values[n], 2))) for n in wrong
+            ]
+            failing.append(prose(start_of(row[0]), ": ", join_prose(", ", parts)))
+            details.append([start_of(row[0]), *(format_ball(values[n], 4) for n in names)])
+        yes = [start_of(row[0]) for row, answer in zip(rows, holds, strict=True) if answer is True]
+        no = [
+            description
+            for description, answer in zip(failing, holds, strict=True)
+            if answer is False
+        ]
         evidence = prose("holds for ", _list(yes), "; does not hold for ", _list(no))
         decide = some_hold if self.quantifier == "some" else all_hold
         return self.result(decide(holds), evidence, details)
@@ -71,8 +78,8 @@ def _every(answers: Sequence[bool | None]) -> bool | None:
 
 
 def _list(names: Sequence[Prose]) -> Prose:
-    shown = joined("; ", (prose("(", name, ")") for name in names))
-    return shown or prose("none of the initial values")
+    text = join_prose("; ", (prose("(", name, ")") for name in names))
+    return text or prose("none of the initial values")
 
 
 CLAIM = MagnitudeClaim

@@ -4,7 +4,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, Literal
 
-from verify.arithmetic.arb import shown
+from verify.arithmetic.arb import format_ball
 from verify.claims.findings import Findings
 from verify.claims.on_runs import QuantityClaim
 from verify.claims.runs import QUANTITIES, all_hold, sign, start_of, table_of
@@ -19,7 +19,7 @@ class MonotoneClaim(QuantityClaim):
     only_here = ""
     kind: Literal["monotone"]
     direction: Literal["increases", "decreases"]
-    """Which way it goes as the step size increases."""
+    """The direction of the quantity as the step size increases."""
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
@@ -30,11 +30,13 @@ class MonotoneClaim(QuantityClaim):
         for one, two in (pair for row in rows for pair in pairwise(row)):
             gap = way * (quantity(two) - quantity(one))
             verdicts.append(sign(gap))
+            # Only a certain decrease is shown as a counterexample; overlapping balls are not.
             if gap < 0:
                 counterexamples.append(prose(
                     start_of(one), ": from h = ", Number(one.step_size), " to ",
-                    Number(two.step_size), f", {label} goes from ", number(shown(quantity(one), 4)),
-                    " to ", number(shown(quantity(two), 4)),
+                    Number(two.step_size), f", {label} goes from ",
+                    number(format_ball(quantity(one), 4)), " to ",
+                    number(format_ball(quantity(two), 4)),
                 ))  # fmt: skip
         total = f"{len(verdicts)} neighbouring pairs"
         evidence = prose(f"{label} {self.direction} between all {total} of step sizes")
@@ -45,7 +47,7 @@ class MonotoneClaim(QuantityClaim):
         return self.result(all_hold(verdicts), evidence, table_of(rows, self.quantity))
 
     def drawn_runs(self, step_size: Fraction, steps: int) -> dict[str, Any]:
-        """Two step sizes over one time, which it compares."""
+        """Return the keys of two runs over one time, whose step sizes it compares."""
         return {"step_sizes": (step_size / 2, step_size), "time": steps * step_size}
 
 

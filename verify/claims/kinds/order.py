@@ -1,4 +1,4 @@
-"""`defect_order` by its old name, which others take for a method's order: each says what it is.
+"""The old name of `defect_order`, which some take for a method's order; each result warns of that.
 
 In n degrees of freedom it is the order of det J − 1, and not of S.
 """
@@ -27,9 +27,9 @@ class OrderClaim(OrderedClaim):
     order: Order
     """The first power of h in ΔJ; better written as a `defect_order`."""
 
-    def judge_known(self, known: ProvedOrder) -> ClaimResult:
-        found = super().judge_known(known)
-        return found.model_copy(update={"evidence": prose(found.evidence, "; ", AMBIGUOUS)})
+    def judge_proved(self, proved_order: ProvedOrder) -> ClaimResult:
+        result = super().judge_proved(proved_order)
+        return result.model_copy(update={"evidence": prose(result.evidence, "; ", AMBIGUOUS)})
 
 
 CLAIM = OrderClaim

@@ -1,11 +1,11 @@
-"""At each step size the quantity varies over the initial values by this factor at most."""
+"""The quantity varies over the initial values by at most this factor at each step size."""
 
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.arithmetic.arb import bounds, in_reach, shown
+from verify.arithmetic.arb import bounds, format_ball, is_representable
 from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import QuantityClaim
@@ -16,7 +16,7 @@ from verify.scenes.values import Number as ExactNumber
 
 
 class SpreadClaim(QuantityClaim):
-    """How far values from several initial values lie apart."""
+    """The range of a quantity over the initial values."""
 
     only_here = "a spread is over the initial values of its own scene"
     kind: Literal["spread"]
@@ -30,20 +30,33 @@ class SpreadClaim(QuantityClaim):
         worst = Fraction(0)
         for column in zip(*rows, strict=True):
             values = [quantity(run) for run in column]
-            ends = [bounds(v) if in_reach(v) else None for v in values]
-            known = [e for e in ends if e is not None and e[0] > 0]
-            if len(known) < len(values):
+            ends = [bounds(v) if is_representable(v) else None for v in values]
+            positive_ends = [e for e in ends if e is not None and e[0] > 0]
+            # A quotient of a value that may be 0 has no bound.
+            if len(positive_ends) < len(values):
                 verdicts.append(None)
                 details.append([column[0].step_size, "unknown", "unknown", "unknown"])
                 continue
-            # The factor is surely reached, and surely not passed, whatever the values are inside.
-            reached = max(low for low, _ in known) / min(high for _, high in known)
-            passed = max(high for _, high in known) / min(low for low, _ in known)
-            within = passed <= self.factor
-            verdicts.append(None if not within and reached <= self.factor else within)
+            # Whatever the values in their balls are, the factor is at least `least_factor` and at
+            # most `greatest_factor`.
+            least_factor = max(low for low, _ in positive_ends) / min(
+                high for _, high in positive_ends
+            )
+            greatest_factor = max(high for _, high in positive_ends) / min(
+                low for low, _ in positive_ends
+            )
+            holds = greatest_factor <= self.factor
+            verdicts.append(None if not holds and least_factor <= self.factor else holds)
             low, high = min(values, key=middle), max(values, key=middle)
-            details.append([column[0].step_size, shown(low), shown(high), shown(high / low, 3)])
-            worst = max(worst, reached)
+            details.append(
+                [
+                    column[0].step_size,
+                    format_ball(low),
+                    format_ball(high),
+                    format_ball(high / low, 3),
+                ]
+            )
+            worst = max(worst, least_factor)
         evidence = prose(
             f"{quantity.label} varies over the initial values by a factor of up to ",
             Number(decimal(worst, 2)), " at one step size (allowed here: ",

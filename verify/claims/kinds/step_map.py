@@ -4,8 +4,8 @@ from typing import Literal
 
 from verify.algebra.formula import symbol
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps, within
-from verify.effort import limited
+from verify.claims.formulas import FormulaClaim, condition_text, gaps
+from verify.effort import limit_effort
 from verify.proof.order import convergence_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
@@ -25,19 +25,19 @@ class StepMapClaim(FormulaClaim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         step_map, read, domain = self.read(findings)
-        with limited("q_next", self.q_next, "to put p_next into it"):
+        with limit_effort("q_next", self.q_next, "to put p_next into it"):
             q_next = read["q_next"].xreplace({symbol("p_next"): read["p_next"]})
         pairs = [("p′", read["p_next"], step_map.p_next), ("q′", q_next, step_map.q_next)]
-        found = gaps(step_map, pairs, domain)
-        if any(gap.decision.zero is not True for gap in found):
-            return self.from_gaps(found, "", domain)
+        differences = gaps(step_map, pairs, domain)
+        if any(gap.decision.zero is not True for gap in differences):
+            return self.from_gaps(differences, "", domain)
         order = convergence_of(step_map).order
         holds = prose(
             f"p′ and q′ are those of {self.scheme}, term by term, and agree with the exact flow up "
             "to ", "every order looked at" if order is None else Formula(f"h^{order}"),
-            within(domain),
+            condition_text(domain),
         )  # fmt: skip
-        return self.from_gaps(found, holds, domain)
+        return self.from_gaps(differences, holds, domain)
 
 
 CLAIM = StepMapClaim

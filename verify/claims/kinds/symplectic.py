@@ -18,13 +18,13 @@ class SymplecticClaim(Claim):
 
     kind: Literal["symplectic"]
     symplectic: Annotated[bool, Field(strict=True)]
-    """Whether S ≡ 0 is claimed, or that it is not so."""
+    """True if S ≡ 0 is claimed, false if the opposite is."""
 
     def judge(self, findings: Findings) -> ClaimResult:
-        """By the proof for the scene's H."""
+        """Judge by the proof for the scene's H."""
         return judge_vanishing(self, order_of(self, findings, "S"), self.symplectic)
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
         return marks_for_scene(self, findings, OF_S)
 
 

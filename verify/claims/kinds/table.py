@@ -7,14 +7,14 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
-from verify.arithmetic.arb import Ball, in_reach, lg, rational_ball
+from verify.arithmetic.arb import Ball, is_representable, lg, rational_ball
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.printed import Row, cell, holds, places, rounds_to, short
 from verify.claims.runs import QUANTITIES, all_hold, middle, start_of
 from verify.errors import NOT_GIVEN, InputError
-from verify.prose import Formula, Prose, joined, number, prose
+from verify.prose import Formula, Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -35,7 +35,7 @@ class TableClaim(RunClaim):
 
     kind: Literal["table"]
     quantity: Literal["lg_mse", "mse", "lambda", "lg_abs_lambda"] = "lg_mse"
-    """What is printed."""
+    """The printed quantity."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
     """The step sizes, in the order of the values."""
     printed: Row | None = None
@@ -74,17 +74,17 @@ class TableClaim(RunClaim):
         verdicts, values, details = self.entries(rows)
         every = [verdict for row in verdicts for verdict in row]
         if False not in every:
-            evidence = self.seen(values) + ", as printed"
+            evidence = self.describe_range(values) + ", as printed"
             return self.result(all_hold(every), evidence, details)
         grid = findings.scene(self.scene).grid
         evidence = prose(
-            self._wrong(verdicts), ": ", self.seen(values),
-            self._named(rows[0], grid.time if grid else None),
+            self._describe_wrong(verdicts), ": ", self.describe_range(values),
+            self._describe_identities(rows[0], grid.time if grid else None),
         )  # fmt: skip
         return self.result(Verdict.REFUTED, evidence, details)
 
     def entries(self, rows: Sequence[Sequence[RunResult]]) -> Entries:
-        """What holds of the printed values, a row an initial value, with what was computed."""
+        """Return the verdicts on the printed values, a row per initial value, and the values."""
         printed_rows = self.rows or (self.printed or (),) * len(rows)
         if len(printed_rows) != len(rows):
             raise InputError(f"claim {self.id}: rows", len(printed_rows), f"give {len(rows)} rows")
@@ -98,13 +98,13 @@ class TableClaim(RunClaim):
             verdicts.append([*map(holds, runs, repeat(self.quantity), printed)])
             if self.rows is not None:
                 details.append([prose("printed, ", start_of(row[0])), *printed])
-            own = map(cell, runs, repeat(self.quantity), map(places, printed))
-            details.append([start_of(row[0]), *own])
+            cells = map(cell, runs, repeat(self.quantity), map(places, printed))
+            details.append([start_of(row[0]), *cells])
             values += [QUANTITIES[self.quantity](run) for run in runs]
         return Entries(verdicts, values, details)
 
-    def _wrong(self, verdicts: Sequence[Sequence[bool | None]]) -> str:
-        """How many of the entries, which are as many as are printed, are wrong."""
+    def _describe_wrong(self, verdicts: Sequence[Sequence[bool | None]]) -> str:
+        """Describe how many of the printed entries are wrong."""
         if self.printed is None:
             every = [verdict for row in verdicts for verdict in row]
             return f"{every.count(False)} of {len(every)} entries are wrong"
@@ -116,47 +116,49 @@ class TableClaim(RunClaim):
         of_each = " from each of the initial values" if several else ""
         return f"{wrong} of the {len(columns)} printed values are not the {label}{of_each}"
 
-    def seen(self, values: Sequence[Ball]) -> Prose:
+    def describe_range(self, values: Sequence[Ball]) -> Prose:
         label = QUANTITIES[self.quantity].label
-        known = sorted((v for v in values if in_reach(v)), key=middle)
-        if not known:
+        finite = sorted((v for v in values if is_representable(v)), key=middle)
+        if not finite:
             return prose(f"no computed {label} is known")
-        low, high = (number(short(v, self.quantity)) for v in (known[0], known[-1]))
+        low, high = (number(short(v, self.quantity)) for v in (finite[0], finite[-1]))
         return prose(f"computed {label} lies between ", low, " and ", high)
 
-    def _named(self, row: Sequence[RunResult], time: Fraction | None) -> Prose:
-        """What a wrong row is, where it is the logarithm of a product."""
+    def _describe_identities(self, row: Sequence[RunResult], time: Fraction | None) -> Prose:
+        """Identify a wrong row as the logarithm of a product, where it is one."""
         if self.quantity != "lg_mse" or self.printed is None:
             return prose("")
         runs = [self.run_at(row, h) for h in self.step_sizes]
         names = [Formula(f"lg({_monomial(e)})") for e in _identities(runs, self.printed, time)]
         if not names:
             return prose("")
-        return prose("; the printed row is ", joined(" = ", names), " to all its digits")
+        return prose("; the printed row is ", join_prose(" = ", names), " to all its digits")
 
 
 def _identities(
     runs: Sequence[RunResult], printed: Sequence[str], time: Fraction | None
 ) -> list[tuple[int, int, int]]:
-    """Products hᵃ Nᵇ Tᶜ whose lg is the printed row to all its digits, simplest first.
+    """Return the products hᵃ Nᵇ Tᶜ whose lg is the printed row to all digits, simplest first.
 
-    Looked for among small exponents. As N h = T (up to a step), one of a, b, c can be 0.
+    Only small exponents are tried. As N h = T (up to a step), one of a, b, c can be taken as 0.
     """
-    found = []
+    products = []
     for exponents in product(range(-6, 7), range(-3, 4), range(-3, 4)):
+        # As N h = T, a product with three non-zero exponents equals one with two.
         if 0 not in exponents or not any(exponents):
             continue
         if all(
             rounds_to(lg(_power(run, time, exponents)), each) is True
             for run, each in zip(runs, printed, strict=True)
         ):
-            found.append(exponents)
-    return sorted(found, key=lambda each: (sum(map(abs, each)), each))
+            products.append(exponents)
+    return sorted(products, key=lambda each: (sum(map(abs, each)), each))
 
 
 def _power(run: RunResult, time: Fraction | None, exponents: tuple[int, int, int]) -> Ball:
     a, b, c = exponents
     h, steps = Fraction(run.step_size), Fraction(run.steps)
+    # The length of the run is T as printed; N h differs from it by up to one step.
     length = h * steps if time is None else time
     return rational_ball(h**a * steps**b * length**c)
 

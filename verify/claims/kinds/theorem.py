@@ -1,4 +1,4 @@
-"""What a paper says in words, judged by the function of that `name` in `verify.papers`."""
+"""A statement in words, judged by the function of that `name` in `verify.papers`."""
 
 from collections.abc import Iterable
 from typing import Literal, Self
@@ -7,12 +7,12 @@ from pydantic import model_validator
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.errors import unknown
+from verify.errors import unknown_name
 from verify.execution.task import Task
 from verify.papers import check_theorem, names
 from verify.papers.argument import Argument
 from verify.papers.task import TheoremTask
-from verify.prose import joined
+from verify.prose import join_prose
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -30,7 +30,7 @@ class TheoremClaim(Claim):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if self.name not in names():
-            raise unknown("name", self.name, names())
+            raise unknown_name("name", self.name, names())
         return self
 
     def tasks_without_scene(self) -> Iterable[Task]:
@@ -41,12 +41,12 @@ class TheoremClaim(Claim):
         return TheoremTask(name=self.name)
 
     def judge(self, findings: Findings) -> ClaimResult:
-        known = findings.results.get(self._task.key)
-        found = known if isinstance(known, Argument) else check_theorem(self.name)
-        result = self.result(found.verdict, found.evidence, found.details, found.proof)
-        own = {name: getattr(found, name) for name in ("checked_by", "given", "steps")}
-        own["remark"] = joined(" ", [*filter(None, (found.remark, result.remark))])
-        return result.model_copy(update=own)
+        stored = findings.results.get(self._task.key)
+        argument = stored if isinstance(stored, Argument) else check_theorem(self.name)
+        result = self.result(argument.verdict, argument.evidence, argument.details, argument.proof)
+        update = {name: getattr(argument, name) for name in ("checked_by", "given", "steps")}
+        update["remark"] = join_prose(" ", [*filter(None, (argument.remark, result.remark))])
+        return result.model_copy(update=update)
 
 
 CLAIM = TheoremClaim

@@ -43,15 +43,15 @@ class ValueClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         (quantity,), (printed,) = self.quantities(), self.printed_texts()
-        (run, *more), *others = self.run_rows(findings)
-        if more or others:
+        (run, *other_runs), *others = self.run_rows(findings)
+        if other_runs or others:
             raise InputError(
                 f"claim {self.id}", NOT_GIVEN, "speaks of one run; give step_size, q and p"
             )
         rounds = holds(run, quantity, printed)
-        known = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
+        digits = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
         evidence = prose(
-            f"{QUANTITIES[quantity].label} = ", number(known), f", {_SAYS[rounds]} ",
+            f"{QUANTITIES[quantity].label} = ", number(digits), f", {_SAYS[rounds]} ",
             Number(printed), f", in {run.steps} steps",
         )  # fmt: skip
         return self.result(all_hold([rounds]), evidence)

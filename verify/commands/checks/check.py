@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails, print_tally
-from verify.commands.shared.answer import Answer, picked
+from verify.commands.checks.failing import allow_undecided_option, is_failure, print_tally
+from verify.commands.shared.answer import Answer, pick
 from verify.commands.shared.input import CLAIMS, paper_folder
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 
@@ -72,31 +72,31 @@ def check(
     prepared = prepare(load_claims(path), only)
     for warning in prepared.file.warnings(prepared.claims):
         click.echo(f"verify: {warning}", err=True)
-    with kept_tasks(prepared.plan.tasks, keep) as (store, done):
-        found = prepared.run(store, where=where, done=done)
-    statements = prepared.statements(found)
+    with kept_tasks(prepared.plan.tasks, keep) as (store, on_result):
+        results = prepared.run(store, where=where, done=on_result)
+    statements = prepared.statements(results)
     return Answer(
         lambda: {
-            "claims": [picked(claim, *_KEYS, *_OF_READINGS) for claim in found],
-            "statements": [picked(each, *_OF_STATEMENTS) for each in statements],
+            "claims": [pick(claim, *_KEYS, *_OF_READINGS) for claim in results],
+            "statements": [pick(each, *_OF_STATEMENTS) for each in statements],
         },
-        lambda: _print(found, statements),
-        failed=fails((claim.verdict for claim in found), allow_undecided=allow_undecided),
+        lambda: _print(results, statements),
+        failed=is_failure((claim.verdict for claim in results), allow_undecided=allow_undecided),
     )
 
 
-def _print(found: "list[ClaimResult]", statements: "Sequence[StatementResult]") -> None:
-    from verify.scenes.results.statement import counted
+def _print(results: "list[ClaimResult]", statements: "Sequence[StatementResult]") -> None:
+    from verify.scenes.results.statement import describe_counts
 
-    width = max(len(claim.id) for claim in found)
-    for claim in found:
+    width = max(len(claim.id) for claim in results)
+    for claim in results:
         source = f"{claim.source}: " if claim.source else ""
         click.echo(f"{claim.verdict:9}  {claim.id:{width}}  {source}{claim.evidence}")
-    print_tally(claim.verdict for claim in found)
+    print_tally(claim.verdict for claim in results)
     if statements:
-        click.echo(counted(statements, [c for c in found if _counts(c, statements)]))
+        click.echo(describe_counts(statements, [c for c in results if _is_counted(c, statements)]))
 
 
-def _counts(claim: "ClaimResult", statements: "Sequence[StatementResult]") -> bool:
-    """Whether it is a claim of ours, or a reading of one of these statements."""
+def _is_counted(claim: "ClaimResult", statements: "Sequence[StatementResult]") -> bool:
+    """Return True for a claim of ours, and for a reading of one of these statements."""
     return not claim.statement_id or claim.statement_id in {each.id for each in statements}

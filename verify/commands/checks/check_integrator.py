@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails
+from verify.commands.checks.failing import allow_undecided_option, is_failure
 from verify.commands.checks.looking import (
     looking_options,
     places_json,
@@ -15,7 +15,7 @@ from verify.commands.checks.looking import (
     step_size_option,
 )
 from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.input import time_limit_option, with_hamiltonian
 from verify.commands.shared.output import cut
 from verify.commands.shared.progress import clock
@@ -106,16 +106,17 @@ def check_integrator(
     request = request_from(exact.coordinates, **looking)
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
-    called = command or target or ""
+    target_name = command or target or ""
     callee = _callee(target, command, number_type, arguments, exact, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
-    with clock(called):
+    with clock(target_name):
         finding = check(callee, exact, claims, request)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: _json(exact, called, finding, seconds),
-        lambda: _print(exact, called, finding),
-        failed=fails([finding.verdict], allow_undecided=allow_undecided or claims == Claims()),
+        lambda: _json(exact, target_name, finding, seconds),
+        lambda: _print(exact, target_name, finding),
+        # Without a claim there is nothing to leave undecided: only a refutation fails.
+        failed=is_failure([finding.verdict], allow_undecided=allow_undecided or claims == Claims()),
     )
 
 
@@ -127,8 +128,8 @@ def _callee(
     exact: "Hamiltonian",
     time_limit: float,
 ) -> "Callee":
-    """The step, as far as it is understood before it is called."""
-    from verify.integrators.foreign.called import is_library, of_command, of_library
+    """Return the step as a callee; nothing of it is called yet."""
+    from verify.integrators.foreign.called import is_library, step_of_command, step_of_library
     from verify.integrators.user_code.loading import callee_from, foreign_callee, load
     from verify.integrators.user_code.number_type import DOUBLE, type_of
 
@@ -140,9 +141,9 @@ def _callee(
     if foreign and arguments is not None:
         raise InputError("--arguments", arguments, "goes with a Python function")
     if command is not None:
-        return foreign_callee(of_command(command, kind, time_limit, exact.degrees))
+        return foreign_callee(step_of_command(command, kind, time_limit, exact.degrees))
     if foreign:
-        return foreign_callee(of_library(target or "", exact.degrees, kind, time_limit))
+        return foreign_callee(step_of_library(target or "", exact.degrees, kind, time_limit))
     if kind is not DOUBLE:
         raise InputError("--type", number_type, "goes with LIB.so:SYMBOL or --command")
     return callee_from(
@@ -155,27 +156,28 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
-    proof, example, of_form = finding.proof, finding.counterexample, _of_form(finding)
-    potential = None if of_form else potential_of_finding(finding)
+    proof, example, form_proof = finding.proof, finding.counterexample, _proof_of_form(finding)
+    potential = None if form_proof else potential_of_finding(finding)
     witness = proof.witness if proof and finding.symplectic is not True else {}
+    # In n degrees of freedom a measured counterexample stands for the witness of a proof.
     if not witness and example is not None and finding.degrees > 1:
         witness = example.z
     against = finding.against
     return {
-        **picked(finding, "verdict", "reason"),
+        **pick(finding, "verdict", "reason"),
         **exact.texts,
         "degrees": finding.degrees,
         "integrator": target,
         **show.order_json(finding.order),
-        **picked(finding, "how", "leading", "delta_j", "symplectic", "area_preserving"),
-        "volume_order": of_form.volume_order if of_form else None,
+        **pick(finding, "how", "leading", "delta_j", "symplectic", "area_preserving"),
+        "volume_order": form_proof.volume_order if form_proof else None,
         "convergence_order": finding.convergence_order,
         "convergence_order_known": finding.order_decided,
         "entry": finding.entry,
         "witness": show.point_json(witness),
-        "value": of_form.enclosure if of_form else example.found if example else "",
-        "telescopes": of_form.telescopes if of_form else potential and potential.holds,
-        "potential": (of_form.potential or None) if of_form else potential and potential.text,
+        "value": form_proof.enclosure if form_proof else example.found if example else "",
+        "telescopes": form_proof.telescopes if form_proof else potential and potential.holds,
+        "potential": (form_proof.potential or None) if form_proof else potential and potential.text,
         "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
@@ -183,16 +185,16 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
             **show.point_json(example.z),
             **({} if example.h is None else {"h": text(example.h)}),
             **({} if example.t is None else {"t": text(example.t)}),
-            **picked(example, "quantity", "found", "expected"),
+            **pick(example, "quantity", "found", "expected"),
         },
         "places": places_json(exact.coordinates, finding.places),
-        **picked(finding, "domain", "faults", "notes"),
+        **pick(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 
 
-def _of_form(finding: "Finding") -> "Proof | None":
-    """Its proof, where that is one of S."""
+def _proof_of_form(finding: "Finding") -> "Proof | None":
+    """Return the finding's proof if it is one of S, in n degrees of freedom."""
     return finding.proof if finding.proof and not finding.proof.planar else None
 
 
@@ -201,10 +203,10 @@ def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
 
     from verify.integrators.results import potential_of_finding
 
-    proof, of_form, degrees = finding.proof, _of_form(finding), finding.degrees
-    if of_form is not None:
-        shown = replace(of_form, verdict=finding.verdict, reason=finding.reason)
-        show.print_symplectic(exact.texts, target, shown)
+    proof, form_proof, degrees = finding.proof, _proof_of_form(finding), finding.degrees
+    if form_proof is not None:
+        proof_view = replace(form_proof, verdict=finding.verdict, reason=finding.reason)
+        show.print_symplectic(exact.texts, target, proof_view)
     elif proof is not None and finding.verdict is proof.verdict:
         show.print_proof(exact, target, proof, potential_of_finding(finding))
     else:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails
+from verify.commands.checks.failing import allow_undecided_option, is_failure
 from verify.commands.checks.looking import (
     looking_options,
     places_json,
@@ -13,7 +13,7 @@ from verify.commands.checks.looking import (
     print_notes,
     request_from,
 )
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, pick
 from verify.commands.shared.input import time_limit_option, values_of
 from verify.commands.shared.progress import clock
 from verify.commands.shared.proofs import point_json
@@ -86,16 +86,16 @@ def check_map(
     return Answer(
         lambda: _json(target, names, finding, seconds),
         lambda: _print(target, finding),
-        failed=fails([finding.verdict], allow_undecided=allow_undecided),
+        failed=is_failure([finding.verdict], allow_undecided=allow_undecided),
     )
 
 
 def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str) -> dict[str, Any]:
     example = finding.counterexample
     return {
-        **picked(finding, "verdict", "reason"),
+        **pick(finding, "verdict", "reason"),
         "map": target,
-        **picked(finding, "degrees", "how", "symplectic", "area_preserving"),
+        **pick(finding, "degrees", "how", "symplectic", "area_preserving"),
         "counterexample": example and {
             **point_json(example.z),
             "entry": finding.entry,
@@ -104,7 +104,7 @@ def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str)
         "defect_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "places": places_json(names, finding.places),
-        **picked(finding, "domain", "faults", "notes"),
+        **pick(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 

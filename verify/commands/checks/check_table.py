@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails, print_tally
-from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.checks.failing import allow_undecided_option, is_failure, print_tally
+from verify.commands.shared.answer import Answer, answering, pick
 
 if TYPE_CHECKING:
     from verify.integrators.tables.check import Judgement
@@ -46,46 +46,48 @@ def check_table(tables: Path, allow_undecided: bool) -> Answer:
     """
     from verify.integrators.tables.check import check_table as check
 
-    begun = time.perf_counter()
-    found = check(tables)
-    seconds = f"{time.perf_counter() - begun:.6f}"
+    start = time.perf_counter()
+    judgements = check(tables)
+    seconds = f"{time.perf_counter() - start:.6f}"
     return Answer(
-        lambda: {"claims": [_json(each) for each in found], "seconds": seconds},
-        lambda: _print(found),
-        failed=fails((each.claim.verdict for each in found), allow_undecided=allow_undecided),
+        lambda: {"claims": [_json(each) for each in judgements], "seconds": seconds},
+        lambda: _print(judgements),
+        failed=is_failure(
+            (each.claim.verdict for each in judgements), allow_undecided=allow_undecided
+        ),
     )
 
 
-def _json(found: "Judgement") -> dict[str, Any]:
-    claim = found.claim
+def _json(judgement: "Judgement") -> dict[str, Any]:
+    claim = judgement.claim
     return {
-        **picked(found, "id", "table", "line"),
-        **picked(claim, "statement", "verdict", "evidence", "severity", "nearest"),
-        "cost": claim.cost and _cost(claim.cost),
+        **pick(judgement, "id", "table", "line"),
+        **pick(claim, "statement", "verdict", "evidence", "severity", "nearest"),
+        "cost": claim.cost and _cost_json(claim.cost),
         "details": claim.details,
     }
 
 
-def _cost(cost: "Cost") -> dict[str, Any]:
-    sizes = picked(cost, "ulps", "error_constant", "nearest_error_constant", "below")
+def _cost_json(cost: "Cost") -> dict[str, Any]:
+    sizes = pick(cost, "ulps", "error_constant", "nearest_error_constant", "below")
     return {
-        **picked(cost, "double", "order", "claimed"),
+        **pick(cost, "double", "order", "claimed"),
         **{name: None if x is None else f"{x:.3g}" for name, x in sizes.items()},
-        "said": cost.said,
+        "said": cost.sentence,
     }
 
 
-def _print(found: "list[Judgement]") -> None:
-    width = max(len(each.id) for each in found)
-    for each in found:
+def _print(judgements: "list[Judgement]") -> None:
+    width = max(len(each.id) for each in judgements)
+    for each in judgements:
         claim = each.claim
         click.echo(f"{claim.verdict:9}  {each.id:{width}}  {claim.evidence}")
         if claim.severity is not None:
-            cost = f"; {claim.cost.said}" if claim.cost and claim.cost.said else ""
+            cost = f"; {claim.cost.sentence}" if claim.cost and claim.cost.sentence else ""
             click.echo(f"{'':9}  {'':{width}}  {claim.severity}{cost}")
         for row in claim.details[1:]:
-            name, printed, exact, off = row
+            name, printed_value, exact, off = row
             click.echo(
-                f"{'':9}  {'':{width}}  {name}: {printed}, exact {exact}, off by {off} units"
+                f"{'':9}  {'':{width}}  {name}: {printed_value}, exact {exact}, off by {off} units"
             )
-    print_tally(each.claim.verdict for each in found)
+    print_tally(each.claim.verdict for each in judgements)

@@ -1,4 +1,4 @@
-"""How verdicts are counted, and when a check fails: what all commands of checks share."""
+"""The tally of verdicts and the failure of a check, which all commands of checks share."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -12,16 +12,17 @@ allow_undecided_option = click.option(
 )
 
 
-def fails(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
-    """True where a verdict is REFUTED, or UNDECIDED without --allow-undecided.
+def is_failure(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
+    """Return True if a verdict is REFUTED, or UNDECIDED without --allow-undecided.
 
-    `verdicts`: of all that is asked for; undecided is not a pass.
+    `verdicts`: those of all requested claims. An undecided claim is not a pass: else a check could
+    be passed by a claim that nothing decides.
     """
     return any(x == "REFUTED" or (x == "UNDECIDED" and not allow_undecided) for x in verdicts)
 
 
 def print_tally(verdicts: Iterable[str]) -> None:
-    """How many claims have which verdict, the most frequent one first."""
-    told = Counter(map(str, verdicts))
-    words = (f"{n} {word}" for word, n in told.most_common())
-    click.echo(f"{count(told.total(), 'claim')}: {', '.join(words)}")
+    """Print the number of claims of each verdict, the most frequent one first."""
+    counts = Counter(map(str, verdicts))
+    words = (f"{n} {word}" for word, n in counts.most_common())
+    click.echo(f"{count(counts.total(), 'claim')}: {', '.join(words)}")

@@ -1,4 +1,4 @@
-"""Where a check of a user's code looks: options, and how they are read."""
+"""Options for the places at which a check of a user's code looks, and their readers."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -42,20 +42,20 @@ def request_from(
     within: str | None,
     step_size: str | None = None,
 ) -> "Request":
-    """What these options ask for. Raises InputError."""
+    """Return the request of these options. Raises InputError."""
     from verify.arithmetic.exact import positive
     from verify.integrators.measures.survey import Request
 
     return Request(
         z=state_from(names, q, p),
         step_size=None if step_size is None else positive(step_size, "--step-size"),
-        scale={} if scale is None else _scale(names, scale),
+        scale={} if scale is None else _parse_scale(names, scale),
         within=None if within is None else positive(within, "--within"),
     )
 
 
 def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Fraction, ...] | None:
-    """p1, …, qn of two lists; None where neither is there. Raises InputError."""
+    """Return p1, …, qn of two lists; None where neither is given. Raises InputError."""
     from verify.arithmetic.exact import rational
 
     if p is None and q is None:
@@ -63,35 +63,36 @@ def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Frac
     if p is None or q is None:
         raise InputError("--p, --q", p or q or "", "give both or none")
     degrees, z = len(names) // 2, list[Fraction]()
-    for name, written in (("--p", p), ("--q", q)):
-        numbers = [rational(part.strip(), name) for part in written.split(",")]
+    for name, text in (("--p", p), ("--q", q)):
+        numbers = [rational(part.strip(), name) for part in text.split(",")]
         if len(numbers) != degrees:
             problem = (
                 f"has {len(numbers)} numbers; allowed: {degrees}, one for each degree of freedom"
             )
-            raise InputError(name, written, problem)
+            raise InputError(name, text, problem)
         z += numbers
     return tuple(z)
 
 
-def _scale(names: Sequence[str], written: str) -> dict[str, Fraction]:
+def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
     from verify.arithmetic.exact import positive
 
     sizes: dict[str, Fraction] = {}
-    for part in written.split(","):
+    for part in text.split(","):
         name, equals, value = (x.strip() for x in part.partition("="))
-        meant = [x for x in names if name in (x, x[0])]
-        if not equals or not meant:
-            listed = ", ".join(dict.fromkeys(["q", "p", *names]))
-            problem = f"is no size of a coordinate; write NAME=SIZE; allowed: {listed}"
+        # A name without a number stands for all of its kind: q for q1 … qn.
+        coordinates = [x for x in names if name in (x, x[0])]
+        if not equals or not coordinates:
+            names_text = ", ".join(dict.fromkeys(["q", "p", *names]))
+            problem = f"is no size of a coordinate; write NAME=SIZE; allowed: {names_text}"
             raise InputError("--scale", part, problem)
-        for coordinate in meant:
+        for coordinate in coordinates:
             sizes[coordinate] = positive(value, "--scale")
     return sizes
 
 
 def places_json(step_names: Sequence[str], places: "Sequence[Place]") -> list[dict[str, str]]:
-    """The places that were looked at, by the names of their coordinates."""
+    """Return the places that were looked at, by the names of their coordinates."""
     from verify.arithmetic.exact import text
 
     return [
@@ -106,7 +107,7 @@ def places_json(step_names: Sequence[str], places: "Sequence[Place]") -> list[di
 
 
 def print_measured(finding: "Finding") -> None:
-    """What was measured, for a reader."""
+    """Print the measured defect for a reader."""
     if finding.largest is not None and finding.probe_error is not None:
         name = "ΔJ" if finding.degrees == 1 else "S"
         noise = f"the noise of such a value {finding.probe_error:.1e}"
@@ -118,7 +119,7 @@ def print_measured(finding: "Finding") -> None:
 
 
 def print_notes(finding: "Finding") -> None:
-    """Its counterexample and its notes, for a reader."""
+    """Print the finding's counterexample and notes for a reader."""
     if finding.counterexample is not None:
         click.echo(f"  against  {finding.counterexample}")
     for note in finding.notes:

@@ -1,4 +1,4 @@
-"""What a command answers: told as JSON or as text, and with the exit status that it asks for."""
+"""The answer of a command: printed as JSON or as text, with its exit status."""
 
 import json
 import sys
@@ -16,9 +16,9 @@ FAILED = 1  # exit status
 
 @dataclass(frozen=True)
 class Answer:
-    """`data` as JSON, `show` prints it for people; only the one that is asked for is called.
+    """An answer: `data` returns it as JSON, `show` prints it for people; only one is called.
 
-    `failed`: a check did. `problem`: what went wrong besides; it is raised once all is told.
+    `failed`: a check failed. `problem`: another error, which is raised after the output.
     """
 
     data: Callable[[], dict[str, Any]]
@@ -28,13 +28,14 @@ class Answer:
 
 
 def answering(command: Callable[..., Answer]) -> Callable[..., None]:
-    """The command with --json; its answer is told, and ends it with its exit status."""
+    """Add --json to a command, print its answer, and exit with the answer's status."""
 
     @wraps(command)
-    def told(*args: Any, as_json: bool, **options: Any) -> None:
+    def wrapper(*args: Any, as_json: bool, **options: Any) -> None:
         answer = command(*args, **options)
         if as_json:
             encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+            # A terminal of another encoding gets escapes, which mean the same in JSON.
             ascii_only = encoding.lower().replace("-", "") != "utf8"
             click.echo(json.dumps(answer.data(), ensure_ascii=ascii_only))
         else:
@@ -46,9 +47,9 @@ def answering(command: Callable[..., Answer]) -> Callable[..., None]:
 
     return click.option(
         "--json", "as_json", is_flag=True, help="One JSON object on standard output."
-    )(told)
+    )(wrapper)
 
 
-def picked(found: object, *names: str) -> dict[str, Any]:
-    """What `found` calls by these names, under the same names."""
-    return {name: getattr(found, name) for name in names}
+def pick(source: object, *names: str) -> dict[str, Any]:
+    """Return the attributes of `source` with these names, by the same names."""
+    return {name: getattr(source, name) for name in names}

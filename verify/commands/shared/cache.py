@@ -7,13 +7,14 @@ import click
 from verify.code_cache import OFF, VARIABLE, folder
 
 
-def _left_out(context: click.Context, _: click.Parameter, given: bool) -> None:
-    """Sees to it that neither this process nor its workers look for kept kernels."""
+def _disable_cache(context: click.Context, _: click.Parameter, is_set: bool) -> None:
+    """Make this process and its workers look for no kept kernels."""
     if context.resilient_parsing:  # a shell that completes the line
         return
-    if not given:
+    if not is_set:
         folder()  # a VERIFY_CACHE that is no folder's is refused before anything is computed
         return
+    # Workers inherit the environment; the variable is put back, as tests run several commands.
     before = os.environ.get(VARIABLE, "")
     os.environ[VARIABLE] = OFF
     context.call_on_close(lambda: os.environ.update({VARIABLE: before}))
@@ -23,6 +24,6 @@ cache_option = click.option(
     "--no-cache",
     is_flag=True,
     expose_value=False,
-    callback=_left_out,
+    callback=_disable_cache,
     help="Read H and compile every kernel anew, and keep nothing.",
 )

@@ -1,23 +1,23 @@
-"""Options that name what is written, and what is seen of it before anything is computed.
+"""Options that name a file or folder to write, checked before anything is computed.
 
-A folder that is not there is made, but only under one that is: what is typed may be mistyped.
+A missing folder is made, but only in an existing one: a longer path may be mistyped.
 """
 
 import re
 from pathlib import Path
 from typing import Any
 
-from verify.commands.shared.input import GivenPath
+from verify.commands.shared.input import NonemptyPath
 from verify.errors import InputError
 
 STANDARD_OUTPUT = Path("-")
 _KEPT = "kept"  # the folder of what is finished
-# Of a name that ends so a file is meant.
+# A name that ends so means a file.
 _OF_FILES = ".csv .htm .html .json .md .pdf .png .svg .toml .txt .v .zip".split()  # noqa: SIM905
 
 
-class _OutFile(GivenPath):
-    """A file that is to be written, in a folder that is there; or -, which an option may take."""
+class _OutFile(NonemptyPath):
+    """The type of a file to write, in an existing folder; or -, which an option may take."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         from verify.files import check_replaceable
@@ -27,14 +27,14 @@ class _OutFile(GivenPath):
             _check_above(path, option)
             check_replaceable(path, option)
             try:
-                writable(path.parent)
+                ensure_writable(path.parent)
             except InputError as error:
                 raise InputError(option, str(path), error.problem) from None
         return path
 
 
-class _OutFolder(GivenPath):
-    """A folder that is to be written into, which is there, or is to be made in one that is."""
+class _OutFolder(NonemptyPath):
+    """The type of a folder to write into, which exists or can be made in an existing one."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         path = super().convert(value, param, ctx)
@@ -55,8 +55,8 @@ def _check_above(path: Path, option: str = "--output") -> None:
         raise InputError(option, str(path), problem)
 
 
-def writable(folder: Path, option: str = "--output") -> None:
-    """Makes the folder, and sees that a file can be made in it; InputError where that cannot be."""
+def ensure_writable(folder: Path, option: str = "--output") -> None:
+    """Make the folder, and check that a file can be made in it; InputError where it cannot."""
     from tempfile import TemporaryFile
 
     _check_above(folder, option)
@@ -64,6 +64,7 @@ def writable(folder: Path, option: str = "--output") -> None:
         raise InputError(option, str(folder), "File exists, and is no folder; give a folder")
     try:
         folder.mkdir(exist_ok=True)
+        # Permissions alone do not tell: the disk may be full or mounted read-only.
         with TemporaryFile(dir=folder):
             pass
     except OSError as error:
@@ -72,11 +73,11 @@ def writable(folder: Path, option: str = "--output") -> None:
         raise InputError(option, str(folder), f"{problem}; {advice}") from None
 
 
-def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str = "") -> None:
-    """InputError where a folder holds files, and not those of an earlier report of ours.
+def check_ours(folder: Path, pattern: re.Pattern[str] | None = None, *, advice: str = "") -> None:
+    """Raise InputError where a folder holds files that are not of an earlier report of ours.
 
-    Ours has a report's data, of whatever version, or nothing but what an interrupted one has kept,
-    and files whose names match `own`.
+    A folder of ours has a report's data, of whatever version; or nothing but the kept results of an
+    interrupted report, and files whose names match `pattern`.
     """
     from verify.formats import names_format
     from verify.pages.page import DATA
@@ -84,7 +85,8 @@ def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str 
 
     try:
         names = {path.name for path in folder.iterdir()} - {_KEPT} if folder.exists() else set()
-        foreign = [name for name in sorted(names) if own is None or not own.fullmatch(name)]
+        foreign = [name for name in sorted(names) if pattern is None or not pattern.fullmatch(name)]
+        # A report of any version is ours, and may be replaced by a new one.
         if foreign and not names_format(folder / DATA, FORMAT):
             problem = f"holds {foreign[0]!a}, which is not ours; take another folder{advice}"
             raise InputError("--output", str(folder), problem)
@@ -92,11 +94,11 @@ def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str 
         raise InputError("--output", str(folder), error.strerror or "cannot be read") from None
 
 
-def keepable(folder: Path, option: str = "--keep") -> None:
-    """As `writable`, for a folder where results are kept.
+def ensure_keepable(folder: Path, option: str = "--keep") -> None:
+    """Make a folder where results are kept, as `ensure_writable` does.
 
-    InputError also where it lies in what is shipped: the name of a kept result is made of all files
-    there, so that what is kept would make itself unknown.
+    InputError also where it lies in what is shipped: the name of a kept result is a digest of all
+    files there, so that keeping one would change the names of all.
     """
     from verify.content import is_shipped
     from verify.files import clear_abandoned
@@ -104,13 +106,13 @@ def keepable(folder: Path, option: str = "--keep") -> None:
     if is_shipped(folder):
         problem = "lies in what verify ships; allowed: any other folder"
         raise InputError(option, str(folder), problem)
-    writable(folder, option)
+    ensure_writable(folder, option)
     clear_abandoned(folder)
 
 
-def writable_later(folder: Path) -> None:
-    """As `writable` for --output, and leaves no folder that was not there."""
-    there = folder.exists()
-    writable(folder)
-    if not there:
+def ensure_writable_later(folder: Path) -> None:
+    """Check --output as `ensure_writable` does, and leave no folder that was not there."""
+    existed = folder.exists()
+    ensure_writable(folder)
+    if not existed:
         folder.rmdir()

@@ -1,4 +1,4 @@
-"""Options that commands share, and what they stand for."""
+"""Options that commands share, and the objects that they name."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.content import content
-from verify.errors import NOT_GIVEN, InputError, plain_name, unknown
+from verify.errors import NOT_GIVEN, InputError, plain_name, unknown_name
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-class GivenPath(click.Path):
-    """A path; an empty text is none, and not the current folder."""
+class NonemptyPath(click.Path):
+    """The type of a path; an empty text is refused, and is not the current folder."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         if not str(value).strip():
@@ -28,8 +28,8 @@ class GivenPath(click.Path):
         return super().convert(value, param, ctx)
 
 
-class Named(click.ParamType[str]):
-    """A name of a catalogue, in any case or an alias; a shell completes it."""
+class CatalogueName(click.ParamType[str]):
+    """The type of a name of a catalogue, in any case or an alias; a shell completes it."""
 
     def __init__(self, name: str, catalogue: Callable[[], Any]) -> None:
         self.name, self.catalogue = name, catalogue
@@ -38,7 +38,7 @@ class Named(click.ParamType[str]):
         return self.catalogue().canonical(str(value))
 
     def takes(self, value: str) -> bool:
-        """True where the catalogue has it."""
+        """Return True if the catalogue has the name."""
         try:
             return bool(self.catalogue().get(value))
         except InputError:
@@ -48,15 +48,15 @@ class Named(click.ParamType[str]):
         from click.shell_completion import CompletionItem
 
         catalogue, begun = self.catalogue(), plain_name(incomplete)
-        found = [name for name in catalogue.names() if name.startswith(begun)]
-        if not found:
+        matches = [name for name in catalogue.names() if name.startswith(begun)]
+        if not matches:
             aliases: Iterable[str] = getattr(catalogue, "aliases", tuple)()
-            found = [name for name in aliases if name.startswith(begun)]
-        return [CompletionItem(name) for name in found]
+            matches = [name for name in aliases if name.startswith(begun)]
+        return [CompletionItem(name) for name in matches]
 
 
 class _FileOr(click.ParamType[str]):
-    """A file, or one of these names; a shell completes both."""
+    """The type of a file, or of one of these names; a shell completes both."""
 
     name = "file"
 
@@ -66,8 +66,8 @@ class _FileOr(click.ParamType[str]):
     def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
         from click.shell_completion import CompletionItem
 
-        found = [CompletionItem(name) for name in self.names() if name.startswith(incomplete)]
-        return [*found, CompletionItem(incomplete, type="file")]
+        items = [CompletionItem(name) for name in self.names() if name.startswith(incomplete)]
+        return [*items, CompletionItem(incomplete, type="file")]
 
 
 def _schemes() -> Any:
@@ -82,27 +82,28 @@ def _systems() -> Any:
     return systems
 
 
-PATH = GivenPath(path_type=Path)
+PATH = NonemptyPath(path_type=Path)
 SCENE = _FileOr(lambda: ("paper", *suites()))
 CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
-SCHEME = Named("scheme", _schemes)
-_SYSTEM = Named("system", _systems)
+SCHEME = CatalogueName("scheme", _schemes)
+_SYSTEM = CatalogueName("system", _systems)
 Command = Callable[..., Any]
 
 
-def options(*given: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    """Makes a command take these options, which its help lists in this order."""
+def options(*decorators: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Return a decorator that adds these options, which the help lists in this order."""
+    # Decorators are applied from the last to the first, and click lists the last applied first.
 
     def with_options(command: Command) -> Command:
-        for option in reversed(given):
+        for option in reversed(decorators):
             command = option(command)
         return command
 
     return with_options
 
 
-# Those that name a Hamiltonian, which `hamiltonian_of` takes.
+# The options that name a Hamiltonian, arguments of `hamiltonian_of`.
 hamiltonian_options = options(
     click.option(
         "--system",
@@ -156,38 +157,39 @@ time_limit_option = click.option(
 )
 
 
-def with_hamiltonian(command: Callable[..., Any], *, kept: bool = False) -> Callable[..., Any]:
-    """The command with these options, which it gets as one Hamiltonian, `exact`.
+def with_hamiltonian(command: Callable[..., Any], *, use_cache: bool = False) -> Callable[..., Any]:
+    """Add the options of a Hamiltonian to a command, which gets it as the argument `exact`.
 
-    `kept`: as it was kept, where it was; for a command with --no-cache, and no need of sympy.
+    `use_cache`: it may come from the cache, for a command with --no-cache that needs no sympy.
     """
 
     @wraps(command)
-    def given(
+    def wrapper(
         *args: Any,
         system: str | None,
         hamiltonian: str | None,
         params: tuple[str, ...],
         **options: Any,
     ) -> Any:
-        exact = hamiltonian_of(system, hamiltonian, params, kept=kept)
+        exact = hamiltonian_of(system, hamiltonian, params, use_cache=use_cache)
         return command(*args, exact=exact, **options)
 
-    return hamiltonian_options(given)
+    return hamiltonian_options(wrapper)
 
 
-with_kept_hamiltonian = partial(with_hamiltonian, kept=True)
+with_kept_hamiltonian = partial(with_hamiltonian, use_cache=True)
 
 
 def values_of(params: tuple[str, ...]) -> dict[str, str]:
-    """The values of NAME=VALUE by their names. Raises InputError."""
+    """Return the values of NAME=VALUE by their names. Raises InputError."""
     values: dict[str, str] = {}
     for text in params:
-        name, given, value = text.partition("=")
-        if not given:
+        name, equals, value = text.partition("=")
+        if not equals:
             raise InputError("--param", text, "has no value; write NAME=VALUE, or leave it out")
         if name in values:
             raise InputError("--param", text, f"{name} is given twice")
+        # Several parameters in one option, as a=1,b=2: the error shows how to write them.
         if "=" in value and re.search("[,;]", value):
             instead = " --param ".join(part.strip() for part in re.split("[,;]", text))
             raise InputError("--param", text, f"is more than one; write --param {instead}")
@@ -196,9 +198,9 @@ def values_of(params: tuple[str, ...]) -> dict[str, str]:
 
 
 def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, kept: bool = False
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, use_cache: bool = False
 ) -> "Hamiltonian":
-    """The Hamiltonian that the options name; InputError unless they name one."""
+    """Return the Hamiltonian that the options name; InputError unless they name one."""
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -206,62 +208,68 @@ def hamiltonian_of(
         raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
     values = values_of(params)
     if system is not None:
-        source, read = f"system {system}", systems.get(system).hamiltonian
+        source, reader = f"system {system}", systems.get(system).hamiltonian
     else:
         systems.check_is_formula(hamiltonian or "")
-        source, read = f"formula {hamiltonian}", partial(Hamiltonian.parse, hamiltonian or "")
-    if not kept:
-        return read(values)
-    from verify.hamiltonians.kept import kept_or_read
+        source, reader = f"formula {hamiltonian}", partial(Hamiltonian.parse, hamiltonian or "")
+    if not use_cache:
+        return reader(values)
+    from verify.hamiltonians.kept import load_or_read
 
-    return kept_or_read(source, values, read)
+    return load_or_read(source, values, reader)
 
 
-def one_or_every(every: bool, named: Mapping[str, Any], **only: Any) -> "Hamiltonian | None":
-    """The one H that the options name; None where every one is meant. InputError where they name
-    one all the same, and where one is meant and an option is given that goes with every `only`."""
+def one_or_every(
+    every: bool, named_options: Mapping[str, Any], **only: Any
+) -> "Hamiltonian | None":
+    """Return the H that the options name; None where the command is for every H.
+
+    Raises InputError where options name an H and `every` is set, and where an option of `only`,
+    which goes with `every`, is used for a single H.
+    """
     if every:
-        if any(given not in (None, ()) for given in named.values()):
+        if any(value not in (None, ()) for value in named_options.values()):
             problem = "goes without --system, --hamiltonian, --param"
             raise InputError("every_hamiltonian", NOT_GIVEN, problem)
         return None
-    for option, given in only.items():
-        if given:
+    for option, value in only.items():
+        if value:
             raise InputError(option, NOT_GIVEN, "goes with --every-hamiltonian")
-    return hamiltonian_of(**named)
+    return hamiltonian_of(**named_options)
 
 
-def listed(given: str, exact: "Hamiltonian") -> str | list[str]:
-    """The number; of an H of p1 … qn a list, the numbers that commas part.
+def parse_coordinates(text: str, exact: "Hamiltonian") -> str | list[str]:
+    """Return the number; for an H of p1 … qn a list of numbers that commas separate.
 
-    Whoever takes them says so where there are too few or too many.
+    Their count is checked by the caller.
     """
     if exact.planar:
-        return given
-    return [part.strip() for part in given.split(",")]
+        return text
+    return [part.strip() for part in text.split(",")]
 
 
 def paper_folder() -> Path:
-    """Where the paper's own scenes and claims are."""
+    """Return the folder of the paper's scenes and claims."""
     return content("reports", "paper")
 
 
-def target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
-    """Title, scenes and claims of `paper`, of a suite, or of a scene's file.
+def load_target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
+    """Load the title, scenes and claims of `paper`, of a suite, or of a scene's file.
 
-    `others`: names that the command takes too, for those that are told where there is no such.
+    `others`: further names that the command takes, which the error for an unknown one lists.
     """
     from verify.scenes.scene import load_scene
 
     if scene in suites():
-        return suites()[scene], _suite(scene), None
+        return suites()[scene], _load_suite(scene), None
     if scene != "paper":
         if not scene.strip():
             raise InputError("SCENE", scene, "is empty; give paper, a suite or a TOML file")
+        # A bare word without a file is a mistyped name rather than a missing file.
         if not Path(scene).suffix and not Path(scene).exists():
             here = {path.stem: path.name for path in sorted(Path.cwd().glob("*.toml"))}
-            named = ("paper", *suites(), *others)
-            raise unknown("SCENE", scene, named, ", or a TOML file", here)
+            names = ("paper", *suites(), *others)
+            raise unknown_name("SCENE", scene, names, ", or a TOML file", here)
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
     from verify.claims.file import load_claims
@@ -273,12 +281,12 @@ def target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile | No
 
 
 def suites() -> dict[str, str]:
-    """The title of each suite, which a file in its folder holds."""
+    """Return the title of each suite, read from a file in its folder."""
     titles = sorted(content("reports", "suites").glob("*/title.txt"))
     return {title.parent.name: title.read_text("utf-8").strip() for title in titles}
 
 
-def _suite(name: str) -> "list[Scene]":
+def _load_suite(name: str) -> "list[Scene]":
     from verify.scenes.scene import load_scene
 
     return [load_scene(path) for path in sorted(content("reports", "suites", name).glob("*.toml"))]

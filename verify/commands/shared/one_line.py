@@ -1,4 +1,4 @@
-"""A scene in one line: the options of commands that otherwise take a file."""
+"""A scene given by options in one line, for commands that otherwise take a file."""
 
 import shlex
 from collections.abc import Callable, Mapping
@@ -11,9 +11,9 @@ from verify.commands.shared.input import (
     SCHEME,
     hamiltonian_of,
     hamiltonian_options,
-    listed,
+    load_target,
     options,
-    target,
+    parse_coordinates,
 )
 from verify.errors import NOT_GIVEN, InputError
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 _SYSTEM = ("system", "hamiltonian", "params")
-_NEEDED = ("schemes", "step_sizes")
+_REQUIRED = ("schemes", "step_sizes")
 schemes_option = click.option(
     "--scheme",
     "schemes",
@@ -42,71 +42,75 @@ _STEPS = options(
 )
 
 
-def with_one_line(*own: Callable[..., Any]) -> Callable[..., Any]:
-    """Makes a command take SCENE, or these options in its place: which system, schemes and step
-    sizes, and those of its own. It gets them as keyword arguments that `scenes_of` takes.
+def with_one_line(*extra_options: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a decorator for commands that take SCENE, or options in its place.
+
+    The options are those of the system, of schemes and step sizes, and `extra_options`. The command
+    gets them as keyword arguments, which `scenes_of` takes.
     """
 
-    def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
-        command = schemes_option(_STEPS(options(*own)(command)))
+    def add_options(command: Callable[..., Any]) -> Callable[..., Any]:
+        command = schemes_option(_STEPS(options(*extra_options)(command)))
         argument = click.argument("scene", type=SCENE, required=False, metavar="[SCENE]")
         return argument(hamiltonian_options(command))
 
-    return decorated
+    return add_options
 
 
 def scenes_of(
     scene: str | None,
-    given: Mapping[str, Any],
-    needed: tuple[str, ...],
+    values: Mapping[str, Any],
+    required: tuple[str, ...],
     sections: Callable[..., Mapping[str, Any]],
 ) -> "list[Scene]":
-    """The scenes of SCENE, or the one that the options in `given` are.
+    """Return the scenes of SCENE, or the one of the options in `values`.
 
-    `needed`: which of them cannot be left out, beside schemes and step sizes. `sections` makes the
-    scene's sections of those that are not the system's nor the schemes. InputError where both are
-    given, or neither, or one is missing.
+    `required`: options that cannot be left out, besides schemes and step sizes. `sections` makes
+    the scene's sections of all options but those of the system and the schemes. Raises InputError
+    where both SCENE and options are given, or neither, or where one is missing.
     """
     if scene is not None:
-        goes_alone(given)
-        return target(scene)[1]
-    asked = _asked(given)
-    if not asked:
+        check_scene_alone(values)
+        return load_target(scene)[1]
+    requested = _requested_options(values)
+    if not requested:
         raise InputError(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
-    exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
-    for name in (*_NEEDED, *needed):
-        if name not in asked:
+    exact = hamiltonian_of(*(values[name] for name in _SYSTEM))
+    for name in (*_REQUIRED, *required):
+        if name not in requested:
             raise InputError(name, NOT_GIVEN, "is missing")
-    from verify.calls.given import scene_of
+    from verify.calls.inputs import scene_of
 
-    own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes", "t0")}
-    own |= {n: listed(own[n], exact) for n in ("q", "p") if n in own}
-    name = given["system"] or exact.formula
-    made = scene_of(
-        exact, asked["schemes"], None, t0=asked.get("t0"), name=name, known_as=given["system"],
-        **sections(**own),
+    section_values = {n: x for n, x in requested.items() if n not in (*_SYSTEM, "schemes", "t0")}
+    section_values |= {
+        n: parse_coordinates(section_values[n], exact) for n in ("q", "p") if n in section_values
+    }
+    name = values["system"] or exact.formula
+    built_scene = scene_of(
+        exact, requested["schemes"], None, t0=requested.get("t0"), name=name,
+        system_name=values["system"], **sections(**section_values),
     )  # fmt: skip
-    return [made]
+    return [built_scene]
 
 
-def goes_alone(given: Mapping[str, Any]) -> None:
-    """InputError where SCENE is given, and one of these options too."""
-    for name, x in _asked(given).items():
+def check_scene_alone(values: Mapping[str, Any]) -> None:
+    """Raise InputError where one of these options is given together with SCENE."""
+    for name, x in _requested_options(values).items():
         raise InputError(name, x[0] if isinstance(x, tuple) else x, "goes without SCENE")
 
 
-def _asked(given: Mapping[str, Any]) -> dict[str, Any]:
+def _requested_options(values: Mapping[str, Any]) -> dict[str, Any]:
     # By identity: 0 == False, and a 0 that is typed is refused, not left out.
-    return {n: x for n, x in given.items() if not (x is None or x is False or x == ())}
+    return {n: x for n, x in values.items() if not (x is None or x is False or x == ())}
 
 
-def line_of(given: Mapping[str, Any]) -> str:
-    """Those of the options that were typed, as a shell reads them again."""
+def line_of(values: Mapping[str, Any]) -> str:
+    """Return the typed options as a line that a shell reads again."""
     context, parts = click.get_current_context(), []
     for option in context.command.params:
-        x = given.get(option.name or "")
+        x = values.get(option.name or "")
         for value in x if isinstance(x, tuple) else (x,):
             if value not in (None, False):
                 parts += [option.opts[-1], str(value)]

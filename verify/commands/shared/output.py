@@ -1,4 +1,4 @@
-"""Results as commands tell them: JSON objects with decimal strings, short texts for people."""
+"""Output of commands: JSON objects with decimal strings, short texts for people."""
 
 import textwrap
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import observables
-from verify.commands.shared.answer import picked
+from verify.commands.shared.answer import pick
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,15 +21,15 @@ _LONGEST = 400  # characters of a formula on the terminal
 
 
 def cut(formula: str) -> str:
-    """A formula as it is, or its beginning where it is long: the JSON has all of it."""
+    """Return the formula, or its beginning where it is long: the JSON has all of it."""
     if len(formula) <= _LONGEST:
         return formula
     terms = formula.count(" + ") + formula.count(" - ") + 1
     return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
 
 
-def line(name: str, text: str) -> None:
-    """A name and what it is, wrapped."""
+def print_line(name: str, text: str) -> None:
+    """Print a name and its text, wrapped."""
     first, rest = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
     click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
 
@@ -37,32 +37,37 @@ def line(name: str, text: str) -> None:
 def run_json(result: "RunResult") -> dict[str, Any]:
     from verify.scenes.observables import REPORTED, names
 
-    # A key for each that is usual, and for what was computed beside them.
+    # Programs can rely on a key for each usual observable, null where it was not computed; the
+    # other observables have a key only where they were computed.
     every, planar = observables.by_name(), isinstance(result.q, str)
-    there = dict.fromkeys((*names(planar=planar), *REPORTED))
-    told = (n for n in there if every[n].usual or n in REPORTED or n in result.values)
-    values = {name: _told(result, name) for name in (*told, "q", "p")}
+    keys = dict.fromkeys((*names(planar=planar), *REPORTED))
+    selected = (n for n in keys if every[n].usual or n in REPORTED or n in result.values)
+    values = {name: _value_json(result, name) for name in (*selected, "q", "p")}
     return {
         **{name: value for name, (value, _) in values.items()},
-        **picked(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
+        **pick(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
         "error_bound": {name: bound for name, (_, bound) in values.items() if bound},
-        # `exact`: what a proof gave, and no run.
-        **picked(result, "error_kind", "error_method", "exact", "status", "failed_step"),
+        # `exact` names values that a proof gives without a run.
+        **pick(result, "error_kind", "error_method", "exact", "status", "failed_step"),
         "seconds": f"{result.seconds:.6f}",
     }
 
 
-def _told(result: "RunResult", name: str) -> tuple[Any, Any]:
-    """A value and its bound; lists of q and of p in n degrees of freedom."""
+def _value_json(result: "RunResult", name: str) -> tuple[Any, Any]:
+    """Return a value and its bound; lists of q and of p in n degrees of freedom."""
     if name in ("q", "p") and not isinstance(result.q, str):
-        own = [x for n, x in result.values.items() if n[0] == name and n[1:].isdigit()]
-        return ([x.value for x in own], [x.bound for x in own]) if own else (None, None)
+        coordinates = [x for n, x in result.values.items() if n[0] == name and n[1:].isdigit()]
+        return (
+            ([x.value for x in coordinates], [x.bound for x in coordinates])
+            if coordinates
+            else (None, None)
+        )
     value = result.values.get(name)
     return (value.value, value.bound) if value else (None, None)
 
 
-def unfinished(result: "RunResult") -> str:
-    """Why a run has no numbers; empty where it has."""
+def explain_unfinished(result: "RunResult") -> str:
+    """Return the reason why a run has no numbers; empty where it has."""
     if result.status == "finished":
         return ""
     if result.status == "unresolved":
@@ -74,22 +79,22 @@ def unfinished(result: "RunResult") -> str:
 
 
 def print_once(notes: "Iterable[str]") -> None:
-    """Each of the notes on a line, once; those that are empty say nothing."""
+    """Print each of the notes on a line, once; empty ones are skipped."""
     for note in filter(None, dict.fromkeys(notes)):
         click.echo(note)
 
 
 def print_run(result: "RunResult") -> None:
     if result.status != "finished":
-        click.echo(unfinished(result))
+        click.echo(explain_unfinished(result))
         return
     labels = {name: each.short or each.label for name, each in observables.by_name().items()}
     coordinates = {name: name for name in result.values if name[1:].isdigit()}
     for name, label in {**labels, "q": "q", "p": "p", **coordinates}.items():
         if name in result.values:
             value = result.values[name]
-            shown = str(value) if value.unknown else f"{value.value}  ± {value.bound}"
-            click.echo(f"{label:10} {shown}")
+            text = str(value) if value.unknown else f"{value.value}  ± {value.bound}"
+            click.echo(f"{label:10} {text}")
     click.echo(
         f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
         f"{result.error_kind} ({result.error_method})"
@@ -101,23 +106,23 @@ def print_run(result: "RunResult") -> None:
 
 
 def plain_json(model: "Frozen") -> dict[str, Any]:
-    """The model as JSON, without the parts of its texts."""
+    """Return the model as JSON, with each prose as a plain text."""
     from verify.scenes.frozen import PLAIN
 
     data: dict[str, Any] = model.model_dump(mode="json", context=PLAIN)
     return data
 
 
-def print_report(made: "Report", *pages: Path) -> None:
-    from verify.scenes.results.statement import counted
+def print_report(report: "Report", *pages: Path) -> None:
+    from verify.scenes.results.statement import describe_counts
 
-    for line in made.preface:
+    for line in report.preface:
         click.echo(line)
-    for claim in made.claims:
+    for claim in report.claims:
         click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")
-    if made.statements:
-        click.echo(counted(made.statements, made.claims))
-    for scene in made.scenes:
+    if report.statements:
+        click.echo(describe_counts(report.statements, report.claims))
+    for scene in report.scenes:
         for c in scene.criteria:
             click.echo(f"{c.verdict:9}  {scene.name}, {c.scheme}, criterion {c.number}")
-    click.echo(f"{', '.join(map(str, pages))} ({made.provenance.seconds:.3g} s)")
+    click.echo(f"{', '.join(map(str, pages))} ({report.provenance.seconds:.3g} s)")

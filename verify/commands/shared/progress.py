@@ -12,9 +12,9 @@ Advance = Callable[[int], None]
 
 @contextmanager
 def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advance]:
-    """Yields `advance(units)`; it does nothing where standard error is not a terminal.
+    """Yield `advance(units)`, which does nothing where standard error is not a terminal.
 
-    Shows units per second where they have a name, and the time left.
+    The bar shows units per second where they have a name, and the time left.
     """
     if not (total > 0 and sys.stderr.isatty()):
         yield lambda _: None
@@ -44,39 +44,40 @@ def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advanc
 
 @contextmanager
 def counting_bar(label: str, total: int, unit: str = "steps") -> Iterator[Callable[[int], None]]:
-    """Yields `tell(done)`, the number of units done so far, of what may be begun anew."""
+    """Yield `advance_to(count)`, for work that may begin anew; `count`: units done so far."""
     with progress_bar(label, total, unit) as advance:
         last = 0
 
-        def tell(done: int) -> None:
+        def advance_to(count: int) -> None:
             nonlocal last
-            advance(done - last)
-            last = done
+            advance(count - last)
+            last = count
 
-        yield tell
+        yield advance_to
 
 
 @contextmanager
 def clock(label: str, after: float = 2.0) -> Iterator[None]:
-    """A line on a terminal that says how long it has taken, from `after` seconds on."""
+    """Show the elapsed time in a line on a terminal, from `after` seconds on."""
     if not sys.stderr.isatty():
         yield
         return
-    ended, begun = threading.Event(), time.monotonic()
+    # The work runs in this thread; another one writes the line.
+    stop_event, begun = threading.Event(), time.monotonic()
     stream = getattr(sys.stderr, "stream", sys.stderr)  # which takes what moves its cursor
 
-    def tell() -> None:
+    def show_time() -> None:
         wait = after
-        while not ended.wait(wait):
+        while not stop_event.wait(wait):
             print(f"\r{label} … {time.monotonic() - begun:.0f} s", end="", file=stream, flush=True)
             wait = 1.0
 
-    thread = threading.Thread(target=tell, daemon=True)
+    thread = threading.Thread(target=show_time, daemon=True)
     thread.start()
     try:
         yield
     finally:
-        ended.set()
+        stop_event.set()
         thread.join()
         if time.monotonic() - begun > after:
             print("\r\x1b[K", end="", file=stream, flush=True)

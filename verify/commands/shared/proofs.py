@@ -1,4 +1,4 @@
-"""How proofs are told: as JSON, and as lines, of ΔJ in the plane and of S beyond it."""
+"""Output of proofs, as JSON and as lines: of ΔJ in the plane, of S in n degrees of freedom."""
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import click
 
-from verify.commands.shared.answer import picked
-from verify.commands.shared.output import cut, line
+from verify.commands.shared.answer import pick
+from verify.commands.shared.output import cut, print_line
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -29,8 +29,8 @@ class Agreeing(Protocol):
     def convergence_decided(self) -> bool: ...
 
 
-def agreement(proof: Agreeing) -> str:
-    """How far a map agrees with the exact flow, and whether it may agree further."""
+def describe_agreement(proof: Agreeing) -> str:
+    """Return words for the order of consistency, and whether it may be higher."""
     order = proof.convergence_order
     if order is None:
         return "in all powers of h that were looked at"
@@ -39,14 +39,14 @@ def agreement(proof: Agreeing) -> str:
 
 
 def agreement_json(proof: Agreeing) -> dict[str, Any]:
-    """The same; it is known where it is shown to agree no further."""
+    """Return the order of consistency as JSON; known where no higher one is possible."""
     order = proof.convergence_order
-    known = order is not None and proof.convergence_decided
-    return {"convergence_order": order, "convergence_order_known": known}
+    is_decided = order is not None and proof.convergence_decided
+    return {"convergence_order": order, "convergence_order_known": is_decided}
 
 
 def order_json(order: int | None) -> dict[str, int | None]:
-    """The order of ΔJ, or of S: `order`, and by the name that no method's order has."""
+    """Return the order of ΔJ or of S as `order`, and as the unambiguous `defect_order`."""
     return {"order": order, "defect_order": order}
 
 
@@ -57,16 +57,19 @@ def proof_json(
     seconds: str,
     **differs: Any,
 ) -> dict[str, Any]:
-    """The keys of every proof; `texts`: H and its parameters, or for which H it is; `differs`: more
-    of them, or other values."""
+    """Return the keys of every proof.
+
+    `texts`: H and its parameters, or a description of every H; `differs`: further keys, or other
+    values for these.
+    """
     return {
-        **picked(proof, "verdict", "reason"),
+        **pick(proof, "verdict", "reason"),
         **texts,
         "scheme": scheme,
         **order_json(proof.order),
         "leading": proof.leading_text or None,
         "delta_j": "0" if proof.area_preserving else None,
-        **picked(proof, "symplectic", "area_preserving"),
+        **pick(proof, "symplectic", "area_preserving"),
         **agreement_json(proof),
         "domain": proof.domain.texts,
         "special_values": [],
@@ -76,14 +79,14 @@ def proof_json(
 
 
 def checks_json(proof: "Proof | EveryProof") -> dict[str, Any]:
-    """How the leading coefficient is known, and what was checked; of S what is said beside."""
+    """Return the keys of the leading coefficient and of its checks; for S its entry and det J."""
     from dataclasses import asdict
 
     of_form = ("degrees", "entry", "volume_order", "volume_leading")
     point = {"witness": point_json(getattr(proof, "witness", {}))}  # there is none of every H
     return {
-        **({**picked(proof, *of_form), **point} if proof.degrees > 1 else {}),
-        **picked(proof, "telescopes", "why", "checked"),
+        **({**pick(proof, *of_form), **point} if proof.degrees > 1 else {}),
+        **pick(proof, "telescopes", "why", "checked"),
         "formula": proof.formula or None,
         "potential": proof.potential or None,
         "conditions": [asdict(condition) for condition in proof.conditions],
@@ -91,23 +94,23 @@ def checks_json(proof: "Proof | EveryProof") -> dict[str, Any]:
 
 
 def point_json(point: "Mapping[str, Fraction]") -> dict[str, str]:
-    """A point, as exact numbers."""
+    """Return a point as exact numbers, for JSON."""
     from verify.arithmetic.exact import text
 
     return {name: text(value) for name, value in point.items()}
 
 
 def point_text(point: "Mapping[str, Fraction]") -> str:
-    """The same in a line."""
+    """Return a point as exact numbers, in a line."""
     return ", ".join(f"{name} = {value}" for name, value in point_json(point).items())
 
 
 # -- as lines ------------------------------------------------------------------------------------
 
 
-def print_head(exact: "Hamiltonian", scheme: str, found: "Proof | Finding") -> None:
-    """The verdict, and of what it is."""
-    click.echo(f"{found.verdict}: {found.reason}")
+def print_head(exact: "Hamiltonian", scheme: str, result: "Proof | Finding") -> None:
+    """Print the verdict, H with its parameters, and the scheme."""
+    click.echo(f"{result.verdict}: {result.reason}")
     click.echo(f"  H        {exact.formula}")
     for name, value in exact.texts["parameters"].items():
         click.echo(f"  {name:8} {value}")
@@ -115,12 +118,12 @@ def print_head(exact: "Hamiltonian", scheme: str, found: "Proof | Finding") -> N
 
 
 def print_checks(proof: "EveryProof | Proof") -> None:
-    """The identities that were checked, and the conditions that decide."""
+    """Print the identities that were checked, and the conditions that decide."""
     for identity in proof.checked:
-        line("checked", str(identity))
+        print_line("checked", str(identity))
     for condition in proof.conditions:
-        found = "holds" if condition.holds else f"residue {condition.residue}"
-        line("condition", f"{condition.name}: {found}")
+        status = "holds" if condition.holds else f"residue {condition.residue}"
+        print_line("condition", f"{condition.name}: {status}")
 
 
 def print_proof(
@@ -133,11 +136,11 @@ def print_proof(
     print_head(exact, scheme, proof)
     if proof.order is not None:
         click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
-        at = point_text(proof.witness) or "any point"
-        click.echo(f"  witness  {at}: the coefficient is {proof.enclosure}")
+        point = point_text(proof.witness) or "any point"
+        click.echo(f"  witness  {point}: the coefficient is {proof.enclosure}")
     closed = proof.step_map.delta_j_text
-    shown = "left out: the closed form is too large" if closed is None else cut(closed)
-    click.echo(f"  exactly  ΔJ = {shown}")
+    formula = "left out: the closed form is too large" if closed is None else cut(closed)
+    click.echo(f"  exactly  ΔJ = {formula}")
     by = "D" if exact.time_dependent else "X"  # D = ∂_t + X
     if potential.text is not None and proof.order is not None:
         click.echo(
@@ -147,46 +150,45 @@ def print_proof(
         click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")
     if proof.domain:
         click.echo(f"  where    {proof.domain.prose}")
-    click.echo(f"  the map  agrees with the exact flow {agreement(proof)}")
+    click.echo(f"  the map  agrees with the exact flow {describe_agreement(proof)}")
     for each in special:
         click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
 
 
 def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "Proof | EveryProof") -> None:
-    """What is proved of S, and beside it of det J; `texts`: H and its parameters, or for which H it
-    is."""
+    """Print the proof of S and of det J; `texts`: H and its parameters, or words for every H."""
     click.echo(f"{proof.verdict}: {proof.reason}")
-    line("H", texts["hamiltonian"])
+    print_line("H", texts["hamiltonian"])
     for name, value in texts.get("parameters", {}).items():
-        line(name, value)
-    line("scheme", scheme)
+        print_line(name, value)
+    print_line("scheme", scheme)
     if proof.order is not None:
         long = proof.formula or proof.leading_text
-        shown = proof.leading_text if len(proof.leading_text) < _LONG else long
-        line("S", f"({cut(shown)})·h^{proof.order} + O(h^{proof.order + 1})")
+        formula = proof.leading_text if len(proof.leading_text) < _LONG else long
+        print_line("S", f"({cut(formula)})·h^{proof.order} + O(h^{proof.order + 1})")
     if getattr(proof, "witness", None) or getattr(proof, "enclosure", ""):  # of one H
-        line("witness", _witness(cast("Proof", proof)))
-    line("det J", _of_volume(proof))
+        print_line("witness", _describe_witness(cast("Proof", proof)))
+    print_line("det J", _describe_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:
-        line("telescopes", _telescoping(proof))
+        print_line("telescopes", _describe_telescoping(proof))
     print_checks(proof)
     if proof.domain:
-        line("where", str(proof.domain.prose))
-    line("the map", f"agrees with the exact flow {agreement(proof)}")
+        print_line("where", str(proof.domain.prose))
+    print_line("the map", f"agrees with the exact flow {describe_agreement(proof)}")
 
 
-def _witness(proof: "Proof") -> str:
-    at = point_text(proof.witness) or "any point"
-    return f"{at}: the coefficient of {proof.entry} is {proof.enclosure}"
+def _describe_witness(proof: "Proof") -> str:
+    point = point_text(proof.witness) or "any point"
+    return f"{point}: the coefficient of {proof.entry} is {proof.enclosure}"
 
 
-def _telescoping(proof: "Proof | EveryProof") -> str:
+def _describe_telescoping(proof: "Proof | EveryProof") -> str:
     if not proof.telescopes:
         return f"no: {proof.why}"
     return f"S begins with a Lie derivative, that of {cut(proof.potential or '')}"
 
 
-def _of_volume(proof: "Proof | EveryProof") -> str:
+def _describe_volume(proof: "Proof | EveryProof") -> str:
     if proof.area_preserving:
         return "≡ 1" + ("" if proof.symplectic else ", and yet the map is not symplectic")
     if proof.volume_order is not None:

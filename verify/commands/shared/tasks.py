@@ -1,4 +1,4 @@
-"""What commands that do a plan's tasks share: options, the progress shown, what is kept."""
+"""Options, progress and kept results of commands that perform the tasks of a plan."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared.answer import answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.destinations import OUT_FOLDER, keepable
+from verify.commands.shared.destinations import OUT_FOLDER, ensure_keepable
 
 if TYPE_CHECKING:
     from verify.execution.execute import OnResult, Store
@@ -39,37 +39,37 @@ cluster_option = click.option(
 
 
 def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --workers and --cluster, which it gets as one `where`, and --no-cache."""
+    """Add --workers and --cluster, which the command gets as one `where`, and --no-cache."""
 
     @wraps(command)
-    def given(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
+    def wrapper(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
         from verify.execution.executors import Placement
 
         return command(*args, where=Placement(workers, cluster), **options)
 
-    return workers_option(cluster_option(cache_option(given)))
+    return workers_option(cluster_option(cache_option(wrapper)))
 
 
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --keep, --workers, --cluster, --no-cache and --json."""
+    """Add --keep, --workers, --cluster, --no-cache and --json to a command."""
     return keep_option(with_placement(answering(command)))
 
 
 def perform(plan: "Plan", keep: Path | None, where: "Placement") -> "dict[str, Frozen]":
-    """Does the plan's tasks, with their progress shown, and gives their results by key."""
+    """Perform the plan's tasks, with a progress bar, and return their results by key."""
     from verify.execution.execute import execute
 
-    with kept_tasks(plan.tasks, keep) as (store, done):
-        return execute(plan, store, where=where, done=done)
+    with kept_tasks(plan.tasks, keep) as (store, on_result):
+        return execute(plan, store, where=where, done=on_result)
 
 
 @contextmanager
 def kept_tasks(
     tasks: "Mapping[str, Task]", keep: Path | None, option: str = "--keep"
 ) -> "Iterator[tuple[Store, OnResult]]":
-    """Yields where results are kept and what is called with each of the tasks that is finished.
+    """Yield the store of results, and the function to call with each finished task.
 
-    Their progress is shown; an interruption says what is kept where.
+    A bar shows the progress; after an interruption a line says what is kept where.
     """
     from verify.commands.shared.progress import progress_bar
     from verify.execution.execute import Store
@@ -77,14 +77,14 @@ def kept_tasks(
     store = Store(keep)
     try:
         if keep is not None:
-            keepable(keep, option)
+            ensure_keepable(keep, option)
         cost = sum(task.cost for task in tasks.values())
         with progress_bar(f"{len(tasks)} tasks", cost, unit="") as advance:
 
-            def done(name: str, _: object) -> None:
+            def on_result(name: str, _: object) -> None:
                 advance(tasks[name].cost)
 
-            yield store, done
+            yield store, on_result
     except KeyboardInterrupt:
         if keep is not None:
             paths = map(store.path, tasks)  # one may be written and not yet told

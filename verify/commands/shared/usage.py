@@ -1,4 +1,4 @@
-"""A command line that click refuses, in one line: what was typed, and what to type instead."""
+"""One-line messages for a command line that click refuses, with what to type instead."""
 
 import re
 import shlex
@@ -8,10 +8,10 @@ import click
 
 from verify.arithmetic.exact import as_whole
 from verify.commands import Commands
-from verify.commands.shared.input import Named
-from verify.errors import plain_name, unknown
+from verify.commands.shared.input import CatalogueName
+from verify.errors import plain_name, unknown_name
 
-# What others call an option, by what it is called here.
+# Other programs' names for an option, by its name here.
 _OPTIONS = {
     "--step-size": ("h", "dt", "step", "stepsize", "delta-t", "tau", "timestep", "time-step"),
     "--steps": ("n", "nsteps", "n-steps", "num-steps", "iterations"),
@@ -29,73 +29,78 @@ _COMMANDS = {
     "help": "--help", "simulate": "run", "integrate": "run", "solve": "run", "compute": "run",
     "proof": "prove", "verify": "check", "test": "check", "list": "schemes", "method": "schemes",
     "methods": "schemes", "split": "separate", "benchmark": "bench", "plot": "report",
+    # Commands of a group, which are often typed without it.
     "make": "reference", "compare": "reference", "export": "certificate",
 }  # fmt: skip
 _FORMULA = re.compile(r"[^=;]*\b[pq]\d*\*\*[^=;]*")  # with a power of p or q
 
 
-def usage_mistake(error: click.ClickException, typed: Sequence[str]) -> str:
-    """The one line for an error of click's; `typed`: the arguments of the command line."""
-    if found := re.match(r"Option '(.*?)' (requires|does not)", error.message):
+def explain_usage_mistake(error: click.ClickException, command_line: Sequence[str]) -> str:
+    """Return the one line for an error of click's; `command_line`: its arguments."""
+    if match := re.match(r"Option '(.*?)' (requires|does not)", error.message):
         needs = (
-            "has no value; write {} VALUE" if found[2] == "requires" else "takes no value; write {}"
+            "has no value; write {} VALUE" if match[2] == "requires" else "takes no value; write {}"
         )
-        return f"{found[1]}: {needs.format(found[1])}"
+        return f"{match[1]}: {needs.format(match[1])}"
     context = getattr(error, "ctx", None)
     if context is None or not isinstance(error, click.UsageError):
         return error.format_message()
     message = error.message
+    # By its name: older versions of click do not have the class.
     if type(error).__name__ == "NoArgsIsHelpError":
-        listed = ", ".join(context.command.list_commands(context))
-        return f"{context.command_path}: a command is missing; allowed: {listed}"
+        commands_text = ", ".join(context.command.list_commands(context))
+        return f"{context.command_path}: a command is missing; allowed: {commands_text}"
     if isinstance(error, click.NoSuchOption):
-        return _no_such_option(error.option_name, context, typed)
+        return _explain_unknown_option(error.option_name, context, command_line)
     if isinstance(error, click.MissingParameter) and error.param is not None:
-        return _missing(error.param, context, typed)
+        return _explain_missing(error.param, context, command_line)
     if isinstance(error, click.BadParameter) and error.param is not None:
-        return _bad_value(error.param, message)
-    if found := re.match(r"No such command '(.*?)'\.", message):
+        return _explain_bad_value(error.param, message)
+    if match := re.match(r"No such command '(.*?)'\.", message):
         names = context.command.list_commands(context)
-        return str(unknown("command", found[1], names, aliases=_COMMANDS))
-    if found := re.match(r"Got unexpected extra arguments? \((.*)\)", message):
-        return _bare_words(context, typed) or _too_much(found[1], context, typed)
+        return str(unknown_name("command", match[1], names, aliases=_COMMANDS))
+    if match := re.match(r"Got unexpected extra arguments? \((.*)\)", message):
+        # Words without their options have a full remedy; other superfluous words only a hint.
+        return _explain_bare_words(context, command_line) or _explain_extra_words(
+            match[1], context, command_line
+        )
     return f"{message} `{context.command_path} --help` lists what is allowed"
 
 
-def _no_such_option(name: str, context: click.Context, typed: Sequence[str]) -> str:
+def _explain_unknown_option(name: str, context: click.Context, command_line: Sequence[str]) -> str:
     capital = name in ("-H", "--H")  # the Hamiltonian's letter; h is a step size
     if len(name) == 2:  # click takes -system for -s -y …
-        name = next((x for x in typed if x.startswith(name)), name).partition("=")[0]
-    allowed = _options(context.command)
+        name = next((x for x in command_line if x.startswith(name)), name).partition("=")[0]
+    options = _option_names(context.command)
     plain = "hamiltonian" if capital else plain_name(name.lstrip("-"))
-    aliases = {other: ours for ours, others in _OPTIONS.items() if ours in allowed
+    aliases = {other: ours for ours, others in _OPTIONS.items() if ours in options
                for other in others}  # fmt: skip
-    known = {**aliases, **{option.lstrip("-"): option for option in allowed}}
-    if plain in known:
-        return f"{name}: no such option; write {known[plain]}"
-    if elsewhere := _elsewhere(plain, context):
+    spellings = {**aliases, **{option.lstrip("-"): option for option in options}}
+    if plain in spellings:
+        return f"{name}: no such option; write {spellings[plain]}"
+    if elsewhere := _find_elsewhere(plain, context):
         return f"{name}: no such option here; it is one of {elsewhere}"
     from difflib import get_close_matches
 
-    near = get_close_matches(plain, known, n=1, cutoff=0.6)
-    if not near and "--param" in allowed:
+    near = get_close_matches(plain, spellings, n=1, cutoff=0.6)
+    if not near and "--param" in options:
         return f"{name}: no such option; a parameter of H is given as --param {plain}=VALUE"
-    asked = f"is {known[near[0]]} meant? " if near else ""
-    return f"{name}: no such option; {asked}allowed: {', '.join([*allowed, '--help'])}"
+    question = f"is {spellings[near[0]]} meant? " if near else ""
+    return f"{name}: no such option; {question}allowed: {', '.join([*options, '--help'])}"
 
 
-def _options(command: click.Command) -> list[str]:
+def _option_names(command: click.Command) -> list[str]:
     return [option for each in command.params for option in each.opts if option.startswith("-")]
 
 
-def _elsewhere(plain: str, context: click.Context) -> str:
-    """The other commands that have the option, under its name or another that it goes by."""
+def _find_elsewhere(plain: str, context: click.Context) -> str:
+    """Return the other commands that have the option, under this name or a usual other one."""
     ours = {f"--{plain}", *(name for name, others in _OPTIONS.items() if plain in others)}
     return "" if context.parent is None else commands_with(ours)
 
 
 def commands_with(names: set[str], *, several: bool = False) -> str:
-    """The commands that have an option of these names; `several`: that may stand several times."""
+    """Return the commands with an option of these names; `several`: with a repeatable one."""
     having = [
         f"verify {command.name}"
         for command in Commands().values()
@@ -105,50 +110,54 @@ def commands_with(names: set[str], *, several: bool = False) -> str:
     return ", ".join(dict.fromkeys(having))
 
 
-def _missing(parameter: click.Parameter, context: click.Context, typed: Sequence[str]) -> str:
-    name = _name(parameter)
-    if name in typed[1:]:  # it was taken for the value of the option before it
-        before = typed[typed.index(name) - 1]
-        return f"{before}={name}: has no value; write {_written(_option(before, context))}"
-    if bare := _bare_words(context, typed):
+def _explain_missing(
+    parameter: click.Parameter, context: click.Context, command_line: Sequence[str]
+) -> str:
+    name = _shown_name(parameter)
+    if name in command_line[1:]:  # it was taken for the value of the option before it
+        before = command_line[command_line.index(name) - 1]
+        return f"{before}={name}: has no value; write {_usage_of(_find_option(before, context))}"
+    if bare := _explain_bare_words(context, command_line):
         return bare
     if isinstance(parameter, click.Option):
-        return f"{name}: is missing; write {_written(parameter)}"
+        return f"{name}: is missing; write {_usage_of(parameter)}"
     return f"{name}: is missing; write {context.command_path} {name}"
 
 
-def _bad_value(parameter: click.Parameter, message: str) -> str:
-    name, kind = _name(parameter), parameter.type
-    if found := re.match(r"'?(.*?)'? is not (a valid (integer|float)|in the range)", message, re.S):
+def _explain_bad_value(parameter: click.Parameter, message: str) -> str:
+    name, kind = _shown_name(parameter), parameter.type
+    if match := re.match(r"'?(.*?)'? is not (a valid (integer|float)|in the range)", message, re.S):
         low, high = getattr(kind, "min", None), getattr(kind, "max", None)
         whole = isinstance(kind, click.types.IntParamType)
-        allowed = "" if low is None else f", {low} or more" if high is None else f", {low} … {high}"
-        must = f"must be a {'whole ' if whole else ''}number{allowed}"
-        return f"{name}={found[1]}: {must}{as_whole(found[1], low or 1, high) if whole else ''}"
+        range_text = (
+            "" if low is None else f", {low} or more" if high is None else f", {low} … {high}"
+        )
+        must = f"must be a {'whole ' if whole else ''}number{range_text}"
+        return f"{name}={match[1]}: {must}{as_whole(match[1], low or 1, high) if whole else ''}"
     if isinstance(kind, click.Choice):
         value = message.partition("'")[2].partition("'")[0]
-        return str(unknown(name, value, list(map(str, kind.choices))))
+        return str(unknown_name(name, value, list(map(str, kind.choices))))
     return f"{name}: {message}"
 
 
-def _bare_words(context: click.Context, typed: Sequence[str]) -> str:
-    """The mistake of words without their options, which it writes before them; else empty."""
-    command, rest = context.command, typed[len(context.command_path.split()) - 1 :]
+def _explain_bare_words(context: click.Context, command_line: Sequence[str]) -> str:
+    """Return the message for words without their options, which it adds; else empty."""
+    command, rest = context.command, command_line[len(context.command_path.split()) - 1 :]
     _, words, order = command.make_parser(context).parse_args(list(rest))
-    written = _with_options(words, command, order)
-    return f"{' '.join(words)}: not allowed here; write {written}" if written else ""
+    suggestion = _add_options(words, command, order)
+    return f"{' '.join(words)}: not allowed here; write {suggestion}" if suggestion else ""
 
 
-def _with_options(
+def _add_options(
     words: Sequence[str], command: click.Command, order: Sequence[click.Parameter] = ()
 ) -> str:
-    """Each word after the option that takes it; empty where one fits none.
+    """Return each word after the option that takes it; empty where one fits none.
 
-    `order`: the options that the command line has already.
+    `order`: the options that the command line already has.
     """
-    free = [(_name(x), x.type) for x in command.params if x not in order]
+    free = [(_shown_name(x), x.type) for x in command.params if x not in order]
     fits = [
-        [name for name, kind in free if isinstance(kind, Named) and kind.takes(word)]
+        [name for name, kind in free if isinstance(kind, CatalogueName) and kind.takes(word)]
         or [name for name, _ in free if name == "--hamiltonian" and _FORMULA.fullmatch(word)]
         for word in words
     ]
@@ -156,36 +165,41 @@ def _with_options(
     return " ".join(f"{n[0]} {shlex.quote(x)}" for n, x in pairs) if all(fits) else ""
 
 
-def _too_much(extra: str, context: click.Context, typed: Sequence[str]) -> str:
-    at = next((k for k, x in enumerate(typed) if extra == x or extra.startswith(f"{x} ")), 0)
-    option = _option(typed[at - 2], context) if at >= 2 else None
+def _explain_extra_words(extra: str, context: click.Context, command_line: Sequence[str]) -> str:
+    index = next(
+        (k for k, x in enumerate(command_line) if extra == x or extra.startswith(f"{x} ")), 0
+    )
+    option = _find_option(command_line[index - 2], context) if index >= 2 else None
     if isinstance(option, click.Option) and not option.is_flag:
-        value = typed[at - 1]
+        value = command_line[index - 1]
         if option.opts[0] == "--param":
-            meant = extra if "=" in extra else f"{value}={extra}"
-            return f"{extra}: not allowed here; write --param {meant}"
+            assignment = extra if "=" in extra else f"{value}={extra}"
+            return f"{extra}: not allowed here; write --param {assignment}"
         again = f", and {option.opts[0]} again for another" if option.multiple else ""
         write = f"write a value with spaces in quotation marks{again}"
         return f"{extra}: not allowed here; {write}, and nothing without its option"
-    arguments = [_name(each) for each in context.command.params if isinstance(each, click.Argument)]
+    arguments = [
+        _shown_name(each) for each in context.command.params if isinstance(each, click.Argument)
+    ]
     takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
-    about = "" if arguments else _with_options([extra], Commands()["prove"])
+    about = "" if arguments else _add_options([extra], Commands()["prove"])
     takes += about and f" for all of them, or verify prove {about} … for this one"
     return f"{extra}: not allowed here; write {takes}"
 
 
-def _option(name: str, context: click.Context) -> click.Parameter | None:
+def _find_option(name: str, context: click.Context) -> click.Parameter | None:
     return next((each for each in context.command.params if name in each.opts), None)
 
 
-def _name(parameter: click.Parameter) -> str:
+def _shown_name(parameter: click.Parameter) -> str:
     if isinstance(parameter, click.Option):
+        # The long form: -o and --output are one option.
         return max(parameter.opts, key=len)
     return (parameter.metavar or parameter.name or "").strip("[]")
 
 
-def _written(parameter: click.Parameter | None) -> str:
-    """The option with what stands for its value."""
+def _usage_of(parameter: click.Parameter | None) -> str:
+    """Return the option with a placeholder for its value."""
     if parameter is None:
         return "a value"
-    return f"{_name(parameter)} {parameter.metavar or 'VALUE'}"
+    return f"{_shown_name(parameter)} {parameter.metavar or 'VALUE'}"

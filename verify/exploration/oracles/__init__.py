@@ -1,2 +1,1 @@
-"""Steps in ball arithmetic, in other coordinates, and in many digits: what properties hold kernels
-and maps against."""
+"""The references for kernels and maps: steps in balls, in other coordinates, and in many digits."""

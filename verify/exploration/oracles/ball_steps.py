@@ -1,7 +1,7 @@
 """Steps of a map in ball arithmetic, with the Jacobian of each.
 
-No kernel is written for them: an oracle for the number systems that shares no code with those, and
-rigorous. ΔJ is taken from the entries of J, not from its closed form.
+They need no kernel, so that they are a rigorous oracle for the number systems that shares no code
+with these. ΔJ is computed from the entries of J, not from its closed form.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,12 +11,13 @@ from itertools import combinations
 
 import flint
 
-from verify.arithmetic.arb import Ball, rational_ball, shown
+from verify.arithmetic.arb import Ball, format_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.property import Silent, Violation, known, only_if
+from verify.exploration.property import Silent, Violation, only_if, require_value
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 from verify.schemes.maps.step_map import StepMap
 
+# 320 bits leave room for balls that widen from step to step.
 BITS = 320
 _SHARP = 120  # bits that a ball must know to be worth comparing
 Matrix = flint.arb_mat
@@ -25,18 +26,22 @@ Point = dict[str, Ball]
 
 @dataclass(frozen=True)
 class BallState:
-    """After so many steps: the point by name (with t where H depends on it), the Jacobian of all of
-    them, `matrix`, that of the last, `own`, and Π det J_k over them."""
+    """The state after some steps.
+
+    `point`: the coordinates by name, with t if H depends on it; `matrix`: the tangent map of all
+    steps; `step_jacobian`: the Jacobian of the last one; `product`: Π det J_k over the steps.
+    """
 
     point: Point
     matrix: Matrix
-    own: Matrix
+    step_jacobian: Matrix
     product: Ball
 
     def sharp(self) -> "BallState":
-        """The same; Silent where a number is too wide to be told from others.
+        """Return the state itself; Silent if a ball is too wide for a comparison.
 
-        In the plane the product stands for the Jacobian, whose entries may be wide where it is not.
+        In the plane the product is tested instead of the entries of the tangent map, which may be
+        wide where the product is not.
         """
         planar = self.matrix.nrows() == 2
         only_if(all(map(sharp, self.point.values())))
@@ -47,9 +52,9 @@ class BallState:
 def ball_steps(
     step: StepMap, start: Mapping[str, Fraction], steps: int, bits: int = BITS
 ) -> Sequence[BallState]:
-    """The states after 0, 1, … steps; Silent where the map solves equations, or is not defined.
+    """Return the states after 0, 1, … steps; Silent if the map is implicit, or not defined there.
 
-    `start`: the coordinates, h, which may be negative, and t where H depends on it.
+    `start`: the coordinates, h, which may be negative, and t if H depends on it.
     """
     only_if(not step.implicit)
     with working_precision(bits):
@@ -57,76 +62,84 @@ def ball_steps(
         one = identity(len(step.hamiltonian.coordinates))
         states = [BallState(point, one, one, flint.arb(1))]
         for _ in range(steps):
-            states.append(stepped(step, states[-1], rational_ball(start["h"])))
+            states.append(take_step(step, states[-1], rational_ball(start["h"])))
     return states
 
 
-def stepped(step: StepMap, state: BallState, h: Ball) -> BallState:
-    """One step from a state, in flint's present precision; Silent where it is not defined."""
-    point, written = dict(state.point), step.closed if step.formulas is not None else None
+def take_step(step: StepMap, state: BallState, h: Ball) -> BallState:
+    """Compute one step from a state, in flint's present precision; Silent if it is undefined."""
+    # A map given by formulas has no step in operations, only its closed form.
+    point, closed_form = dict(state.point), step.closed if step.formulas is not None else None
     try:
-        changes, slopes = step_in_balls(step.field, written or known(step.step), point, h)
+        changes, slopes = step_in_balls(
+            step.field, closed_form or require_value(step.step), point, h
+        )
     except UndefinedError:
         raise Silent from None
     for name, change in zip(step.field.names, changes, strict=True):
         point[name] += change
-    own = slopes + identity(len(changes))
+    # The changes are returned without z itself, so that their derivative lacks the identity.
+    jacobian = slopes + identity(len(changes))
+    # A scheme advances t with the step, and t is no coordinate of the Jacobian.
     if "t" in point:
         point["t"] += h
-    return BallState(point, own * state.matrix, own, state.product * own.det())
+    return BallState(point, jacobian * state.matrix, jacobian, state.product * jacobian.det())
 
 
 def identity(size: int) -> Matrix:
-    """The matrix 1."""
+    """Return the identity matrix."""
     return Matrix([[int(a == b) for b in range(size)] for a in range(size)])
 
 
 def omega(size: int) -> Matrix:
-    """Ω of Σ dp_i∧dq_i, of z = (p1 … pn, q1 … qn)."""
+    """Return Ω of Σ dp_i∧dq_i, for z = (p1 … pn, q1 … qn)."""
     n = size // 2
     return Matrix([[(b == a + n) - (a == b + n) for b in range(size)] for a in range(size)])
 
 
 def defect(jacobian: Matrix) -> Matrix:
-    """JᵀΩJ − Ω, in flint's present precision."""
+    """Return S = JᵀΩJ − Ω, in flint's present precision."""
     canonical = omega(jacobian.nrows())
     return jacobian.transpose() * canonical * jacobian - canonical
 
 
 def entries(form: Matrix) -> Iterator[Ball]:
-    """Those of an antisymmetric matrix above its diagonal."""
+    """Yield the entries of an antisymmetric matrix above its diagonal."""
     for a, b in combinations(range(form.nrows()), 2):
         yield form[a, b]
 
 
 def largest(form: Matrix) -> Ball:
-    """The greatest |entry|."""
-    found = flint.arb(0)
+    """Return the greatest |entry|."""
+    maximum = flint.arb(0)
     for x in entries(form):
-        found = found.max(abs(x))
-    return found
+        maximum = maximum.max(abs(x))
+    return maximum
 
 
 def overlap(x: Matrix, y: Matrix) -> bool:
-    """Whether two matrices may be the same."""
+    """Return True if two matrices may be the same."""
     return all(a.overlaps(b) for a, b in zip(x.entries(), y.entries(), strict=True))
 
 
-def unlike(found: Ball, wanted: Ball) -> str:
-    """`found` and what it should be, with their difference, which 12 digits may not show."""
+def unlike(computed: Ball, expected: Ball) -> str:
+    """Describe both values, with their difference, which 12 digits may not show."""
     with working_precision(BITS):
-        difference = found - wanted
-    given = f"{shown(found, 12)}, and should be {shown(wanted, 12)}"
-    return f"{given} (too large by {shown(difference, 3)})"
+        # Midpoints may be equal to 12 digits: the difference shows where they part.
+        difference = computed - expected
+    comparison = f"{format_ball(computed, 12)}, and should be {format_ball(expected, 12)}"
+    return f"{comparison} (too large by {format_ball(difference, 3)})"
 
 
-def must_overlap(what: str, found: Ball, wanted: Ball, how: str = "") -> None:
-    """Violation where the two are apart: `what` with its verb, what it should be, and `how` that is
-    known."""
-    if not found.overlaps(wanted):
-        raise Violation(f"{what} {unlike(found, wanted)}{how}")
+def must_overlap(what: str, computed: Ball, expected: Ball, how: str = "") -> None:
+    """Raise Violation if the two balls are disjoint.
+
+    `what`: the subject of the message, with its verb; `how`: where the expected value comes from.
+    """
+    if not computed.overlaps(expected):
+        raise Violation(f"{what} {unlike(computed, expected)}{how}")
 
 
 def sharp(x: Ball) -> bool:
-    """Whether a ball is narrow: relative to numbers beyond 1, and absolute below."""
+    """Return True if a ball is narrow: relative to |x| beyond 1, and absolutely below."""
     return bool(x.is_finite()) and x.rad() * 2**_SHARP < 1 + x.abs_lower()

@@ -11,7 +11,7 @@ from functools import cache
 from inspect import getsource
 
 from verify.discovery import Catalogue
-from verify.errors import unknown
+from verify.errors import unknown_name
 from verify.exploration.property import Property
 from verify.exploration.sample import Sample
 
@@ -20,24 +20,24 @@ _FILES = Catalogue(__name__, __path__)
 _SPEAK_OF: Mapping[str, Callable[[Sample], bool]] = {
     "plane": lambda sample: sample.hamiltonian.planar,
     "several": lambda sample: not sample.hamiltonian.planar,
-    "time": lambda sample: sample.timed,
+    "time": lambda sample: sample.depends_on_time,
 }
 
 
 def names() -> tuple[str, ...]:
-    """The names of all properties."""
+    """Return the names of all properties."""
     return _FILES.names
 
 
 @cache
 def get(name: str) -> Property:
-    """The property of that name; InputError where there is none.
+    """Return the property of that name; InputError if there is none.
 
     >>> print(get("symmetric-schemes").sentence)
     The step of −h undoes the step of h, for a scheme that claims to be symmetric.
     """
     if name not in _FILES:
-        raise unknown("property", name, names())
+        raise unknown_name("property", name, names())
     module = _FILES.module(name)
     text = ast.get_docstring(ast.parse(getsource(module)))  # python -OO keeps no __doc__
     sentence = (text or "").splitlines()[0]

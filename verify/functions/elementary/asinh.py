@@ -5,12 +5,13 @@ from typing import Any
 from verify.functions.function import FixedPoint, Function
 
 
-def _composed(numbers: Any, x: Any) -> Any:
-    """log(|x| + √(1 + x²)), or log |x| + log(1 + √(1 + 1/x²)) from |x| = 1 on, with x's sign.
+def _asinh(numbers: Any, x: Any) -> Any:
+    """Return log(|x| + √(1 + x²)), or log |x| + log(1 + √(1 + 1/x²)) from |x| = 1 on, with x's
+    sign.
 
-    So all that is computed stays in the range, and all logarithms are of numbers from 1 on. With u
-    a unit of the finer numbers the root's argument, 1 at least, is off by 3 u, the root by 2060 u,
-    and the sum of logarithms, whose slopes are at most 1, by 2062 u. That is 2^−52 units of the
+    So all intermediate values stay in the range, and all logarithms are of numbers from 1 on. With
+    u a unit of the finer numbers the root's argument, 1 at least, is off by 3 u, the root by 2060
+    u, and the sum of logarithms, whose slopes are at most 1, by 2062 u. That is 2^−52 units of the
     result's numbers, to which it is rounded.
     """
     size, one, where = numbers.absolute(x), numbers.one, numbers.where
@@ -30,7 +31,7 @@ FUNCTION = Function(
     positive=lambda x: x,
     # Between its ends' values, as it increases: arb's own is NaN where a ball is wide.
     ball=lambda x: x.lower().asinh().union(x.upper().asinh()),
-    fixed=FixedPoint("0.501", composed=_composed),
+    fixed=FixedPoint("0.501", composed=_asinh),
     numpy="arcsinh",
     shown="arsinh",
     tex=r"\operatorname{arsinh}",

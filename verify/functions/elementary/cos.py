@@ -8,7 +8,7 @@ FUNCTION = Function(
     lipschitz=1,
     pair=CIRCLE,
     parts=lambda odd, even, over: even,
-    image=lambda t, x: t.angles.of(x)[0],
+    image=lambda t, x: t.angles.cos_and_sin(x)[0],
     bounded=True,
     fixed=FixedPoint("0.6"),
 )

@@ -1,4 +1,4 @@
-"""log x, the natural logarithm, of what is positive."""
+"""log x, the natural logarithm, of positive x."""
 
 from verify.functions.function import Domain, FixedPoint, Function
 

@@ -1,6 +1,7 @@
-"""A step of a library or a program, as it is called from here.
+"""A step of a shared library or of a program, called from Python.
 
-The functions that a shared library has, and why one that is asked for may be missing.
+The module also lists the functions of a shared library, and explains why a requested one may be
+missing.
 """
 
 import atexit
@@ -27,7 +28,7 @@ from verify.integrators.foreign.lines import (
 )
 from verify.integrators.foreign.process import Program
 from verify.integrators.user_code.layout import Layout
-from verify.integrators.user_code.loading import it_has
+from verify.integrators.user_code.loading import list_functions
 from verify.integrators.user_code.number_type import DOUBLE_DOUBLE, FLOAT128, NumberType
 from verify.integrators.user_code.step import StepError, Theirs
 from verify.integrators.user_code.user_map import UserMap
@@ -36,20 +37,25 @@ _DYNAMIC, _CODE = 11, (0, 2, 10)  # a section of dynamic symbols; kinds of symbo
 
 
 def functions_of(library: str) -> list[str]:
-    """Those that an ELF file of 64 bits, the usual one, defines for others; of others none."""
+    """List the functions that an ELF file of 64 bits exports; none for other files."""
     content = Path(library).read_bytes()
+    # ELF of 64 bits, with the low byte first: the layout that the offsets below belong to.
     if content[:6] != b"\x7fELF\x02\x01":
         return []
     with contextlib.suppress(struct.error, ValueError, IndexError):
-        return sorted(set(_defined(content)))
+        return sorted(set(_read_symbols(content)))
     return []
 
 
-def _defined(content: bytes) -> Iterator[str]:
+def _read_symbols(content: bytes) -> Iterator[str]:
+    # The header has the offset of the table of sections at byte 40, the size of an entry at byte 58
+    # and their number at byte 60.
     begin, size, count = struct.unpack_from("<Q10xHH", content, 40)
     sections = [struct.unpack_from("<IIQQQQI", content, begin + k * size) for k in range(count)]
     for _, kind, _, _, offset, length, link in sections:
         for k in range(offset, offset + length, 24) if kind == _DYNAMIC else ():
+            # A symbol has 24 bytes, which begin with st_name, st_info, st_other and st_shndx.
+            # Section 0 means that another library defines it.
             name, info, where = struct.unpack_from("<IBxH", content, k)
             if where and info & 15 in _CODE:
                 start = sections[link][4] + name
@@ -57,21 +63,21 @@ def _defined(content: bytes) -> Iterator[str]:
 
 
 def why_missing(symbol: str, names: list[str]) -> str:
-    """What to do where a library has these functions and not the one that is asked."""
+    """Explain what to do where a library has these functions and not the requested one."""
     part, lower = f"{len(symbol)}{re.escape(symbol)}", re.escape(symbol.lower())
     bound = "declare it bind(c), with n, t and h by value"
     for pattern, language, advice in (
         (rf"_Z{part}.*|_ZN[^E]*(?<!\d){part}(E|17h).*", "C++", 'declare it extern "C"'),
         (rf"{lower}_|__\w+_MOD_{lower}|\w+_mp_{lower}_", "Fortran", bound),
     ):
-        if written := next((name for name in names if re.fullmatch(pattern, name)), None):
-            return f"it has {written}, which is how {language} writes {symbol}: {advice}"
-    return f"there is no {symbol} in it; {it_has(names, symbol)}"
+        if exported := next((name for name in names if re.fullmatch(pattern, name)), None):
+            return f"it has {exported}, which is how {language} writes {symbol}: {advice}"
+    return f"there is no {symbol} in it; {list_functions(names, symbol)}"
 
 
 _ORDER = ("p", "q", "t", "h")
 Real: TypeAlias = float | Fraction
-Asked: TypeAlias = tuple[Theirs, Theirs, Real, Real]  # p, q, t, h
+Arguments: TypeAlias = tuple[Theirs, Theirs, Real, Real]  # p, q, t, h
 Write: TypeAlias = Callable[[Sequence[Real], NumberType], str]
 Read: TypeAlias = Callable[[str, int, NumberType], Sequence[Real]]
 LIBRARIES = (".so", ".dylib", ".dll")
@@ -91,13 +97,14 @@ class ForeignFunction:
         atexit.register(program.close)
 
     def another(self) -> "ForeignFunction":
-        """The same in a process of its own, which knows nothing of the calls of this one."""
+        """Return the same function in a process of its own, which knows nothing of earlier
+        calls."""
         old = self.program
-        fresh = Program(old.words, old.called, old.seconds, old.greeting, old.advice, old.shown)
+        fresh = Program(old.words, old.called, old.seconds, old.greeting, old.advice, old.show_line)
         return ForeignFunction(fresh, self.kind, self.write, self.read)
 
     def close(self) -> None:
-        """Ends its process."""
+        """End its process."""
         self.program.close()
 
     def __call__(self, p: Theirs, q: Theirs, t: Theirs, h: Theirs) -> tuple[Theirs, Theirs]:
@@ -106,38 +113,38 @@ class ForeignFunction:
             raise result
         return result
 
-    def several(self, states: Sequence[Asked]) -> list[tuple[Theirs, Theirs] | StepError]:
-        """(p', q') of each (p, q, t, h), or what is done instead: in a fraction of the time that
-        as many calls take."""
+    def several(self, states: Sequence[Arguments]) -> list[tuple[Theirs, Theirs] | StepError]:
+        """Return (p', q') of each (p, q, t, h), or the error in place of it: in a fraction of the
+        time that as many calls take."""
         lines = [
-            self.write([t, h, *(x for z in (p, q) for x in _each(z))], self.kind)
+            self.write([t, h, *(x for z in (p, q) for x in _as_sequence(z))], self.kind)
             for p, q, t, h in states
         ]
         answers = self.program.answers(lines)
         return [self._read(p, answer) for (p, *_), answer in zip(states, answers, strict=True)]
 
     def _read(self, p: Theirs, answer: str | StepError) -> tuple[Theirs, Theirs] | StepError:
-        """What an answer says of a state with this p."""
+        """Parse the program's answer to a call with this p."""
         if isinstance(answer, StepError):
             return answer
         several = hasattr(p, "__len__")
-        first, *others = _each(p)
-        n = 1 + len(others)
+        first, *rest = _as_sequence(p)
+        n = 1 + len(rest)
         try:
-            read = self.read(answer, 2 * n, self.kind)
+            numbers = self.read(answer, 2 * n, self.kind)
         except StepError as error:
             return error
         floats = isinstance(first, float)
-        z: list[Theirs] = [float(x) if floats else Fraction(x) for x in read]
+        z: list[Theirs] = [float(x) if floats else Fraction(x) for x in numbers]
         return (z[:n], z[n:]) if several else (z[0], z[1])
 
 
-def _each(z: Theirs) -> Sequence[Theirs]:
+def _as_sequence(z: Theirs) -> Sequence[Theirs]:
     return z if hasattr(z, "__len__") else [z]
 
 
-def of_command(command: str, kind: NumberType, seconds: float, degrees: int = 1) -> UserMap:
-    """The program's step. Raises InputError where it does not start."""
+def step_of_command(command: str, kind: NumberType, seconds: float, degrees: int = 1) -> UserMap:
+    """Return the step of the program. Raises InputError where it does not start."""
     try:
         words = shlex.split(command)
     except ValueError as error:
@@ -152,38 +159,38 @@ def of_command(command: str, kind: NumberType, seconds: float, degrees: int = 1)
 
 
 def is_library(target: str) -> bool:
-    """Whether LIB.so:SYMBOL is written, and not MODULE:FUNCTION."""
+    """Return True if the target is written as LIB.so:SYMBOL, and not as MODULE:FUNCTION."""
     place, _, _ = target.rpartition(":")
     name = Path(place or target).name
     return Path(place or target).suffix in LIBRARIES or ".so." in name
 
 
-def of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> UserMap:
-    """The step of LIB.so:SYMBOL. Raises InputError where it does not load."""
+def step_of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> UserMap:
+    """Return the step of LIB.so:SYMBOL. Raises InputError where it does not load."""
     place, _, symbol = target.rpartition(":")
     if not place or not symbol.isidentifier():
         raise InputError("integrator", target, "write it as LIB.so:SYMBOL")
     if not Path(place).is_file():
         raise InputError("integrator", target, f"there is no file {place}")
-    wanted = f"; wanted: {prototype(symbol, kind)}"
+    expected = f"; wanted: {prototype(symbol, kind)}"
     names = functions_of(place)
     if names and symbol not in names:  # another library, as C's, may have one of that name
-        raise InputError("integrator", target, why_missing(symbol, names) + wanted)
-    own = str(Path(place).resolve())
+        raise InputError("integrator", target, why_missing(symbol, names) + expected)
+    library_path = str(Path(place).resolve())
     script = str(Path(host.__file__).resolve())
-    words = [sys.executable, "-I", "-S", script, own, symbol, kind.name, str(degrees)]
+    words = [sys.executable, "-I", "-S", script, library_path, symbol, kind.name, str(degrees)]
 
-    def shown(line: str) -> str:
+    def show_line(line: str) -> str:
         with contextlib.suppress(ValueError):  # it is the greeting that is waited for
             return short_line(line_of(read_digits(line, 2 + 2 * degrees, kind), kind))
         return line
 
-    program = Program(words, target, seconds, "ready", wanted, shown)
+    program = Program(words, target, seconds, "ready", expected, show_line)
     return _step(ForeignFunction(program, kind, digits_of, read_digits), kind, seconds, degrees)
 
 
 def prototype(symbol: str, kind: NumberType) -> str:
-    """How C declares a step of numbers of this type."""
+    """Return the C declaration of a step in numbers of this type."""
     real = kind.declared
     one = f"const {real} *" if kind in (FLOAT128, DOUBLE_DOUBLE) else f"{real} "
     return f"void {symbol}(int n, {one}t, {one}h, {real} *p, {real} *q)"

@@ -21,12 +21,14 @@ _BECOME_PARENT_OF_ORPHANS = 36  # PR_SET_CHILD_SUBREAPER
 
 
 def main() -> None:
-    """Until the program or the socket ends."""
+    """Run until the program or the socket ends."""
     control, seconds = socket.socket(fileno=int(sys.argv[1])), int(sys.argv[2])
     control.set_inheritable(False)
     ending = control.fileno()
-    woken, wakes = os.pipe()
+    wakeup, wakes = os.pipe()
     os.set_blocking(wakes, False)
+    # A signal writes a byte into this pipe, which wakes `select`: else a child that ends between
+    # two looks would be missed.
     signal.set_wakeup_fd(wakes)
     signal.signal(signal.SIGCHLD, lambda *_: None)
     # Should we be ended, it is too, at last; and there is no file of its memory where it crashes.
@@ -34,10 +36,10 @@ def main() -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_BECOME_PARENT_OF_ORPHANS, 1, 0, 0, 0)
-    first, status = _started(sys.argv[3:], control), None
-    while status is None and ending not in select.select([ending, woken], [], [])[0]:
-        os.read(woken, 512)
-        status = _reaped(first)
+    first, status = _start(sys.argv[3:], control), None
+    while status is None and ending not in select.select([ending, wakeup], [], [])[0]:
+        os.read(wakeup, 512)
+        status = _reap(first)
     _end_all(first)
     code = os.waitstatus_to_exitcode(status or 0)
     if code < 0:  # as the program: by the same signal
@@ -47,8 +49,8 @@ def main() -> None:
     os._exit(code)
 
 
-def _started(words: list[str], control: socket.socket) -> int:
-    """The program's process, in a group of its own; why there is none is said by the socket."""
+def _start(words: list[str], control: socket.socket) -> int:
+    """Start the program in a process group of its own; report a failure through the socket."""
     ignored = [signal.SIGPIPE, signal.SIGXFSZ]  # by Python, and by what it starts
     try:
         first = os.posix_spawnp(words[0], words, os.environ, setpgroup=0, setsigdef=ignored)
@@ -62,22 +64,23 @@ def _started(words: list[str], control: socket.socket) -> int:
     return first
 
 
-def _reaped(first: int) -> int | None:
-    """How the first process ended, if it has; whatever else has ended is gone then."""
+def _reap(first: int) -> int | None:
+    """Return the first process's exit status, None while it runs; collect all others that have
+    ended."""
     status = None
     with contextlib.suppress(ChildProcessError):
-        while (ended := os.waitpid(-1, os.WNOHANG))[0]:
-            status = ended[1] if ended[0] == first else status
+        while (child := os.waitpid(-1, os.WNOHANG))[0]:
+            status = child[1] if child[0] == first else status
     return status
 
 
 def _end_all(first: int) -> None:
-    """Children of what is ended become children of ours: until there is none."""
+    """End all children; children of what is ended become ours, so repeat until there is none."""
     with contextlib.suppress(OSError):
         os.killpg(first, signal.SIGKILL)
     children = Path(f"/proc/self/task/{os.getpid()}/children")
-    while children.exists() and (left := children.read_text().split()):
-        for child in left:
+    while children.exists() and (remaining := children.read_text().split()):
+        for child in remaining:
             os.kill(int(child), signal.SIGKILL)
         os.waitpid(-1, 0)
 

@@ -24,9 +24,11 @@ _LARGEST = 16  # bytes of a number, but for a double's 8; C wants it at a multip
 
 
 def _own_names_first() -> int:
-    """How to load: so that a call in the library reaches its own `step`, not glibc's old one.
+    """Return the mode of loading in which a call in the library reaches its own `step`, not glibc's
+    old one.
 
-    macOS and musl have no such mode. A sanitizer, loaded before us, ends what asks for it.
+    macOS and musl have no such mode. A sanitizer, loaded before us, ends a program that requests
+    it.
     """
     loaded = ctypes.CDLL(None)
     sanitized = hasattr(loaded, "__sanitizer_print_stack_trace")
@@ -34,20 +36,24 @@ def _own_names_first() -> int:
 
 
 def stepper(library: str, symbol: str, name: str, n: int) -> Callable[[bytes], bytes]:
-    """Loads the library; its step of t, h, p and q as they lie in memory, to p and q."""
+    """Load the library; return its step of t, h, p and q as they lie in memory, to p and q."""
     function = ctypes.CDLL(library, _own_names_first())[symbol]
     function.restype = None
-    each = 8 if name == "double" else _LARGEST
-    size = (2 + 2 * n) * each
+    number_size = 8 if name == "double" else _LARGEST
+    size = (2 + 2 * n) * number_size
     memory = ctypes.create_string_buffer(size + _LARGEST)
+    # The address is rounded up to a multiple of 16, which C requires of a long double and of a
+    # __float128.
     begin = ctypes.addressof(memory) + -ctypes.addressof(memory) % _LARGEST
-    at = begin, begin + each, begin + 2 * each, begin + (2 + n) * each
+    addresses = begin, begin + number_size, begin + 2 * number_size, begin + (2 + n) * number_size
     by_value = {"double": ctypes.c_double, "long-double": ctypes.c_longdouble}.get(name)
     first = (by_value or ctypes.c_char).from_address
-    t, h = (first(x) if by_value else ctypes.c_void_p(x) for x in at[:2])
-    skipped = at[2] - ctypes.addressof(memory)
-    results = memoryview(memory)[skipped : skipped + 2 * n * each]  # it keeps the memory, too
-    count, p, q = ctypes.c_int(n), ctypes.c_void_p(at[2]), ctypes.c_void_p(at[3])
+    t, h = (first(x) if by_value else ctypes.c_void_p(x) for x in addresses[:2])
+    skipped = addresses[2] - ctypes.addressof(memory)
+    results = memoryview(memory)[
+        skipped : skipped + 2 * n * number_size
+    ]  # it keeps the memory, too
+    count, p, q = ctypes.c_int(n), ctypes.c_void_p(addresses[2]), ctypes.c_void_p(addresses[3])
 
     def call(numbers: bytes) -> bytes:
         ctypes.memmove(begin, numbers, size)
@@ -58,7 +64,7 @@ def stepper(library: str, symbol: str, name: str, n: int) -> Callable[[bytes], b
 
 
 def main() -> None:
-    """Until its input ends."""
+    """Answer lines until the input ends."""
     library, symbol, name, n = sys.argv[1:5]
     try:
         call = stepper(library, symbol, name, int(n))

@@ -1,9 +1,9 @@
-"""Numbers in the lines that a program is given and gives back.
+"""Numbers in the lines that are sent to a program and read from it.
 
-`t h p1 … pn q1 … qn` goes in, each as a decimal that is read back to the same number; of a number
+`t h p1 … pn q1 … qn` is sent, each as a decimal that is read back to the same number; of a number
 that is a sum of two doubles both, high and low. `p1 … pn q1 … qn` comes back, in decimals or in
-hexadecimal floats. To our own host of libraries and back they go as they lie in the memory of a C
-program, on the machines that we know.
+hexadecimal floats. To our own host of libraries and back the numbers go as they lie in the memory
+of a C program, on the machines that we know.
 """
 
 import contextlib
@@ -27,7 +27,7 @@ _BIAS, _TOP = 16383, 0x7FFF  # of the exponent: of 1, and the largest, of what i
 
 
 def line_of(numbers: Sequence[float | Fraction], kind: NumberType) -> str:
-    """What a program is given."""
+    """Format the line that is sent to a program."""
     return " ".join(text for x in numbers for text in _texts(x, kind))
 
 
@@ -41,33 +41,34 @@ def _texts(x: float | Fraction, kind: NumberType) -> list[str]:
 
 
 def _decimal(x: Fraction, digits: int) -> str:
-    """With so many significant digits."""
+    """Format x with so many significant digits."""
     if x == 0:
         return "0.0"
-    rounded = Context(digits).divide(Decimal(x.numerator), Decimal(x.denominator))
-    return f"{rounded:.{digits - 1}e}"
+    decimal = Context(digits).divide(Decimal(x.numerator), Decimal(x.denominator))
+    return f"{decimal:.{digits - 1}e}"
 
 
-def numbers_of(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fraction]:
-    """What a program gave back, so many numbers of its type: floats where these are doubles.
+def numbers_of(line: str, length: int, kind: NumberType) -> Sequence[float | Fraction]:
+    """Parse the line that a program answers: so many numbers of its type, floats where these are
+    doubles.
 
     Raises StepError where it is something else.
     """
     words = line.split()
-    if len(words) != wanted * kind.parts:
-        told = count(wanted, "number") + (" of two doubles" if kind.parts > 1 else "")
-        problem = f"; wanted: {told}, p' and then q', in a line, and nothing else"
-        raise StepError(f"it answers {quoted(line)}{problem}")
+    if len(words) != length * kind.parts:
+        expected = count(length, "number") + (" of two doubles" if kind.parts > 1 else "")
+        problem = f"; wanted: {expected}, p' and then q', in a line, and nothing else"
+        raise StepError(f"it answers {quote(line)}{problem}")
     if kind is DOUBLE:
         return [_double(word) for word in words]
     if kind.parts == 1:
-        return [kind.rounded(number_of(word)) for word in words]
+        return [kind.round_number(number_of(word)) for word in words]
     doubles = [Fraction(_double(word)) for word in words]
     return [high + low for high, low in zip(doubles[::2], doubles[1::2], strict=True)]
 
 
 def _double(word: str) -> float:
-    """The nearest double; quickly where Python reads it, as it does most."""
+    """Parse the nearest double; quickly where Python reads the word, as it does most."""
     with contextlib.suppress(ValueError, OverflowError):
         x = float.fromhex(word) if "x" in word else float(word)
         if x - x == 0 and word.isascii() and "_" not in word:
@@ -75,40 +76,40 @@ def _double(word: str) -> float:
     try:
         return float(number_of(word))
     except OverflowError:
-        raise StepError(f"it answers {quoted(word)}, which is no number of its type") from None
+        raise StepError(f"it answers {quote(word)}, which is no number of its type") from None
 
 
 def number_of(word: str) -> Fraction:
-    """One number. Raises StepError for what is none, or is not finite."""
+    """Parse one number. Raises StepError for what is none, or is not finite."""
     text = word.lower()
     if _NOT_FINITE.fullmatch(text):
         raise _is_not_finite(word)
     for pattern, base, scale in ((_HEXADECIMAL, 16, 2), (_DECIMAL, 10, 10)):
-        found = pattern.fullmatch(text)
-        if found and found[2] + found[3]:
-            exponent = int(found[4] or 0)
+        match = pattern.fullmatch(text)
+        if match and match[2] + match[3]:
+            exponent = int(match[4] or 0)
             if len(text) > 200 or abs(exponent) > _LARGEST_EXPONENT:
-                raise StepError(f"it answers {quoted(word)}, which is no number of its type")
-            places = len(found[3]) * (4 if base == 16 else 1)
-            size = int(found[2] + found[3], base) * Fraction(scale) ** (exponent - places)
-            return -size if found[1] == "-" else size
-    raise StepError(f"it answers {quoted(word)}, which is no number")
+                raise StepError(f"it answers {quote(word)}, which is no number of its type")
+            places = len(match[3]) * (4 if base == 16 else 1)
+            size = int(match[2] + match[3], base) * Fraction(scale) ** (exponent - places)
+            return -size if match[1] == "-" else size
+    raise StepError(f"it answers {quote(word)}, which is no number")
 
 
 def _is_not_finite(text: str) -> StepError:
-    return StepError(f"it answers {quoted(text)}, which is not finite")
+    return StepError(f"it answers {quote(text)}, which is not finite")
 
 
-def quoted(said: str | bytes) -> str:
-    """What a program says, in a sentence: cut, and without what a terminal acts on."""
-    text = said.decode("utf-8", "replace") if isinstance(said, bytes) else said
+def quote(output: str | bytes) -> str:
+    """Quote what a program prints, in a sentence: cut, and without what a terminal acts on."""
+    text = output.decode("utf-8", "replace") if isinstance(output, bytes) else output
     text = "".join(x if x.isprintable() else " " for x in text.strip())
     short = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
     return f"“{short}”" if short else "an empty line"
 
 
 def short_line(line: str) -> str:
-    """What a program is given, in a sentence."""
+    """Shorten the line that is sent to a program, for a sentence."""
     text = " ".join(f"{float(x):g}" for x in line.split())
     return text if len(text) <= 2 * _SHOWN else text[: 2 * _SHOWN] + "…"
 
@@ -117,20 +118,21 @@ def short_line(line: str) -> str:
 
 
 def digits_of(numbers: Sequence[float | Fraction], kind: NumberType) -> str:
-    """Their bytes in hexadecimal digits, as they lie in the memory of a C program."""
+    """Format the bytes of the numbers as hexadecimal digits, as they lie in the memory of a C
+    program."""
     if kind is DOUBLE:
         return array("d", map(float, numbers)).tobytes().hex()
     exact = [Fraction(x) for x in numbers]
     if kind.parts > 1:
         return array("d", (y for x in exact for y in two_doubles(x))).tobytes().hex()
-    return b"".join(_packed(x, kind) for x in exact).hex()
+    return b"".join(_pack(x, kind) for x in exact).hex()
 
 
-def read_digits(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fraction]:
-    """The same backwards, so many numbers. Raises StepError for what is not finite."""
+def read_digits(line: str, length: int, kind: NumberType) -> Sequence[float | Fraction]:
+    """Parse so many numbers from such digits. Raises StepError for a number that is not finite."""
     raw = bytes.fromhex(line)
     if kind is not DOUBLE and kind.parts == 1:
-        return [_unpacked(raw[k * _SIZE : (k + 1) * _SIZE], kind) for k in range(wanted)]
+        return [_unpack(raw[k * _SIZE : (k + 1) * _SIZE], kind) for k in range(length)]
     doubles = array("d", raw)
     for x in doubles:
         if x - x != 0:
@@ -140,30 +142,34 @@ def read_digits(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fr
     return [Fraction(x) + Fraction(y) for x, y in zip(doubles[::2], doubles[1::2], strict=True)]
 
 
-def _written(kind: NumberType) -> int:
-    """How many bits of the significand are: a long double's first one is, which is 1."""
+def _stored_bits(kind: NumberType) -> int:
+    """Return how many bits of the significand are stored: only a long double stores its leading
+    bit, which is 1."""
     return kind.bits if kind is LONG_DOUBLE else kind.bits - 1
 
 
-def _packed(x: Fraction, kind: NumberType) -> bytes:
-    """x, rounded to the type; 0 where it is too small."""
-    exact, written = kind.rounded(x), _written(kind)
+def _pack(x: Fraction, kind: NumberType) -> bytes:
+    """Return the bytes of x, rounded to the type; of 0 where it is too small."""
+    exact, stored = kind.round_number(x), _stored_bits(kind)
     size, sign = abs(exact), int(exact < 0)
+    # After rounding x is a whole number over a power of 2, so that this is ⌊log₂|x|⌋ exactly.
     power = size.numerator.bit_length() - size.denominator.bit_length()  # a power of 2
     whole = int(size / Fraction(2) ** (power - kind.bits + 1))
     if not whole or power <= -_BIAS:
         return bytes(_SIZE)
     top = power + _BIAS | sign << 15
-    return (whole & ((1 << written) - 1) | top << written).to_bytes(_SIZE, "little")
+    return (whole & ((1 << stored) - 1) | top << stored).to_bytes(_SIZE, "little")
 
 
-def _unpacked(raw: bytes, kind: NumberType) -> Fraction:
-    whole, written = int.from_bytes(raw, "little"), _written(kind)
-    significand, top = whole & ((1 << written) - 1), whole >> written & 0xFFFF
+def _unpack(raw: bytes, kind: NumberType) -> Fraction:
+    """Return the number that these bytes encode. Raises StepError where it is not finite."""
+    whole, stored = int.from_bytes(raw, "little"), _stored_bits(kind)
+    significand, top = whole & ((1 << stored) - 1), whole >> stored & 0xFFFF
     sign, exponent = -1 if top >> 15 else 1, top & _TOP
     if exponent == _TOP:
         nan = significand & ((1 << (kind.bits - 1)) - 1)
         raise _is_not_finite("nan" if nan else "inf" if sign > 0 else "-inf")
-    if exponent and written < kind.bits:
-        significand |= 1 << written
+    # The leading bit of a normal number is implicit in all types but a long double.
+    if exponent and stored < kind.bits:
+        significand |= 1 << stored
     return sign * significand * Fraction(2) ** ((exponent or 1) - _BIAS - kind.bits + 1)

@@ -25,7 +25,7 @@ from typing import cast
 
 from verify.errors import InputError
 from verify.integrators.foreign import guard
-from verify.integrators.foreign.lines import quoted, short_line
+from verify.integrators.foreign.lines import quote, short_line
 from verify.integrators.user_code.step import StepError
 from verify.prose import count
 
@@ -46,16 +46,17 @@ _FLUSH = "fflush(stdout) in C, std::endl in C++, flush(6) in Fortran, flush=True
 
 @dataclass
 class Program:
-    """`words`: the program and its arguments; `called`: what the user calls it. `seconds`: of
-    processor time, at most. `greeting`: a line that it begins with, once it is ready. `advice`:
-    what is said where it crashes. `shown`: a line as people read it."""
+    """A program that answers lines. `words`: the program and its arguments; `called`: the user's
+    name for it. `seconds`: of processor time, at most. `greeting`: a line that it begins with, once
+    it is ready. `advice`: a hint that is added where it crashes. `show_line`: formats a line for
+    people."""
 
     words: Sequence[str]
     called: str
     seconds: float
     greeting: str = ""
     advice: str = ""
-    shown: Callable[[str], str] = short_line
+    show_line: Callable[[str], str] = short_line
     failures: int = 0
     waits: int = 0
     calls: int = 0  # that it has answered
@@ -64,70 +65,73 @@ class Program:
     last_words: list[str] = field(default_factory=list)
     _running: "subprocess.Popen[bytes] | None" = None
     _control: socket.socket | None = None  # the guard's
-    _waiting: bytes = b""  # what it has said that it was not asked for
+    _waiting: bytes = b""  # output that answers no line
     _looked: float = 0.0  # when it was looked at
 
     def answers(self, lines: Sequence[str]) -> list[str | StepError]:
-        """Its answer to each line, or what it does instead. Where it is our own host all lines are
-        under way at once; another program may read more than it answers."""
-        known: list[str | StepError] = []
-        while left := lines[len(known) :]:
-            known += self._some(left if self.greeting else left[:1])
-        return known
+        """Return the answer to each line, or the error in place of it. Our own host is sent all
+        lines at once; another program may read more than it answers, so that it is sent one by
+        one."""
+        replies: list[str | StepError] = []
+        while remaining := lines[len(replies) :]:
+            replies += self._answer_some(remaining if self.greeting else remaining[:1])
+        return replies
 
-    def _some(self, lines: Sequence[str]) -> list[str | StepError]:
-        """Answers to the first ones; an error is the last."""
+    def _answer_some(self, lines: Sequence[str]) -> list[str | StepError]:
+        """Return the answers to the first lines; an error is the last."""
         if self._running is None and self._given_up:
             times = count(self.failures, "time")
             return [StepError(f"{self.last}; it has failed {times}, and is not started again")]
-        known: list[str | StepError] = []
+        answers: list[str | StepError] = []
         try:
             if self._running is None:
-                self._greeted()
+                self._start_and_greet()
             self._must_be_silent(0)
-            for answer in self._exchanged(lines, "".join(f"{line}\n" for line in lines)):
-                known.append(answer)
+            for answer in self._exchange(lines, "".join(f"{line}\n" for line in lines)):
+                answers.append(answer)
                 self.calls += 1
             if not self.answered:
                 self._must_be_silent(_GRACE)
             self.answered = True
         except StepError as error:
             self.failures, self.last = self.failures + 1, str(error.said)
-            known = [*known[: len(lines) - 1], error]
+            answers = [*answers[: len(lines) - 1], error]
         except BaseException:  # an alarm: its answer would be taken for that to another line
             self.close()
             raise
-        return known
+        return answers
 
     @property
     def _given_up(self) -> bool:
-        most = _MOST_FAILURES + self.calls // _CALLS_A_FAILURE
-        return self.failures >= most or self.waits >= (_MOST_WAITS if self.calls else 1)
+        # A step may fail at some states: failures are forgiven in proportion to the answers.
+        limit = _MOST_FAILURES + self.calls // _CALLS_A_FAILURE
+        return self.failures >= limit or self.waits >= (_MOST_WAITS if self.calls else 1)
 
     # -- its life ---------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Starts it. InputError where it does not start, or does not begin with its greeting."""
+        """Start the program. Raises InputError where it does not start, or does not begin with its
+        greeting."""
         try:
-            self._greeted()
+            self._start_and_greet()
         except StepError as error:
-            said = self.last_words[-1] if self.last_words else str(error.said)
-            raise InputError("integrator", self.called, f"does not load: {said}") from None
+            reason = self.last_words[-1] if self.last_words else str(error.said)
+            raise InputError("integrator", self.called, f"does not load: {reason}") from None
 
-    def _greeted(self) -> None:
+    def _start_and_greet(self) -> None:
         self._start()
         if self.greeting:
-            answer = next(self._exchanged([self.greeting], ""))
+            answer = next(self._exchange([self.greeting], ""))
             if answer != self.greeting:
                 self.close()
-                raise StepError(f"it begins with {quoted(answer)}")
+                raise StepError(f"it begins with {quote(answer)}")
             self.answered = True
 
     def _start(self) -> None:
         ours, its = socket.socketpair()
         script, seconds = str(Path(guard.__file__).resolve()), str(int(self.seconds) + 30)
         with its:
-            own = subprocess.Popen(  # noqa: S603 - it is what the user asks for
+            process = subprocess.Popen(  # noqa: S603 - it is what the user asks for
                 [sys.executable, "-I", "-S", script, str(its.fileno()), seconds, *self.words],
                 bufsize=0,
                 stdin=subprocess.PIPE,
@@ -136,42 +140,42 @@ class Program:
                 start_new_session=True,
                 pass_fds=[its.fileno()],
             )
-        self._running, self._control, self._waiting, self.answered = own, ours, b"", False
-        threading.Thread(target=self._listen, args=(own,), daemon=True).start()
+        self._running, self._control, self._waiting, self.answered = process, ours, b"", False
+        threading.Thread(target=self._listen, args=(process,), daemon=True).start()
         if problem := ours.recv(_LONGEST).decode("utf-8", "replace").strip():
             self.close()
             raise InputError("integrator", self.called, f"does not start: {problem}")
 
-    def _listen(self, own: "subprocess.Popen[bytes]") -> None:
-        """Keeps the last lines of standard error."""
-        assert own.stderr is not None  # noqa: S101 - it is a pipe
-        with own.stderr as stream:
+    def _listen(self, process: "subprocess.Popen[bytes]") -> None:
+        """Keep the last lines of standard error."""
+        assert process.stderr is not None  # noqa: S101 - it is a pipe
+        with process.stderr as stream:
             while chunk := os.read(stream.fileno(), 4096):
                 lines = chunk.decode("utf-8", "replace").strip().splitlines()
                 self.last_words = [*self.last_words, *lines][-3:]
 
     def close(self) -> None:
-        """Ends it, with all that it has started."""
-        own, self._running, self._waiting = self._running, None, b""
-        if own is None or self._control is None:
+        """End the program, with all that it has started."""
+        process, self._running, self._waiting = self._running, None, b""
+        if process is None or self._control is None:
             return
         self._control.close()  # at which the guard ends all
         try:
-            own.wait(CALL_SECONDS)
+            process.wait(CALL_SECONDS)
         except subprocess.TimeoutExpired:
             with contextlib.suppress(OSError):
-                os.killpg(own.pid, signal.SIGKILL)
-            own.wait()
-        for pipe in (own.stdin, own.stdout):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        for pipe in (process.stdin, process.stdout):
             with contextlib.suppress(OSError):
                 if pipe is not None:
                     pipe.close()
 
     # -- its answers ------------------------------------------------------------------------------
 
-    def _exchanged(self, lines: Sequence[str], text: str) -> Iterator[str]:
-        """Answers to the lines, of which `text` is made, as they come. Raises StepError for what it
-        does instead."""
+    def _exchange(self, lines: Sequence[str], text: str) -> Iterator[str]:
+        """Send the lines, joined in `text`, and yield the answers as they come. Raises StepError
+        where the program does anything else."""
         unsaid, heard, number = memoryview(text.encode()), b"", 0
         since, slept, whole = time.monotonic(), 0.0, list[bytes]()
         while number < len(lines):
@@ -179,13 +183,16 @@ class Program:
             ready, takes, _ = select.select([out], [into] if unsaid else [], [], _WATCHED)
             if takes:
                 try:
+                    # Only what the pipe takes at once is written, and answers are read in between:
+                    # else a program that answers before it has read all lines would wait for us,
+                    # and we for it.
                     unsaid = unsaid[into.write(unsaid[: select.PIPE_BUF]) :]
                 except OSError:  # it has ended, as its output will tell
                     unsaid = unsaid[:0]
             if ready:
                 chunk = out.read(_LONGEST)
                 if not chunk:
-                    raise self._ended(lines[number])
+                    raise self._describe_end(lines[number])
                 *whole, heard = (heard + chunk).split(b"\n")
                 while whole and number < len(lines):
                     yield whole.pop(0).decode("utf-8", "replace")
@@ -203,16 +210,16 @@ class Program:
         return cast(FileIO, self._running.stdin), cast(FileIO, self._running.stdout)
 
     def _must_be_silent(self, seconds: float) -> None:
-        """Raises StepError where it says what it was not asked for."""
+        """Raise StepError where the program prints something without being asked."""
         out = self._pipes[1]
         if not self._waiting and select.select([out], [], [], seconds)[0]:
             self._waiting = out.read(_LONGEST)
-        if said := self._waiting:
+        if output := self._waiting:
             self.close()
-            raise StepError(f"it prints {quoted(said)}, which it was not asked for: {_ANSWER}")
+            raise StepError(f"it prints {quote(output)}, which it was not asked for: {_ANSWER}")
 
     def _must_go_on(self, line: str, heard: bytes, spent: float, slept: float) -> None:
-        """Raises StepError where a call takes too long or too much memory, or prints too much."""
+        """Raise StepError where a call takes too long or too much memory, or prints too much."""
         problem, now = "", time.monotonic()
         if len(heard) > _LONGEST:
             problem = f"it prints more than {_LONGEST} bytes for a line"
@@ -220,19 +227,20 @@ class Program:
             self._looked = now
             if sum(map(_resident, self._processes)) > MOST_MEMORY:
                 problem = f"it takes more than {MOST_MEMORY / 2**30:g} GiB of memory"
-        most = CALL_SECONDS if self.answered else FIRST_SECONDS
+        time_limit = CALL_SECONDS if self.answered else FIRST_SECONDS
         asleep = not self.answered and slept >= CALL_SECONDS
-        if not problem and (spent >= most or asleep):
+        if not problem and (spent >= time_limit or asleep):
             self.waits += 1
-            problem = self._silence(line, heard, min(int(spent), most), asleep)
+            problem = self._silence(line, heard, min(int(spent), time_limit), asleep)
         if problem:
             self.close()
             raise StepError(problem)
 
     def _silence(self, line: str, heard: bytes, seconds: float, asleep: bool) -> str:
-        """What it does instead of an answer in time; of the first one, when its input ends, too."""
+        """Describe what the program does instead of answering in time; for the first line, also
+        when its input ends."""
         if self.answered:
-            return f"a call of it does not end within {seconds:g} s, asked “{self.shown(line)}”"
+            return f"a call of it does not end within {seconds:g} s, asked “{self.show_line(line)}”"
         into, out = self._pipes
         unread = any(fcntl.ioctl(into, termios.FIONREAD, bytes(4)))
         into.close()
@@ -242,39 +250,39 @@ class Program:
             heard += chunk
         how = f": {_ANSWER}; flush after it, as by {_FLUSH}"
         if b"\n" in heard:
-            how = f", but {quoted(heard)} when its input ends: it does not flush; write {_FLUSH}"
+            how = f", but {quote(heard)} when its input ends: it does not flush; write {_FLUSH}"
         elif heard:
-            how = f": it prints {quoted(heard)} without an end of line"
+            how = f": it prints {quote(heard)} without an end of line"
         elif unread:
             how = ": it does not read it"
-        asked = self.shown(line)
-        return f"it gives no answer to its first line, “{asked}”, within {seconds:g} s{how}"
+        first_line = self.show_line(line)
+        return f"it gives no answer to its first line, “{first_line}”, within {seconds:g} s{how}"
 
-    def _ended(self, line: str) -> StepError:
-        """What is said where it has ended instead of answering."""
-        own = self._running
-        assert own is not None  # noqa: S101 - it has been started
+    def _describe_end(self, line: str) -> StepError:
+        """Return the error of a program that has ended instead of answering."""
+        process = self._running
+        assert process is not None  # noqa: S101 - it has been started
         with contextlib.suppress(subprocess.TimeoutExpired):
-            own.wait(_LAST_SECONDS)
-        status = own.poll()
+            process.wait(_LAST_SECONDS)
+        status = process.poll()
         time.sleep(_WATCHED)  # for what it has said at last
         self.close()
-        said = f": {self.last_words[-1][:80]}" if self.last_words else ""
-        asked = f"“{self.shown(line)}”"
+        suffix = f": {self.last_words[-1][:80]}" if self.last_words else ""
+        request = f"“{self.show_line(line)}”"
         if status is None:
-            return StepError(f"it closes its output, asked {asked}{said}")
+            return StepError(f"it closes its output, asked {request}{suffix}")
         if status < 0:
-            crash = f"it crashes with {signal.Signals(-status).name}, asked {asked}{said}"
+            crash = f"it crashes with {signal.Signals(-status).name}, asked {request}{suffix}"
             return StepError(crash + self.advice)
-        if status == 0 and not said:
-            said = "; it is to read and answer lines until its input ends"
-        return StepError(f"it ends with status {status} in place of an answer to {asked}{said}")
+        if status == 0 and not suffix:
+            suffix = "; it is to read and answer lines until its input ends"
+        return StepError(f"it ends with status {status} in place of an answer to {request}{suffix}")
 
     # -- its processes ----------------------------------------------------------------------------
 
     @property
     def _processes(self) -> list[int]:
-        """It and what it has started: all that is below the guard."""
+        """The process ids of the program and of what it has started: all below the guard."""
         assert self._running is not None  # noqa: S101 - it has been started
         pids = [self._running.pid]
         for pid in pids:  # it grows while it is walked
@@ -284,14 +292,14 @@ class Program:
 
     @property
     def _sleeps(self) -> bool:
-        """Whether no thread of it computes, or waits for a disk, as far as the system tells."""
+        """True if no thread of it computes, or waits for a disk, as far as the system tells."""
         threads = (x for pid in self._processes for x in Path(f"/proc/{pid}/task").glob("*/stat"))
         states = {_text(thread).rpartition(") ")[2][:1] for thread in threads}
         return bool(states) and not states & {"R", "D"}
 
 
 def _resident(pid: int) -> int:
-    """Bytes that the process holds now, 0 where that is not known."""
+    """Return how many bytes of memory the process holds now, 0 where that is not known."""
     return int((_text(Path(f"/proc/{pid}/statm")).split() or "00")[1]) * _PAGE
 
 

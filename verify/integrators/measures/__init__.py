@@ -1,1 +1,1 @@
-"""What is measured of a user's map: its structure, and its distance from the exact flow."""
+"""Measurements of a user's map: its structure, and its distance from the exact flow."""

@@ -1,4 +1,4 @@
-"""How far one step is from the exact flow, component by component, as its step size falls.
+"""The distance of one step from the exact flow, component by component, as its step size falls.
 
 The order is that of the worst component at the worst place, where its slope has settled. An error
 is counted where it is beyond the noise of the numbers that the code computes in.
@@ -23,16 +23,20 @@ from verify.integrators.measures.slopes import (
     slopes_of,
 )
 from verify.integrators.places.place import SIDE, USER, Place, spread
-from verify.integrators.places.wrapped import Periods, unwrapped, wrapped
+from verify.integrators.places.wrapped import Periods, find_wrapped_periods, unwrap
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.user_code.step import StepError, why, within
+from verify.integrators.user_code.step import StepError, limit_time, why
 from verify.integrators.user_code.user_map import UserMap
 
 SPACED = tuple(Fraction(2) ** k for k in range(9))  # parts of a place's largest step
+# Dual numbers have 200 bits, so that steps may be as small as 2⁻⁵⁰ of the largest; the first ones
+# are closer to one another, since most slopes settle there.
 _FINE = tuple(
     2**k for k in (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 22, 26, 30, 34, 38, 42, 46, 50)
 )
+# Floats lose the error in their rounding after few halvings: the step sizes are closer, with the
+# ratios 4/3 and 3/2 in turn.
 _COARSE = (
     *(Fraction(2**k, x) for k in range(2, 11) for x in (4, 3)),
     *(2**k for k in range(9, 27)),
@@ -51,7 +55,7 @@ Probe = DualProbe | FloatProbe
 
 
 def probe_of(step: UserMap, how: str) -> Probe:
-    """The one of "duals", or of "floats"."""
+    """Build the probe called "duals", or else the one called "floats"."""
     return DualProbe(step) if how == "duals" else FloatProbe(step)
 
 
@@ -66,9 +70,9 @@ class Tail:
 
 @dataclass(frozen=True)
 class PlaceOrder:
-    """At one place: `power` of h by which the worst component's error falls; None where that has
-    not settled, or, `exact`, where none is seen. `slopes`: those that are seen below the last
-    step size at which terms cancel."""
+    """The order at one place: `power` of h by which the worst component's error falls; None where
+    that has not settled, or, `exact`, where none is seen. `slopes`: those that are seen below the
+    last step size at which terms cancel."""
 
     place: Place
     power: int | None
@@ -80,11 +84,11 @@ class PlaceOrder:
     rows: tuple[Row, ...] = ()  # of that component, as they stand
     unseen: float = 0.0  # an error of the step, in parts of it, that would not show
     limit: float = 0.0  # to which the slopes tend
-    moved: float = 0.0  # how far the flow goes with the largest step, in units
+    distance: float = 0.0  # how far the flow goes with the largest step, in units
 
     def may_fall_below(self, power: int) -> bool:
-        """Whether its slopes, which have not settled, may come to less than that power: not where
-        they stay above it, or rise to it. A few do not tell."""
+        """Return True if its slopes, which have not settled, may come to less than that power: not
+        where they stay above it, or rise to it. A few do not tell."""
         if len(self.slopes) < ENOUGH:
             return False
         before, last = self.slopes[-2:]
@@ -93,7 +97,8 @@ class PlaceOrder:
 
 @dataclass(frozen=True)
 class Distances:
-    """Of one step from the exact flow, at places; `periods`: modulo which they were compared."""
+    """Distances of one step from the exact flow, at places; `periods`: modulo which they were
+    compared."""
 
     how: str
     places: tuple[PlaceOrder, ...]
@@ -107,45 +112,51 @@ def distances_of(
     places: Sequence[Place],
     ladder: Sequence[Fraction] = (),
 ) -> Distances:
-    """Raises StepError where no exact flow is known, or the step fails, at all of the places."""
+    """Measure the distances. Raises StepError where no exact flow is known, or the step fails, at
+    all of the places."""
     flow = flow_of(hamiltonian, probe)
-    chosen = _chosen(places, _PLACES.get(step.degrees, _OTHERWISE))
+    selected = _select_places(places, _PLACES.get(step.degrees, _OTHERWISE))
     parts = tuple(ladder) or LADDERS[probe.how]
-    step.periods = _periods(step, probe, flow, hamiltonian, chosen, parts[-1])
-    made, lost = list[PlaceOrder](), list[str]()
-    for place in chosen:
+    step.periods = _periods(step, probe, flow, hamiltonian, selected, parts[-1])
+    orders, problems = list[PlaceOrder](), list[str]()
+    for place in selected:
         try:
-            with within(max(step.left, 0.1), "the exact flow takes too long"):
-                made.append(_at(step, probe, flow, place, parts))
+            # The exact flow is computed within the user's time: near a singularity it might not
+            # come back.
+            with limit_time(max(step.left, 0.1), "the exact flow takes too long"):
+                orders.append(_measure_at(step, probe, flow, place, parts))
         except Exception as error:  # the user's code may raise anything
-            lost.append(f"{why(error)}{step.place(place.z, place.step)}")
+            problems.append(f"{why(error)}{step.place(place.z, place.step)}")
         if step.left <= 0:
             break
-    if not made:
-        raise StepError(lost[0] if lost else "it has no exact solution from any of the places")
-    return Distances(probe.how, tuple(made), step.periods)
+    if not orders:
+        raise StepError(
+            problems[0] if problems else "it has no exact solution from any of the places"
+        )
+    return Distances(probe.how, tuple(orders), step.periods)
 
 
 def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> Flow:
-    """The exact flow, to the digits that a probe asks for."""
+    """Build the exact flow, to as many digits as a probe needs."""
     digits = _DIGITS if probe.how == "duals" else probe.step.numbers.digits + _MORE
     return Flow(canonical_field(hamiltonian)[0], digits)
 
 
-def _chosen(places: Sequence[Place], most: int) -> list[Place]:
-    """The user's, those on sides of their own, and others from all amplitudes of each scale."""
-    chosen = [x for x in places if x.source in (USER, SIDE)]
-    others = [x for x in places if x not in chosen]
-    for units in dict.fromkeys(x.units for x in others):
-        chosen += spread([x for x in others if x.units == units], most)
-    return chosen
+def _select_places(places: Sequence[Place], count: int) -> list[Place]:
+    """Select the user's places, those on other sides of comparisons, and some of all amplitudes of
+    each scale."""
+    selected = [x for x in places if x.source in (USER, SIDE)]
+    rest = [x for x in places if x not in selected]
+    for units in dict.fromkeys(x.units for x in rest):
+        selected += spread([x for x in rest if x.units == units], count)
+    return selected
 
 
 def _periods(
     step: UserMap, probe: Probe, flow: Flow, hamiltonian: Hamiltonian,
     places: Sequence[Place], part: Fraction,
 ) -> Periods:  # fmt: skip
-    """By which it reduces its coordinates, as a step of almost no length shows."""
+    """Find by which periods the step reduces its coordinates, by a step of almost no length."""
     ends = []
     for place in places:
         try:
@@ -154,103 +165,112 @@ def _periods(
         except Exception:  # noqa: S112 - the user's code may raise anything
             continue
     smallest = min((place.step for place in places), default=Fraction(1)) / part
-    return wrapped(ends, hamiltonian, smallest) if ends else ()
+    return find_wrapped_periods(ends, hamiltonian, smallest) if ends else ()
 
 
 def goal(flow: Flow, probe: Probe, place: Place, h: Fraction) -> list[Fraction]:
-    """Where the exact flow ends, from the state and over the time that the probe calls with.
+    """Return the end of the exact flow, from the state and over the time that the probe calls with.
 
     Raises StepError.
     """
-    z = place.rounded(probe.rounded).z
-    begun = dict(zip(probe.step.names, z, strict=True))
-    state = flow.state({**begun, "t": probe.rounded(place.t)})
+    # The flow starts from the rounded state that the step gets, else the rounding of the input
+    # would count as an error of the step.
+    z = place.with_rounded_state(probe.round_number).z
+    start = dict(zip(probe.step.names, z, strict=True))
+    state = flow.state({**start, "t": probe.round_number(place.t)})
     try:
-        ended = flow.advance(state, flow.number(probe.rounded(h)))
+        end = flow.advance(state, flow.number(probe.round_number(h)))
     except NoFlowError as error:
-        raise StepError(error.said) from None
-    return [flow.arithmetic.exact(x) for x in ended[: len(z)]]
+        raise StepError(error.reason) from None
+    return [flow.arithmetic.exact(x) for x in end[: len(z)]]
 
 
-def _at(
+def _measure_at(
     step: UserMap, probe: Probe, flow: Flow, place: Place, parts: Sequence[Fraction]
 ) -> PlaceOrder:
-    """All components at one place."""
-    size, begun = len(place.z), place.rounded(probe.rounded).z
+    """Measure all components at one place."""
+    size, start = len(place.z), place.with_rounded_state(probe.round_number).z
     rows: list[list[Row]] = [[] for _ in range(size)]
     below: list[list[bool]] = [[] for _ in range(size)]
     counts, ways, quiet, unseen, lost = list[int](), list[float](), 0, float("inf"), ""
     for part in parts:
         h = place.step / part
         try:
-            ended = probe.end(place, h)
+            end = probe.end(place, h)
             count = len(probe.comparisons)
             exact = goal(flow, probe, place, h)
         except Exception as error:  # a step size may be too large for it
             lost = str(why(error))
             continue
-        errors, noise, moved = _row(step, probe, place, h, begun, ended, exact)
+        errors, noise, distance = _row(step, probe, place, h, start, end, exact)
         for k in range(size):
             rows[k].append((float(h), abs(errors[k]), noise[k]))
             below[k].append(errors[k] < 0)
         counts.append(count)
-        ways.append(moved)
-        if moved:
+        ways.append(distance)
+        if distance:
             scaled = zip(errors, noise, place.units, strict=True)
-            unseen = min(unseen, max((abs(e) + 10 * n) / float(u) for e, n, u in scaled) / moved)
-        still = all(abs(e) <= 10 * n for e, n in zip(errors, noise, strict=True))
-        quiet = quiet + 1 if still else 0
+            # An error of the step below this part of its way would not show at any of the step
+            # sizes.
+            unseen = min(unseen, max((abs(e) + 10 * n) / float(u) for e, n, u in scaled) / distance)
+        # Once the errors of all components are in their noise at several step sizes, smaller ones
+        # show nothing more.
+        is_quiet = all(abs(e) <= 10 * n for e, n in zip(errors, noise, strict=True))
+        quiet = quiet + 1 if is_quiet else 0
         if quiet >= _QUIET or step.left <= 0:
             break
     if len(rows[0]) < _QUIET:
         raise StepError(lost or "it fails for most step sizes")
-    judged = _judged(step, place, rows, below, counts, ways, probe.how, unseen)
-    return replace(judged, moved=max(ways))
+    place_order = _select_slowest(step, place, rows, below, counts, ways, probe.how, unseen)
+    return replace(place_order, distance=max(ways))
 
 
 def _row(
-    step: UserMap, probe: Probe, place: Place, h: Fraction, begun: Sequence[Fraction],
-    ended: Sequence[Fraction], exact: Sequence[Fraction],
+    step: UserMap, probe: Probe, place: Place, h: Fraction, start: Sequence[Fraction],
+    end: Sequence[Fraction], exact: Sequence[Fraction],
 ) -> tuple[list[float], list[float], float]:  # fmt: skip
-    """Errors and noise of the components, and how far the flow goes in units of the place."""
+    """Return errors and noise of the components, and how far the flow goes in units of the
+    place."""
     periods = step.periods or (Fraction(0),) * len(exact)
-    here = list(map(unwrapped, ended, exact, periods))
-    errors = [float(x - y) for x, y in zip(here, exact, strict=True)]
-    ways = [float(abs(y - z)) for y, z in zip(exact, begun, strict=True)]
+    unwrapped_end = list(map(unwrap, end, exact, periods))
+    errors = [float(x - y) for x, y in zip(unwrapped_end, exact, strict=True)]
+    ways = [float(abs(y - z)) for y, z in zip(exact, start, strict=True)]
     units = [float(u) for u in place.units]
-    moved = max(way / unit for way, unit in zip(ways, units, strict=True))
-    noise = probe.noise(place, ended)
+    distance = max(way / unit for way, unit in zip(ways, units, strict=True))
+    noise = probe.noise(place, end)
     if isinstance(probe, DualProbe):
         noise = [
-            n + _COEFFICIENTS * (way + unit * moved / 8)
+            # With 200 bits the coefficients are what is rounded, as users write them as doubles:
+            # each of them moves the end by such a part of the way.
+            n + _COEFFICIENTS * (way + unit * distance / 8)
             for n, way, unit in zip(noise, ways, units, strict=True)
         ]
     else:
         scatter = probe.scatter(place, place.step / 8)
         noise = [max(pair) for pair in zip(noise, scatter, strict=True)]
-    return errors, noise, moved
+    return errors, noise, distance
 
 
-def _judged(
+def _select_slowest(
     step: UserMap, place: Place, rows: list[list[Row]],
     below: list[list[bool]], counts: Sequence[int], ways: Sequence[float], how: str, unseen: float,
 ) -> PlaceOrder:  # fmt: skip
-    """By the component whose error falls most slowly."""
-    each = [(k, slopes_of(r)) for k, r in enumerate(rows)]
-    seen = [(k, x) for k, x in each if x.seen]
-    if not seen:
+    """Select the component whose error falls most slowly."""
+    by_component = [(k, slopes_of(r)) for k, r in enumerate(rows)]
+    resolved = [(k, x) for k, x in by_component if x.seen]
+    if not resolved:
         return PlaceOrder(place, None, True, unseen=unseen)
-    judged = []
-    for k, slopes in seen:
+    candidates = []
+    for k, slopes in resolved:
         unit = float(place.units[k])
-        power, run, tail = _settled(slopes, rows[k], counts, ways, how, unit)
-        shown = clear_slopes(rows[k], below[k], _OF_MANY if how == "duals" else ABOVE)
-        judged.append(
+        power, run, tail = _settle_power(slopes, rows[k], counts, ways, how, unit)
+        clear = clear_slopes(rows[k], below[k], _OF_MANY if how == "duals" else ABOVE)
+        candidates.append(
             PlaceOrder(place, power, False, step.names[k], run, tail,
-                       tuple(x for _, x in shown), tuple(rows[k]), unseen, limit_of(shown))
+                       tuple(x for _, x in clear), tuple(rows[k]), unseen, limit_of(clear))
         )  # fmt: skip
-    settled = [x for x in judged if x.power is not None]
-    loose = [x for x in judged if x.power is None]
+    settled = [x for x in candidates if x.power is not None]
+    loose = [x for x in candidates if x.power is None]
     if settled:
         lowest = min(settled, key=lambda x: x.power or 0)
         # What has not settled may be lower, unless it is small beside what has.
@@ -259,7 +279,7 @@ def _judged(
 
 
 def _hides(step: UserMap, loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bool:
-    """Whether a component that has not settled may be of a lower power.
+    """Return True if a component that has not settled may be of a lower power.
 
     One whose slopes are few is not where its errors are smaller on the stretch that has settled.
     """
@@ -277,11 +297,11 @@ def _hides(step: UserMap, loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bo
     return power > 1 and any(map(may_be, loose))
 
 
-def _settled(
+def _settle_power(
     slopes: Slopes, rows: Sequence[Row], counts: Sequence[int],
     ways: Sequence[float], how: str, unit: float,
 ) -> tuple[int | None, Run | None, Tail | None]:  # fmt: skip
-    """The power that holds, its stretch, and what a loop leaves below it.
+    """Return the power that holds, its stretch, and what a loop leaves below it.
 
     Where the number of comparisons changes with h, a loop ends at a tolerance: a lower power below
     is then what it leaves, unless it goes on through such changes as no tolerance does, or is a
@@ -289,41 +309,43 @@ def _settled(
     """
     if not slopes.runs:
         return None, None, None
-    chosen, tail = slopes.runs[0], None
-    begin = next(k for k, row in enumerate(rows) if row[0] == chosen.first)
+    best_run, tail = slopes.runs[0], None
+    begin = next(k for k, row in enumerate(rows) if row[0] == best_run.first)
     if begin and counts[begin] < counts[begin - 1] and rows[begin][1] > rows[begin - 1][1]:
         # A loop does one turn less: what it leaves is all that has settled.
-        return None, None, Tail(chosen.power, chosen.first, rows[begin][1] / unit)
+        return None, None, Tail(best_run.power, best_run.first, rows[begin][1] / unit)
     iterates = len(set(counts)) > 1
     for run in slopes.runs[1:]:
-        if run.power > chosen.power and tail is None:
-            chosen = run  # what is seen of larger steps has not settled
+        if run.power > best_run.power and tail is None:
+            best_run = run  # what is seen of larger steps has not settled
             continue
-        if run.power >= chosen.power:
+        if run.power >= best_run.power:
             continue
-        at = [k for k, row in enumerate(rows) if run.last <= row[0] <= run.first]
-        error = rows[at[0]][1] / unit
-        if how == "duals" and rows[at[0]][1] <= _OF_MANY * rows[at[0]][2]:
+        indices = [k for k, row in enumerate(rows) if run.last <= row[0] <= run.first]
+        error = rows[indices[0]][1] / unit
+        if how == "duals" and rows[indices[0]][1] <= _OF_MANY * rows[indices[0]][2]:
             break
         if how == "duals":
-            real = not iterates or len({counts[k] for k in at}) > 1
+            real = not iterates or len({counts[k] for k in indices}) > 1
         else:
-            least, most = (x * ways[at[0]] for x in _FEW_DIGITS)
-            constant = run.power == 1 and least < error < most  # a loop has gone round once
+            smallest, largest = (x * ways[indices[0]] for x in _FEW_DIGITS)
+            constant = run.power == 1 and smallest < error < largest  # a loop has gone round once
             real = run.count >= _FEWEST_IN_TAIL and (error > _TOLERANCE or constant)
         if real:
-            chosen, tail = run, None
+            best_run, tail = run, None
         else:
-            tail = tail or Tail(run.power, rows[at[0]][0], error)
-    if slopes.unsettled and chosen is slopes.runs[-1]:
-        if on_their_way(slopes.unsettled, chosen.power):
+            tail = tail or Tail(run.power, rows[indices[0]][0], error)
+    if slopes.unsettled and best_run is slopes.runs[-1]:
+        # Slopes that still rise towards another power are no tail that a loop leaves: nothing has
+        # settled.
+        if on_their_way(slopes.unsettled, best_run.power):
             return None, None, None
-        end = next(k for k, row in enumerate(rows) if row[0] == chosen.last)
-        after = rows[min(end + 1, len(rows) - 1)]
-        error = after[1] / unit
-        if how == "duals" and after[1] <= _OF_MANY * after[2]:
-            return chosen.power, chosen, tail
+        end = next(k for k, row in enumerate(rows) if row[0] == best_run.last)
+        next_row = rows[min(end + 1, len(rows) - 1)]
+        error = next_row[1] / unit
+        if how == "duals" and next_row[1] <= _OF_MANY * next_row[2]:
+            return best_run.power, best_run, tail
         if (how == "duals" and not iterates) or (how == "floats" and error > _TOLERANCE):
             return None, None, None
         tail = tail or Tail(None, rows[end][0], error)
-    return chosen.power, chosen, tail
+    return best_run.power, best_run, tail

@@ -1,4 +1,4 @@
-"""What a map that is not symplectic may be all the same: rounded, or written in velocities.
+"""Other forms that a map may have that is not symplectic: a rounded matrix, or a map in velocities.
 
 A matrix that a program prints with few digits is not symplectic, and one that is may lie within
 half a unit of its last digit. A map of positions and velocities may keep Σ m_i dv_i∧dx_i.
@@ -23,8 +23,8 @@ _NOTHING, _SOMETHING = 1e-9, 1e-5  # parts of the largest singular value
 _MOST_MASS = 10**6
 
 
-def digits_noted(readings: Sequence[Reading]) -> list[str]:
-    """A sentence where the map is a matrix of few digits that a symplectic one rounds to."""
+def note_digits(readings: Sequence[Reading]) -> list[str]:
+    """Return a sentence where the map is a matrix of few digits that a symplectic one rounds to."""
     import numpy as np
 
     first = np.array(readings[0].jacobian)
@@ -43,9 +43,11 @@ def digits_noted(readings: Sequence[Reading]) -> list[str]:
 
 
 def _digits(matrix: "np.ndarray") -> int | None:
-    """Digits after the point that all entries have at most; None where they have more."""
+    """Return how many digits after the point the entries have at most; None where they have
+    more."""
     import numpy as np
 
+    # 4e-16 is about two units of a double's last place: what a printed decimal may be off by.
     for digits in range(_MOST_DIGITS + 1):
         scaled = matrix * 10.0**digits
         if np.all(np.abs(scaled - np.round(scaled)) <= 4e-16 * np.abs(scaled)):
@@ -54,9 +56,10 @@ def _digits(matrix: "np.ndarray") -> int | None:
 
 
 def _change(matrix: "np.ndarray") -> float:
-    """The largest change of an entry by which a symplectic matrix is reached, made small.
+    """Minimize the largest change of an entry by which a symplectic matrix is reached.
 
-    The change δ of least norm with MᵀΩδ + δᵀΩM = −S, its large entries weighed more each turn.
+    The change δ of least norm solves MᵀΩδ + δᵀΩM = −S; its large entries get more weight in each
+    turn.
     """
     import numpy as np
 
@@ -66,27 +69,28 @@ def _change(matrix: "np.ndarray") -> float:
     omega = np.block([[np.zeros((half, half)), unit], [-unit, np.zeros((half, half))]])
     defect = matrix.T @ omega @ matrix - omega
     above = np.triu_indices(size, 1)
+    # One equation for each entry of S above the diagonal, in the entries of δ by rows.
     rows = np.zeros((len(above[0]), size * size))
     left = matrix.T @ omega  # (left δ)_ab − (left δ)_ba
     for row, a, b in zip(rows, *above, strict=True):
         row[b::size] += left[a]
         row[a::size] -= left[b]
-    wanted = -defect[above]
-    weights, least = np.ones(size * size), np.inf
+    target = -defect[above]
+    weights, smallest = np.ones(size * size), np.inf
     for _ in range(_TURNS):
-        change = weights * np.linalg.lstsq(rows * weights, wanted, rcond=None)[0]
+        change = weights * np.linalg.lstsq(rows * weights, target, rcond=None)[0]
         largest = np.abs(change).max()
-        least = min(least, largest)
+        smallest = min(smallest, largest)
         if largest == 0:
             return 0.0
         weights *= (np.abs(change) / largest + 0.05) ** -0.3
         # An entry that need not change would else outgrow all others, which were then left out.
         weights = np.maximum(weights / weights.max(), _LEAST_WEIGHT)
-    return float(least)
+    return float(smallest)
 
 
-def masses_noted(readings: Sequence[Reading], names: Sequence[str]) -> list[str]:
-    """A sentence where the map keeps Σ m_i dp_i∧dq_i with masses that are not all alike."""
+def note_masses(readings: Sequence[Reading], names: Sequence[str]) -> list[str]:
+    """Return a sentence where the map keeps Σ m_i dp_i∧dq_i with masses that are not all alike."""
     import numpy as np
 
     half = len(names) // 2
@@ -101,24 +105,26 @@ def masses_noted(readings: Sequence[Reading], names: Sequence[str]) -> list[str]
             if b == a + half:
                 row[a] -= 1
             rows.append(row * reading.scales[a, b])
+    # A null vector of this system are masses with which Σ m dp∧dq is preserved; it must be the only
+    # one, or the masses are not determined.
     _, sizes, directions = np.linalg.svd(np.array(rows))
     if sizes[-1] > _NOTHING * sizes[0] or sizes[-2] < _SOMETHING * sizes[0]:
         return []
-    least = min(directions[-1], key=abs)
-    if abs(least) * _MOST_MASS < 1:
+    smallest = min(directions[-1], key=abs)
+    if abs(smallest) * _MOST_MASS < 1:
         return []
-    masses = directions[-1] / least
+    masses = directions[-1] / smallest
     if not np.all(masses > 0) or np.ptp(masses) < _SOMETHING:
         return []
-    shown = ", ".join(f"{x:.6g}" for x in masses)
+    masses_text = ", ".join(f"{x:.6g}" for x in masses)
     return [
-        f"it keeps Σ m dp∧dq with m = ({shown}), up to a factor: taken as velocities, in momenta "
-        "p = m·v it is symplectic"
+        f"it keeps Σ m dp∧dq with m = ({masses_text}), up to a factor: taken as velocities, "
+        "in momenta p = m·v it is symplectic"
     ]
 
 
 def masses_of(hamiltonian: Hamiltonian) -> tuple[Fraction, ...]:
-    """m_i of an H = Σ p_i²/(2 m_i) + V(q); () where H is another, or all are 1."""
+    """Return m_i of an H = Σ p_i²/(2 m_i) + V(q); () where H is another, or all are 1."""
     from verify.algebra.formula import symbol
 
     half, masses = hamiltonian.degrees, []

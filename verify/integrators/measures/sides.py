@@ -35,7 +35,7 @@ class Branch:
 
 
 class Sides:
-    """What was compared at which place. `far`: sides that are named and not visited."""
+    """The comparisons that were made at each place. `far`: sides that are named and not visited."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = names
@@ -44,12 +44,14 @@ class Sides:
         self.far: dict[str, None] = {}
 
     def note(self, place: Place, h: Fraction, comparisons: Sequence[Comparison]) -> None:
-        """Writes down the comparisons of a call that are no loop's."""
+        """Record the comparisons of a call that belong to no loop."""
         by_line: dict[Line, list[Comparison]] = {}
-        for each in comparisons:
-            by_line.setdefault(each.line, []).append(each)
+        for comparison in comparisons:
+            by_line.setdefault(comparison.line, []).append(comparison)
         signs = self.at.setdefault(place, {})
         for line, several in by_line.items():
+            # A line that compares many times in one call, or with both signs, belongs to a loop,
+            # whose end is no branch of the map.
             if len({x.sign for x in several}) == 1 and len(several) < _ITERATED:
                 signs[line] = several[0].sign
                 branches = self.branches.setdefault(line, [])
@@ -57,13 +59,15 @@ class Sides:
                     branches += [_branch(x, place, h) for x in several[:2]]
 
     def unseen(self) -> Iterator[tuple[Line, list[Branch]]]:
-        """Lines of which one side was seen alone, with what is known of them, the nearest first."""
+        """Yield the lines of which one side was seen alone, with their branches, the nearest
+        first."""
         for line, branches in list(self.branches.items())[:_MOST_LINES]:
             if len({x.sign for x in branches}) == 1 and branches[0].sign:
                 yield line, sorted(branches, key=_distance)[:3]
 
     def separating(self, one: Sequence[Place], two: Sequence[Place]) -> Branch | None:
-        """A comparison that has one sign at all of the first places, and another at the second."""
+        """Find a comparison that has one sign at all of the first places, and another at the
+        second."""
         for line, branches in self.branches.items():
             first = {self.at.get(x, {}).get(line, 0) for x in one}
             second = {self.at.get(x, {}).get(line, 0) for x in two}
@@ -72,12 +76,12 @@ class Sides:
         return None
 
     def condition(self, branch: Branch) -> str:
-        """The side of a branch as a condition: q ≤ 50, or the line of code that asks."""
+        """Return the side of a branch as a condition: q ≤ 50, or the line of code that compares."""
         moving = [k for k, x in enumerate(branch.slopes) if x]
         if len(moving) == 1 and branch.limit is not None:
             slope = branch.slopes[moving[0]]
-            here = float(branch.place.z[moving[0]])
-            bound = here - branch.gap / slope
+            coordinate = float(branch.place.z[moving[0]])
+            bound = coordinate - branch.gap / slope
             if abs(slope) == 1:
                 sign = "≥" if branch.sign * slope > 0 else "≤"
                 return f"{self.names[moving[0]]} {sign} `{bound:.6g}`"
@@ -93,7 +97,7 @@ def _branch(x: Comparison, place: Place, h: Fraction) -> Branch:
 
 
 def _distance(branch: Branch) -> float:
-    """How far the other side is, in units of the place, by the gap's derivatives."""
+    """Return the distance to the other side, in units of the place, by the gap's derivatives."""
     norm = (
         sum((s * float(u)) ** 2 for s, u in zip(branch.slopes, branch.place.units, strict=True))
         ** 0.5
@@ -102,49 +106,53 @@ def _distance(branch: Branch) -> float:
 
 
 def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -> list[Place]:
-    """A place on each side that was not seen, where one can be solved for.
+    """Find a place on each side that was not seen, where one can be solved for.
 
     `farthest`: of each coordinate, up to where it is followed.
     """
-    made = []
+    places = []
     for line, branches in list(sides.unseen()):
         for branch in branches:
-            place = _solved(probe, sides, branch, line, farthest)
+            place = _solve_for_other_side(probe, sides, branch, line, farthest)
             if place is not None:
-                made.append(place)
+                places.append(place)
                 break
-    return made
+    return places
 
 
-def _solved(
+def _solve_for_other_side(
     probe: DualProbe, sides: Sides, branch: Branch, line: Line, farthest: Mapping[str, float]
 ) -> Place | None:
-    """By Newton's method along the gap's gradient, in units of the place."""
+    """Solve for a place on the other side by Newton's method along the gap's gradient, in units of
+    the place."""
     current = branch
     for _ in range(_TRIES):
         units = [float(u) for u in current.place.units]
         norm = sum((s * u) ** 2 for s, u in zip(current.slopes, units, strict=True))
         if norm == 0 or norm != norm:
             return None
+        # Newton's step in units of the place: the state moves along u² s, s the gap's gradient, by
+        # gap/Σ (s u)², and a little farther, so that it ends on the other side.
         share = _BEYOND * current.gap / norm
-        moved = [
+        new_state = [
             float(x) - share * s * u * u
             for x, s, u in zip(current.place.z, current.slopes, units, strict=True)
         ]
-        if not all(abs(x) < farthest[name] for name, x in zip(sides.names, moved, strict=True)):
+        if not all(abs(x) < farthest[name] for name, x in zip(sides.names, new_state, strict=True)):
             opposite = replace(branch, sign=-branch.sign)
             sides.far[sides.condition(opposite)] = None
             return None
         z = tuple(
-            Fraction(x).limit_denominator(10**6) if abs(x) > 1e-3 else Fraction(x) for x in moved
+            Fraction(x).limit_denominator(10**6) if abs(x) > 1e-3 else Fraction(x)
+            for x in new_state
         )
         place = replace(current.place, z=z, source=SIDE)
         if unless_it_fails(partial(probe.reading, place, current.h)) is None:
             return None
-        here = [x for x in probe.comparisons if x.line == line]
-        if not here:
+        at_line = [x for x in probe.comparisons if x.line == line]
+        if not at_line:
             return place  # the line is not reached: it is another side all the same
-        if here[0].sign != branch.sign:
+        if at_line[0].sign != branch.sign:
             return place
-        current = _branch(here[0], place, current.h)
+        current = _branch(at_line[0], place, current.h)
     return None

@@ -1,4 +1,4 @@
-"""By which whole power of h an error shrinks: where that has settled, above its noise."""
+"""The whole power of h by which an error shrinks, where that has settled above its noise."""
 
 import math
 from collections.abc import Sequence
@@ -36,12 +36,13 @@ Row = tuple[float, float, float]  # h, the error there, its noise
 
 
 def slopes_of(rows: Sequence[Row], fewest: int = _FEWEST) -> Slopes:
-    """Of rows by falling h."""
+    """Find the stretches of one power in rows of falling h."""
     pairs = [_slope(one, two) for one, two in pairwise(rows)]
     runs: list[Run] = []
     begin, power = 0, None
     for k in range(len(pairs) + 1):
         slope = pairs[k] if k < len(pairs) else None
+        # A run is a stretch of neighbouring slopes that round to the same whole power.
         whole = None if slope is None or abs(slope - round(slope)) >= _WITHIN else round(slope)
         if whole != power:
             if power is not None and k - begin >= fewest:
@@ -49,13 +50,14 @@ def slopes_of(rows: Sequence[Row], fewest: int = _FEWEST) -> Slopes:
             begin, power = k, whole
     clear = [k for k, slope in enumerate(pairs) if slope is not None]
     last = _end(runs, rows, pairs)
+    # Slopes below the last run agree on no power; too few of them tell nothing.
     rest = [pairs[k] for k in clear if k > last]
     loose = tuple(x for x in rest if x is not None) if len(rest) >= fewest - 1 else ()
     return Slopes(tuple(runs), any(_clear(row) for row in rows), loose)
 
 
 def _end(runs: Sequence[Run], rows: Sequence[Row], pairs: Sequence[float | None]) -> int:
-    """The last pair of the last run."""
+    """Return the index of the last pair of the last run."""
     if not runs:
         return -1
     return next(k for k, row in enumerate(rows) if row[0] == runs[-1].last) - 1
@@ -74,10 +76,10 @@ def _slope(one: Row, two: Row) -> float | None:
 def clear_slopes(
     rows: Sequence[Row], below: Sequence[bool], most: float
 ) -> list[tuple[float, float]]:
-    """log h and the slope, between neighbours that are beyond their noise `most` times.
+    """Return log h and the slope, between neighbours that are beyond their noise `most` times.
 
     `below`: whether an error is negative. Only the step sizes below those are taken at which that
-    last changes: there terms cancel.
+    last changes, since terms cancel at it.
     """
     clear = [(h, e, sign) for (h, e, n), sign in zip(rows, below, strict=True) if e > most * n]
     turns = [k for k, (one, two) in enumerate(pairwise(clear), start=1) if one[2] != two[2]]
@@ -88,7 +90,7 @@ def clear_slopes(
 
 
 def limit_of(slopes: Sequence[tuple[float, float]]) -> float:
-    """To which they tend.
+    """Estimate the limit of the slopes as h falls.
 
     Of a hʳ (1 − x), x = h/c, the slope is r − x/(1 − x), and rises by x/(1 − x)² as log h falls:
     more and more slowly.
@@ -101,7 +103,8 @@ def limit_of(slopes: Sequence[tuple[float, float]]) -> float:
 
 
 def on_their_way(slopes: Sequence[float], power: int) -> bool:
-    """Whether they rise steadily to another power, as those of what a loop leaves do not."""
+    """Return True if the slopes rise steadily to another power, as those of what a loop leaves do
+    not."""
     last = slopes[-_FEWEST:]
     steady = len(last) == _FEWEST and all(a < b for a, b in pairwise(last))
     return steady and last[-1] > power - 1

@@ -1,7 +1,7 @@
-"""Whether a map keeps the symplectic form where it is looked at: S against its noise.
+"""The defect S of the symplectic form at the places, compared with its noise.
 
-What may be ignored is the noise of the numbers that the code computes in, measured at each place,
-or what the user allows; nothing else.
+Only the noise of the numbers that the code computes in, measured at each place, or the defect that
+the user allows may be ignored.
 """
 
 from collections.abc import Sequence
@@ -43,12 +43,12 @@ class Structure:
 
     @property
     def worst(self) -> Reading:
-        """That whose entry is most of all beyond its noise."""
+        """The reading whose entry is farthest beyond its noise."""
         return max(self.readings, key=lambda reading: reading.beyond)
 
     @property
     def largest(self) -> Reading:
-        """That of the largest defect, in units of its place."""
+        """The reading of the largest defect, in units of its place."""
         clear = [x for x in self.readings if x.beyond > REFUTES]
         return max(clear or self.readings, key=lambda reading: reading.defect)
 
@@ -57,38 +57,41 @@ class Structure:
         """The largest noise of the readings, in units of their places."""
         return max(reading.blur for reading in self.readings)
 
-    def kept(self, within: Fraction | None = None) -> bool | None:
-        """Whether S is 0 up to the noise, or up to what is allowed; None where that is open."""
+    def is_kept(self, within: Fraction | None = None) -> bool | None:
+        """Return True if S is 0 up to the noise, or up to the allowed defect; None where that is
+        open."""
         if within is not None:
-            allowed, readings = float(within), self.readings
-            if any(x.defect - x.blur > allowed for x in readings):
+            allowed_defect, readings = float(within), self.readings
+            if any(x.defect - x.blur > allowed_defect for x in readings):
                 return False
-            return all(max(x.defect, x.blur) <= allowed for x in readings) or None
+            return all(max(x.defect, x.blur) <= allowed_defect for x in readings) or None
         return self._vanishes(self.worst.beyond)
 
     @property
     def volume_kept(self) -> bool | None:
-        """The same of det J."""
+        """True if det J − 1 is 0 up to the noise; None where that is open."""
         return self._vanishes(max(abs(x.volume) / x.volume_noise for x in self.readings))
 
     def _vanishes(self, beyond: float) -> bool | None:
-        """Whether what is so many times its noise is 0; None where less would not be seen."""
+        """Return True if a defect that is so many times its noise is 0; None where a smaller one
+        would not be seen."""
         if beyond > REFUTES:
             return False
         return True if beyond <= REFUTES and self.noise <= _SHARP else None
 
     @property
     def power(self) -> int | None:
-        """Of h, by which S falls where that has settled; None where none is seen."""
-        each = [slopes_of(rows) for rows in self.rows]
+        """The power of h by which S falls where that has settled; None where none is seen."""
+        slopes = [slopes_of(rows) for rows in self.rows]
+        # The power is that of the smallest step sizes, where the leading term dominates.
         last = 0 if self.iterates else -1  # below a loop's first stretch it is its tolerance
-        powers = [x.runs[last].power for x in each if x.runs]
-        clear = [x for x in each if x.seen]
+        powers = [x.runs[last].power for x in slopes if x.runs]
+        clear = [x for x in slopes if x.seen]
         return min(powers) if powers and len(powers) == len(clear) and not self.jumps else None
 
     @property
     def jumps(self) -> bool:
-        """Whether S grows where h falls, as where an iteration does one turn less."""
+        """True if S grows where h falls, as where an iteration does one turn less."""
         for rows in self.rows:
             clear = [(h, x) for h, x, noise in rows if x > REFUTES * noise]
             if any(b > _RISES * a for (_, a), (_, b) in pairwise(clear[1:])):
@@ -97,38 +100,44 @@ class Structure:
 
     @property
     def iterates(self) -> bool:
-        """Whether the number of comparisons differs from step size to step size."""
+        """True if the number of comparisons differs from step size to step size."""
         return any(len(set(counts)) > 1 for counts in self.counts)
 
 
 def structure_of(step: UserMap, probe: Probe, places: Sequence[Place]) -> Structure:
-    """At all of the places, and at others on the sides of comparisons that these do not reach.
+    """Measure S at all of the places, and at others on the sides of comparisons that these do not
+    reach.
 
     Raises StepError, or what the user's code raises, where there are too few.
     """
     sides, readings, lost = Sides(step.names), list[Reading](), list[str]()
-    _read(probe, places, readings, sides, lost)
+    _read_places(probe, places, readings, sides, lost)
     if isinstance(probe, DualProbe) and readings:
         farthest = _farthest(step, places)
-        _read(probe, other_sides(probe, sides, farthest), readings, sides, lost)
+        _read_places(probe, other_sides(probe, sides, farthest), readings, sides, lost)
     if not readings:
         raise StepError(lost[0] if lost else "it fails at all places")
+    # Where the probe sees sharply at half of the places the blurred ones are left out; else all
+    # count at which anything can be seen. A defect that shows in spite of the noise always counts.
     sharp = sum(x.blur <= _SHARP for x in readings)
-    most = _SHARP if 2 * sharp >= len(readings) else _BLIND
-    blind = tuple(x for x in readings if x.blur > most and x.beyond <= REFUTES)
-    seen = tuple(x for x in readings if x not in blind)
-    if not seen:
-        least, most = min(x.blur for x in blind), max(x.blur for x in blind)
-        said = (
-            f"the probe sees nothing: its own error is `{least:.1e}` to `{most:.1e}` at the places"
+    blur_limit = _SHARP if 2 * sharp >= len(readings) else _BLIND
+    blind = tuple(x for x in readings if x.blur > blur_limit and x.beyond <= REFUTES)
+    seen_readings = tuple(x for x in readings if x not in blind)
+    if not seen_readings:
+        smallest, blur_limit = min(x.blur for x in blind), max(x.blur for x in blind)
+        problem = (
+            f"the probe sees nothing: its own error is `{smallest:.1e}` to `{blur_limit:.1e}` "
+            "at the places"
         )
-        raise StepError(said)
-    ladder = _ladder_places(places) if step.stepped else []
-    rows, counts = _followed(step, probe, ladder)
-    return Structure(probe.how, seen, blind, tuple(ladder), rows, counts, tuple(lost), sides)
+        raise StepError(problem)
+    ladder = _ladder_places(places) if step.takes_step_size else []
+    rows, counts = _follow_defect(step, probe, ladder)
+    return Structure(
+        probe.how, seen_readings, blind, tuple(ladder), rows, counts, tuple(lost), sides
+    )
 
 
-def _read(
+def _read_places(
     probe: Probe, places: Sequence[Place], readings: list[Reading], sides: Sides, lost: list[str]
 ) -> None:
     for place in places:
@@ -143,7 +152,7 @@ def _read(
 
 
 def _farthest(step: UserMap, places: Sequence[Place]) -> dict[str, float]:
-    """Up to where each coordinate is followed: 100 units, or as far as 1,000 steps lead."""
+    """Return how far each coordinate is followed: 100 units, or as far as 1,000 steps lead."""
     farthest = {
         name: 100.0 * max(max(float(x.units[k]), abs(float(x.z[k]))) for x in places)
         for k, name in enumerate(step.names)
@@ -152,7 +161,7 @@ def _farthest(step: UserMap, places: Sequence[Place]) -> dict[str, float]:
         state, h, t = [float(x) for x in place.z], float(place.step), float(place.t)
         try:
             for k in range(1000):
-                state = list(step.at(state, h, t + k * h if step.moving else t))
+                state = list(step.evaluate(state, h, t + k * h if step.moving else t))
                 for name, x in zip(step.names, state, strict=True):
                     farthest[name] = max(farthest[name], abs(x))
                 if max(map(abs, state)) > 1e12 * max(map(float, place.units)):
@@ -163,15 +172,15 @@ def _farthest(step: UserMap, places: Sequence[Place]) -> dict[str, float]:
 
 
 def _ladder_places(places: Sequence[Place]) -> list[Place]:
-    """A few, the user's among them."""
-    mine = [x for x in places if x.source == USER]
-    return [*mine, *spread([x for x in places if x.source != USER], _LADDER)]
+    """Select a few places, the user's among them."""
+    of_user = [x for x in places if x.source == USER]
+    return [*of_user, *spread([x for x in places if x.source != USER], _LADDER)]
 
 
-def _followed(
+def _follow_defect(
     step: UserMap, probe: Probe, places: Sequence[Place]
 ) -> tuple[tuple[tuple[Row, ...], ...], tuple[tuple[int, ...], ...]]:
-    """S as h falls, and how many numbers were compared."""
+    """Measure S as h falls, and count the numbers that were compared."""
     all_rows, all_counts = [], []
     for place in places:
         rows, counts = list[Row](), list[int]()

@@ -1,4 +1,4 @@
-"""Which places are looked at: the user's first, then patterns in the units of H, or of the map.
+"""The places that are looked at: the user's first, then patterns in the units of H, or of the map.
 
 Places at which H has no motion, or one that is faster by far than at the others, as where atoms lie
 on top of each other, are left out.
@@ -32,7 +32,7 @@ _LARGEST = Fraction(1, 2)  # of the step size, in parts of the time in which the
 
 @dataclass(frozen=True)
 class Request:
-    """What the user says of where to look: a state, a step size, units by the coordinates' names,
+    """The user's choice of where to look: a state, a step size, units by the coordinates' names,
     and how large a defect is allowed."""
 
     z: tuple[Fraction, ...] | None = None
@@ -46,7 +46,7 @@ _LARGEST_NUMBER = Fraction(10) ** 150  # beyond it products overflow in doubles
 
 
 def check_request(names: Sequence[str], request: Request) -> None:
-    """InputError where a number of the request is out of the range of floats."""
+    """Raise InputError where a number of the request is out of the range of floats."""
     numbers = {
         **dict(zip(names, request.z or (), strict=False)),
         **{f"scale of {name}": x for name, x in request.scale.items()},
@@ -59,7 +59,7 @@ def check_request(names: Sequence[str], request: Request) -> None:
 
 
 def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> list[Place]:
-    """For a step of that H; empty where H has a motion from none of them.
+    """Choose the places for a step of that H; none where H has a motion from none of them.
 
     Most are in the first scale of H, a few in each that lies far from it.
     """
@@ -73,36 +73,37 @@ def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> 
         t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
         return _place(field_, z, t, units, pace, source)
 
-    chosen = list[Place | None]()
+    places = list[Place | None]()
     for k, scale in enumerate(scales[:1] if request.scale else scales):
         units = [request.scale.get(name, x) for name, x in zip(field_.names, scale, strict=True)]
         if k == 0 and request.z is not None:
-            chosen.append(place(0, request.z, units, USER))
-        calm = _calm(place, units)
-        most = _MOST.get(field_.degrees, _OTHERWISE)
-        chosen += spread(calm, _ELSEWHERE) if k else calm[:most]
-    return _stepped([x for x in chosen if x is not None], request.step_size)
+            places.append(place(0, request.z, units, USER))
+        calm = _build_patterns(place, units)
+        count = _MOST.get(field_.degrees, _OTHERWISE)
+        places += spread(calm, _ELSEWHERE) if k else calm[:count]
+    return _set_step_size([x for x in places if x is not None], request.step_size)
 
 
-def _calm(make: Callable[..., Place | None], units: Sequence[Fraction]) -> list[Place]:
-    """The patterns in these units, none of them of a motion that is faster by far."""
-    made = [make(k, z, units) for k, z in enumerate(states(units))]
-    least = _least_step([x for x in made if x is not None])
+def _build_patterns(make: Callable[..., Place | None], units: Sequence[Fraction]) -> list[Place]:
+    """Build the patterns in these units, none of them of a motion that is faster by far."""
+    places = [make(k, z, units) for k, z in enumerate(states(units))]
+    least_step = _least_step([x for x in places if x is not None])
     for variant in range(1, _VARIANTS):  # where H has no motion there, or too fast a one
         for k, z in enumerate(states(units, variant)):
-            if not _is_calm(made[k], least):
-                made[k] = make(k, z, units)
-    return [x for x in made if x is not None and _is_calm(x, least)]
+            if not _is_calm(places[k], least_step):
+                places[k] = make(k, z, units)
+    return [x for x in places if x is not None and _is_calm(x, least_step)]
 
 
-def _stepped(places: list[Place], size: Fraction | None) -> list[Place]:
-    """The places with the user's step size: as it is at his place, or at all where he names none;
-    where he does it is the largest one elsewhere."""
+def _set_step_size(places: list[Place], size: Fraction | None) -> list[Place]:
+    """Return the places with the user's step size: exactly at his place, or at all where he names
+    none; where he names one it is the largest one elsewhere."""
     if size is None:
         return places
-    mine = any(x.source == USER for x in places)
+    has_users_place = any(x.source == USER for x in places)
     return [
-        replace(x, step=min(x.step, size) if mine and x.source != USER else size) for x in places
+        replace(x, step=min(x.step, size) if has_users_place and x.source != USER else size)
+        for x in places
     ]
 
 
@@ -110,29 +111,33 @@ def _place(
     field_: Field, z: tuple[Fraction, ...], t: Fraction, units: Sequence[Fraction],
     unit_of_time: Fraction | None, source: str,
 ) -> Place | None:  # fmt: skip
-    at, when = [float(x) for x in z], float(t)
+    state, when = [float(x) for x in z], float(t)
+    # At the user's place a coordinate may be far from its unit: it is then moved by a quarter of
+    # its size.
     local = [
         float(max(u, abs(x) / 4)) if source == USER else float(u)
         for u, x in zip(units, z, strict=True)
     ]
     try:
-        reach = reaches(field_, at, when, local)
-        speed = rate(field_, at, when, reach)
+        reach = reaches(field_, state, when, local)
+        speed = rate(field_, state, when, reach)
     except (NoFlowError, OverflowError, ZeroDivisionError):
         return None
     if unit_of_time is not None:
+        # A force that depends on time changes by itself, however slowly the state moves.
         speed = max(speed, 0.5 / float(unit_of_time))
     step = _LARGEST / _power(speed) if speed > 0 and math.isfinite(speed) else _LARGEST
     return Place(z, t, tuple(units), tuple(_power(x) for x in reach), step, source)
 
 
 def _power(x: float) -> Fraction:
-    """The nearest power of 2, from below."""
+    """Return the nearest power of 2, from below."""
     return Fraction(2) ** math.floor(math.log2(x))
 
 
 def _least_step(places: Sequence[Place]) -> float:
-    """Below it a place's motion is faster by far than that of the others."""
+    """Return the step size below which a place's motion is faster by far than that of the
+    others."""
     steps = sorted(float(place.step) for place in places)
     return steps[len(steps) // 2] / _FASTEST if steps else 0.0
 
@@ -141,13 +146,17 @@ def _is_calm(place: Place | None, least: float) -> bool:
     return place is not None and float(place.step) >= least
 
 
-def shortened(step: UserMap, places: list[Place]) -> list[Place]:
-    """The places with smaller steps where the user's move the state further than H does."""
+def shorten_steps(step: UserMap, places: list[Place]) -> list[Place]:
+    """Return the places with smaller steps where the user's steps move the state further than H
+    does."""
     return [replace(x, step=x.step / _power(max(1.0, _strides(step, x)))) for x in places]
 
 
 def _strides(step: UserMap, place: Place) -> float:
-    """How many units a step goes, as H would go one at most; 1 where that is not known."""
+    """Return how many units a step goes, where H would go one at most; 1 where that is not
+    known."""
+    # A short step is tried, and what it moves is extrapolated to the whole one: a whole step may
+    # end anywhere.
     end = unless_it_fails(partial(step.at_place, place, place.step / _SHORT))
     if end is None:
         return 1.0
@@ -157,30 +166,35 @@ def _strides(step: UserMap, place: Place) -> float:
 
 
 def places_of_map(names: Sequence[str], unit: Fraction, request: Request = NOWHERE) -> list[Place]:
-    """For a map without an H, in that unit of all its coordinates."""
+    """Choose the places for a map without an H, in that unit of all its coordinates."""
     units = tuple(request.scale.get(name, unit) for name in names)
     reach = tuple(_power(float(u)) for u in units)
-    made = [Place(z, Fraction(0), units, reach) for z in states(units)]
+    places = [Place(z, Fraction(0), units, reach) for z in states(units)]
     if request.z is not None:
-        mine = Place(request.z, Fraction(0), units, reach, source=USER)
-        made.insert(0, replace(mine, reach=tuple(
+        users_place = Place(request.z, Fraction(0), units, reach, source=USER)
+        places.insert(0, replace(users_place, reach=tuple(
             _power(float(max(abs(x) / 4, u))) for x, u in zip(request.z, units, strict=True)
         )))  # fmt: skip
     degrees = len(names) // 2
-    return made[: _MOST.get(degrees, _OTHERWISE) + (request.z is not None)]
+    return places[: _MOST.get(degrees, _OTHERWISE) + (request.z is not None)]
 
 
 def unit_of_map(step: UserMap) -> Fraction:
-    """How far from 0 the map's Jacobian has changed: a length of its own; 1 where it has none."""
-    before: list[list[float]] | None = None
+    """Find the distance from 0 at which the map's Jacobian has changed, a length of its own; 1
+    where it has none."""
+    first_jacobian: list[list[float]] | None = None
     try:
         probe = DualProbe(step)
         for exponent in range(-20, 21):
             unit = Fraction(2) ** exponent
             jacobian = _jacobian(probe, step.names, unit)
-            if jacobian is not None and before is not None and _changed(before, jacobian):
+            if (
+                jacobian is not None
+                and first_jacobian is not None
+                and _has_changed(first_jacobian, jacobian)
+            ):
                 return simple(float(unit))
-            before = before or jacobian
+            first_jacobian = first_jacobian or jacobian
     except Exception:  # the user's code may raise anything
         return Fraction(1)
     return Fraction(1)
@@ -193,8 +207,8 @@ def _jacobian(probe: DualProbe, names: Sequence[str], unit: Fraction) -> list[li
     return None if reading is None else [list(row) for row in reading.jacobian]
 
 
-def _changed(before: list[list[float]], after: list[list[float]]) -> bool:
-    """Whether an entry has moved by a tenth of the largest."""
+def _has_changed(before: list[list[float]], after: list[list[float]]) -> bool:
+    """Return True if an entry has moved by a tenth of the largest."""
     largest = max(abs(x) for row in before for x in row)
     pairs = zip(before, after, strict=True)
     return any(

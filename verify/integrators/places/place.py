@@ -1,4 +1,5 @@
-"""Where a user's map is looked at: states in units of their own, and step sizes that fit them."""
+"""Places at which a user's map is looked at: states in units of their own, and step sizes that fit
+them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -34,19 +35,21 @@ class Place:
     step: Fraction = Fraction(0)
     source: str = PATTERN
 
-    def rounded(self, nearest: Callable[[Fraction], Fraction]) -> "Place":
-        """The same with its state in other numbers."""
+    def with_rounded_state(self, nearest: Callable[[Fraction], Fraction]) -> "Place":
+        """Return the same place with its state in other numbers."""
         return replace(self, z=tuple(map(nearest, self.z)))
 
 
 def signs(count: int) -> list[tuple[int, ...]]:
-    """Patterns of signs of so many coordinates: all, or as many as show every pair of them.
+    """Return patterns of signs of so many coordinates: all, or as many as show every pair of them.
 
     >>> len(signs(2)), len(signs(4)), len(signs(12)) <= 16
     (4, 16, True)
     """
     if count <= _ALL_SIGNS:
         return list(product((1, -1), repeat=count))
+    # Rows are added greedily until every two coordinates have shown all four pairs of signs. The
+    # seed is fixed, so that the places are the same in every run.
     draw, rows = Random(1), [(1,) * count]  # noqa: S311 - any patterns do
     missing = {
         (a, b, x, y)
@@ -67,19 +70,19 @@ def _pairs(row: Sequence[int]) -> set[tuple[int, int, int, int]]:
 
 
 def states(units: Sequence[Fraction], variant: int = 0) -> list[tuple[Fraction, ...]]:
-    """States z = (p, q) in these units: the patterns of signs, at small and large amplitudes.
+    """Build states z = (p, q) in these units: the patterns of signs, at small and large amplitudes.
 
-    Of one degree of freedom each pattern at three amplitudes, of more each at one. `variant`: the
-    same patterns elsewhere.
+    Of one degree of freedom each pattern is taken at three amplitudes, of more each at one.
+    `variant`: the same patterns elsewhere.
     """
     size, half = len(units), len(units) // 2
     patterns = signs(size)
     turns = 3 if size == 2 else 1
-    made = []
+    result = []
     for turn in range(turns):
         for k, pattern in enumerate(patterns):
             of_q, of_p = _AMPLITUDES[(k + k // 4 + turn + variant) % len(_AMPLITUDES)]
-            made.append(
+            result.append(
                 tuple(
                     sign
                     * unit
@@ -88,18 +91,20 @@ def states(units: Sequence[Fraction], variant: int = 0) -> list[tuple[Fraction, 
                     for j, (sign, unit) in enumerate(zip(pattern, units, strict=True))
                 )
             )
-    return made
+    return result
 
 
 def spread(places: Sequence[Place], count: int) -> list[Place]:
-    """So many of them, of all patterns and amplitudes."""
+    """Select so many of the places, of all patterns and amplitudes."""
     size = len(places)
+    # A prime stride that does not divide the number of places visits each of them once, in a mixed
+    # order.
     stride = next((k for k in (7, 5, 3, 11) if size % k), 1)
     return [places[k * stride % size] for k in range(min(size, count))]
 
 
 def simple(x: float) -> Fraction:
-    """The nearest power of ten, halved or doubled: a unit that people can read.
+    """Return the nearest power of ten, halved or doubled: a unit that people can read.
 
     >>> [str(simple(x)) for x in (0.9, 3.4, 6500.0, 2e-7)]
     ['1', '2', '5000', '1/5000000']

@@ -54,8 +54,8 @@ class Field:
     def octave(
         self, z: Vector, t: float, base: Vector | None = None, then: float = 0.0, half: int = -1
     ) -> float | None:
-        """The binary logarithm of how large f(z, t) is, or how far from f(base, then), in the half
-        that is counted, of both; no float overflows, or cancels."""
+        """Return the binary logarithm of the size of f(z, t), or of its distance from f(base,
+        then), in the half that is counted, or in both; no float overflows, or cancels."""
         slopes = self._slopes(z, t)
         less = [0] * len(z) if base is None else self._slopes(base, then)
         if slopes is None or less is None:
@@ -70,15 +70,17 @@ class Field:
             return None
 
     def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
-        """∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
+        """Return ∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
         flow, columns = self._flow, []
         for j, length in enumerate(reach):
+            # The truncation error of a central difference is of relative size 2⁻⁴⁸ or so, and 20
+            # digits leave a rounding error of about 2⁻⁴² in its quotient: both are negligible here.
             width = Fraction(length) / 2**24
             ends = []
             for sign in (1, -1):
-                moved = [Fraction(x) + sign * width * (k == j) for k, x in enumerate(z)]
+                state = [Fraction(x) + sign * width * (k == j) for k, x in enumerate(z)]
                 clock = [Fraction(t)] if self.timed else []
-                ends.append(flow.slope(tuple(flow.number(x) for x in (*moved, *clock))))
+                ends.append(flow.slope(tuple(flow.number(x) for x in (*state, *clock))))
             with flow.arithmetic.context():
                 columns.append(
                     [float((a - b) / flow.number(2 * width)) for a, b in zip(*ends, strict=True)]
@@ -87,56 +89,58 @@ class Field:
 
 
 def units_of(field: Field, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
-    """Units of the coordinates, p1 … qn, for each scale that H has, and one of t.
+    """Find units of the coordinates, p1 … qn, for each scale that H has, and one of t.
 
     `usual`: a length, where H has none.
     """
-    n, made = field.degrees, list[list[float]]()
+    n, scales = field.degrees, list[list[float]]()
     for lengths in _sizes(field, n, usual):
-        made.append([*_partners(field, lengths, n), *lengths])
-    for momenta in [] if made else _sizes(field, 0):  # as of a relativistic body on a spring
-        made.append([*momenta, *_partners(field, momenta, 0)])
+        scales.append([*_find_partners(field, lengths, n), *lengths])
+    for momenta in [] if scales else _sizes(field, 0):  # as of a relativistic body on a spring
+        scales.append([*momenta, *_find_partners(field, momenta, 0)])
     lengths = [usual] * n
-    made = made or [[*_partners(field, lengths, n), *lengths]]
-    return [[simple(x) for x in each] for each in made], simple(_duration(field, made[0]))
+    scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
+    return [[simple(x) for x in scale] for scale in scales], simple(_duration(field, scales[0]))
 
 
 def _sizes(field: Field, first: int, usual: float = 1.0) -> list[list[float]]:
-    """Of each q, or p, from the `first` coordinate on: where what it makes turns from one power to
-    another; one list for each scale, none where nothing does."""
+    """Find the sizes of each q, or p, from the `first` coordinate on, at which its forces turn from
+    one power to another: one list for each scale, none where nothing turns."""
     n = field.degrees
-    still = [0.0] * (2 * n)
-    at_rest = field(still) is not None  # then a constant force is of no size
+    origin = [0.0] * (2 * n)
+    at_rest = field(origin) is not None  # then a constant force is of no size
 
     def size(s: float) -> float | None:
-        moved = _put(first, [s * x for x in _direction(n)])
+        moved = _pad_with_zeros(first, [s * x for x in _direction(n)])
         if at_rest:
-            return field.octave(moved, _TIME, still, _TIME)
+            return field.octave(moved, _TIME, origin, _TIME)
         return field.octave(moved, _TIME, half=0 if first else 1)
 
-    turns = [*_turns(size), *_turns(lambda s: size(-s))]
+    turns = [*_find_turns(size), *_find_turns(lambda s: size(-s))]
     scales = turns[:1]
     for x in turns[1:]:
         if all(not 1 / _APART < x / y < _APART for y in scales):
             scales.append(x)
     nearest = scales[0] if scales else usual
-    sizes = _each(field, first, nearest)
+    sizes = _size_near_scale(field, first, nearest)
     if not scales and all(x == usual for x in sizes):
         return []
     return [[x * (scale / nearest) for x in sizes] for scale in scales[:_MOST_SCALES] or [usual]]
 
 
-def _each(field: Field, first: int, scale: float) -> list[float]:
-    """The size of each, near that scale: it, or one of its own."""
+def _size_near_scale(field: Field, first: int, scale: float) -> list[float]:
+    """Return the size of each coordinate near that scale: the scale, or one of its own."""
     n = field.degrees
-    base = _put(first, [scale * x for x in _direction(n)])
+    base = _pad_with_zeros(first, [scale * x for x in _direction(n)])
     sizes = [scale] * n
     for k in range(n):
         # At several states, as a force may be still at one of them.
-        each = [_turns(_response(field, [x * y for x in base], first + k))[:1] for y in _ASIDE]
-        alone = [x for turns in each for x in turns]
-        if alone and not 1 / _APART < max(alone) / scale < _APART:
-            sizes[k] = max(alone)
+        turns_by_state = [
+            _find_turns(_response(field, [x * y for x in base], first + k))[:1] for y in _ASIDE
+        ]
+        local_sizes = [x for turns in turns_by_state for x in turns]
+        if local_sizes and not 1 / _APART < max(local_sizes) / scale < _APART:
+            sizes[k] = max(local_sizes)
     return sizes
 
 
@@ -144,19 +148,19 @@ def _direction(n: int) -> list[float]:
     return [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
 
 
-def _put(first: int, half: Sequence[float]) -> list[float]:
-    """A state whose other half is 0."""
+def _pad_with_zeros(first: int, half: Sequence[float]) -> list[float]:
+    """Return a state whose other half is 0."""
     zeros = [0.0] * len(half)
     return [*zeros, *half] if first else [*half, *zeros]
 
 
-def _others(slopes: Sequence[float], first: int) -> Sequence[float]:
-    """What the coordinates from `first` on make of the other half."""
+def _slopes_of_other_half(slopes: Sequence[float], first: int) -> Sequence[float]:
+    """Return the slopes of the other half, which the coordinates from `first` on produce."""
     return slopes[: len(slopes) // 2] if first else slopes[len(slopes) // 2 :]
 
 
 def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
-    """How far the forces change as one coordinate moves."""
+    """Return a function that measures how far the forces change as one coordinate moves."""
 
     def size(s: float) -> float | None:
         moved = list(base)
@@ -166,9 +170,9 @@ def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | N
     return size
 
 
-def _turns(size: Callable[[float], float | None]) -> list[float]:
-    """Where a size, by its binary logarithm, turns from one power of s to another: the first such
-    place, and those beyond at which a power of a long stretch ends or begins."""
+def _find_turns(size: Callable[[float], float | None]) -> list[float]:
+    """Find where a size, by its binary logarithm, turns from one power of s to another: the first
+    such place, and those beyond at which a power of a long stretch ends or begins."""
     values = [size(2.0**k) for k in _OCTAVES]
     powers = [
         (b - a) / (_OCTAVES[k + 1] - _OCTAVES[k])
@@ -176,43 +180,50 @@ def _turns(size: Callable[[float], float | None]) -> list[float]:
         else None
         for k, (a, b) in enumerate(pairwise(values))
     ]
-    begun: float | None = None
-    made = list[float]()
+    plateau: float | None = None
+    turns = list[float]()
     first = next((k for k, x in enumerate(values) if x is not None), 0)
     if first:
-        made.append(math.ldexp(1.5, _OCTAVES[first]))  # it is not defined nearer to 0
+        turns.append(math.ldexp(1.5, _OCTAVES[first]))  # it is not defined nearer to 0
     for k in range(2, len(powers)):
-        fewest = _LONG if made else 3
+        # Beyond the first turn a power counts on a long stretch alone, as a short one may be a
+        # ripple of waves.
+        fewest = _LONG if turns else 3
         steady = [x for x in powers[max(0, k + 1 - fewest) : k + 1] if x is not None]
-        if begun is None:
+        if plateau is None:
             if len(steady) == fewest and max(steady) - min(steady) < _PLATEAU:
-                begun = steady[0]
-                if made:
-                    made.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
+                plateau = steady[0]
+                if turns:
+                    turns.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
         elif powers[k] is None:
-            if not made:  # it is not defined beyond; later numbers have come to their end
-                made.append(math.ldexp(1.0, _OCTAVES[k - 1]))
-            begun = None
-        elif abs((powers[k] or 0.0) - begun) > _DEPARTS:
-            made.append(math.ldexp(1.5, _OCTAVES[k]))
-            begun = None
-    return made
+            if not turns:  # it is not defined beyond; later numbers have come to their end
+                turns.append(math.ldexp(1.0, _OCTAVES[k - 1]))
+            plateau = None
+        elif abs((powers[k] or 0.0) - plateau) > _DEPARTS:
+            turns.append(math.ldexp(1.5, _OCTAVES[k]))
+            plateau = None
+    return turns
 
 
-def _partners(field: Field, sizes: Vector, first: int) -> list[float]:
-    """Of each p, that whose kinetic energy is the work of its force over its length; or so of q."""
+def _find_partners(field: Field, sizes: Vector, first: int) -> list[float]:
+    """Return for each p the value whose kinetic energy is the work of its force over its length; or
+    the same for q."""
     n = field.degrees
-    base = _put(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
+    base = _pad_with_zeros(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
     work = [min(each, default=0.0) for each in zip(*_works(field, base, sizes, first), strict=True)]
     mean = sum(work) / max(len(work), 1) or 1.0
     return [_partner(field, base, n - first + k, work[k] or mean) for k in range(n)]
 
 
 def _works(field: Field, base: Vector, sizes: Vector, first: int) -> list[list[float]]:
-    """Of each force over its length, at states beside one another, as one may lie in a core."""
+    """Return the work of each force over its length, at states beside one another, as one may lie
+    in a core."""
     states = [field([x * y for x in base]) for y in _ASIDE]
     works = [
-        [abs(slope) * size for slope, size in zip(_others(z, first), sizes, strict=True)]
+        [
+            abs(slope) * size
+            for slope, size in zip(_slopes_of_other_half(z, first), sizes, strict=True)
+        ]
         for z in states
         if z is not None
     ]
@@ -223,11 +234,12 @@ def _partner(field: Field, base: Vector, j: int, work: float) -> float:
     n = field.degrees
 
     def energy(x: float) -> float:
-        moved = list(base)
-        moved[j] = x
-        slopes = field(moved)
+        state = list(base)
+        state[j] = x
+        slopes = field(state)
         return math.inf if slopes is None else abs(x * slopes[(j + n) % (2 * n)])
 
+    # Bisection in the binary logarithm, since units may lie many powers of ten apart.
     low, high = -200.0, 200.0  # of its binary logarithm
     if not energy(2.0**high) > work > energy(2.0**low):
         return 1.0
@@ -238,12 +250,12 @@ def _partner(field: Field, base: Vector, j: int, work: float) -> float:
 
 
 def _duration(field: Field, units: Vector) -> float:
-    """Over which the field changes otherwise than by a power of t, from 0 on or where it is
-    defined; 1 where it does not."""
+    """Find the time over which the field changes otherwise than by a power of t, from 0 on or where
+    it is defined; 1 where it does not."""
     if not field.timed:
         return 1.0
     begin = 0.0 if field(units, 0.0) is not None else 0.125
-    turns = _turns(lambda s: field.octave(units, begin + s, units, begin))
+    turns = _find_turns(lambda s: field.octave(units, begin + s, units, begin))
     return turns[0] if turns else 1.0
 
 
@@ -251,26 +263,26 @@ def _duration(field: Field, units: Vector) -> float:
 
 
 def reaches(field: Field, z: Vector, t: float, units: Vector) -> list[float]:
-    """How far each coordinate may be moved before the field bends, at most its unit."""
-    still = field(z, t)
-    if still is None:
+    """Return how far each coordinate may be moved before the field bends, at most its unit."""
+    field_values = field(z, t)
+    if field_values is None:
         raise NoFlowError("H is not defined there")
     steep = field.jacobian(z, t, units)
-    return [_reach(field, z, t, j, still, units[j], steep[j]) for j in range(len(z))]
+    return [_reach(field, z, t, j, field_values, units[j], steep[j]) for j in range(len(z))]
 
 
 def _reach(
-    field: Field, z: Vector, t: float, j: int, still: Vector, unit: float, steep: Vector
+    field: Field, z: Vector, t: float, j: int, field_values: Vector, unit: float, steep: Vector
 ) -> float:
     length = unit
     for _ in range(20):
         ends = []
         for sign in (1, -1):
-            moved = list(z)
-            moved[j] += sign * length
-            ends.append(field(moved, t))
+            state = list(z)
+            state[j] += sign * length
+            ends.append(field(state, t))
         if ends[0] is not None and ends[1] is not None:
-            pairs = list(zip(ends[0], ends[1], still, strict=True))
+            pairs = list(zip(ends[0], ends[1], field_values, strict=True))
             bend = max(
                 abs(a - 2 * c + b) / (abs(a - b) + abs(c) * 1e-3 + 1e-300) for a, b, c in pairs
             )
@@ -286,7 +298,7 @@ def _reach(
 
 
 def rate(field: Field, z: Vector, t: float, reach: Vector) -> float:
-    """How fast the motion changes: ‖∂f/∂z‖ with its coordinates balanced, and of its way.
+    """Measure how fast the motion changes: ‖∂f/∂z‖ with its coordinates balanced, and of its way.
 
     Balancing (Osborne, J. ACM 7 (1960)) takes units out: the norm is then near the largest
     frequency. Raises NoFlowError.
@@ -299,11 +311,14 @@ def rate(field: Field, z: Vector, t: float, reach: Vector) -> float:
             row = sum(entries[k][j] for j in range(size) if j != k)
             column = sum(entries[i][k] for i in range(size) if i != k)
             if row > 0 and column > 0:
+                # A diagonal scaling that makes the sums of row and column equal leaves the
+                # eigenvalues as they are.
                 ratio = math.sqrt(column / row)
                 for j in range(size):
                     if j != k:
                         entries[k][j] *= ratio
                         entries[j][k] /= ratio
     slopes = field(z, t) or []
+    # Where f is large the state leaves its surroundings at once, however smooth f is there.
     moving = max((abs(x) / length for x, length in zip(slopes, reach, strict=True)), default=0.0)
     return max(map(sum, entries)) + moving / 2

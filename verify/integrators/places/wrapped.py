@@ -26,14 +26,16 @@ Periods = tuple[Fraction, ...]  # of each coordinate, 0 for none; () where none 
 Ends = tuple[Sequence[Real], Sequence[Real]]  # of the step, and of the flow
 
 
-def unwrapped(x: Real, near: Real, period: Fraction) -> Real:
-    """x, moved by whole periods to where it is nearest to `near`."""
+def unwrap(x: Real, near: Real, period: Fraction) -> Real:
+    """Move x by whole periods to where it is nearest to `near`."""
     turns = round((x - near) / period) if period else 0
     return x - turns * period if turns else x
 
 
-def wrapped(ends: Iterable[Ends[Real]], hamiltonian: Hamiltonian, h: Fraction) -> Periods:
-    """By which periods steps of that small size end away from the flow."""
+def find_wrapped_periods(
+    ends: Iterable[Ends[Real]], hamiltonian: Hamiltonian, h: Fraction
+) -> Periods:
+    """Find the periods by which steps of that small size end away from the flow."""
     pairs = [list(zip(*each, strict=True)) for each in ends]
     if not any(abs(x - y) > _FAR for each in pairs for x, y in each):
         return ()
@@ -41,16 +43,16 @@ def wrapped(ends: Iterable[Ends[Real]], hamiltonian: Hamiltonian, h: Fraction) -
     near = _NEAR + _BY_STEP * float(h) ** 2
     for each in pairs:
         for (x, y), period in zip(each, periods, strict=True):
-            if abs(unwrapped(x, y, period) - y) > near:
+            if abs(unwrap(x, y, period) - y) > near:
                 return ()
-    reduced = [
+    is_reduced = [
         any(abs(each[k][0] - each[k][1]) > _FAR for each in pairs) for k in range(len(periods))
     ]
-    return tuple(x if used else Fraction(0) for x, used in zip(periods, reduced, strict=True))
+    return tuple(x if wraps else Fraction(0) for x, wraps in zip(periods, is_reduced, strict=True))
 
 
-def periods_told(names: Sequence[str], periods: Periods) -> list[Prose]:
-    """A sentence for each coordinate that is reduced."""
+def describe_periods(names: Sequence[str], periods: Periods) -> list[Prose]:
+    """Return a sentence for each coordinate that is reduced."""
     return [
         prose(name, " is compared modulo ", Number(f"{float(x):.6g}"), ", a period of the motion")
         for name, x in zip(names, periods, strict=False)
@@ -59,7 +61,7 @@ def periods_told(names: Sequence[str], periods: Periods) -> list[Prose]:
 
 
 def periods_of(hamiltonian: Hamiltonian) -> Periods:
-    """That of each coordinate, as the sines in H tell it, where H's field repeats with it."""
+    """Find the period of each coordinate from the sines in H, where H's field repeats with it."""
     return tuple(_period(hamiltonian, k) for k in range(2 * hamiltonian.degrees))
 
 
@@ -69,29 +71,32 @@ def _period(hamiltonian: Hamiltonian, place: int) -> Fraction:
     from verify.algebra.expressions.functions_used import waves_in
     from verify.algebra.formula import symbol
 
-    own = symbol(hamiltonian.coordinates[place])
+    coordinate = symbol(hamiltonian.coordinates[place])
     waves = waves_in(hamiltonian.exact)
-    rates = sorted({abs(x.args[0].diff(own)) for x in waves} - {0}, key=str)
+    rates = sorted({abs(x.args[0].diff(coordinate)) for x in waves} - {0}, key=str)
     ratios = [sympy.nsimplify(x / rates[0]) for x in rates]
     if not rates or not all(x.is_Rational for x in ratios) or rates[0].free_symbols:
         return Fraction(0)
+    # The rates are r₀ p_i/q_i. With m the least common multiple of the q_i, all sines share the
+    # period of the rate r₀ gcd(p_i m/q_i)/m.
     below = lcm(*(int(x.q) for x in ratios))
     slowest = rates[0] * sympy.Rational(gcd(*(int(x.p) * below // int(x.q) for x in ratios)), below)
     whole = Fraction(str((2 * sympy.pi / slowest).evalf(_DIGITS)))
+    # Products such as sin·cos repeat after half the period already.
     return next((x for x in (whole / 2, whole) if _repeats(hamiltonian, place, x)), Fraction(0))
 
 
 def _repeats(hamiltonian: Hamiltonian, place: int, period: Fraction) -> bool:
-    """Whether the field is the same after that period, at points."""
+    """Return True if the field is the same after that period, at some points."""
     flow, same = Flow(canonical_field(hamiltonian)[0], _OF_FIELD), 0
     names = hamiltonian.coordinates
     for first in range(_POINTS):
         point = [Fraction(2 * k + 3 * first + 1, 11) for k in range(len(names))]
-        moved = [x + period * (k == place) for k, x in enumerate(point)]
+        shifted = [x + period * (k == place) for k, x in enumerate(point)]
         try:
             one, two = (
                 flow.slope(flow.state({**dict(zip(names, z, strict=True)), "t": Fraction(1, 4)}))
-                for z in (point, moved)
+                for z in (point, shifted)
             )
         except NoFlowError:
             continue

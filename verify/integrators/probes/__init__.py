@@ -1,1 +1,1 @@
-"""What is measured of a user's map at a place: its end and its Jacobian, with their noise."""
+"""Probes of a user's map at a place: its end and its Jacobian, with their noise."""

@@ -1,4 +1,4 @@
-"""Whether our numbers make of a user's map what his floats make of it."""
+"""Agreement of a user's map in our numbers with the same map in his floats."""
 
 import math
 import random
@@ -14,7 +14,7 @@ from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.tracing.dual import Dual, Duals, slope_of
 from verify.integrators.tracing.number import UntraceableError
-from verify.integrators.tracing.trace import Node, in_order, replayed, through
+from verify.integrators.tracing.trace import Node, evaluate_nodes, in_order, replay_in
 from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
@@ -27,56 +27,62 @@ _SCATTERED = 20  # further places around each, up to a quarter of a unit away
 _ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may with duals
 _LOOSEST = 0.1  # a bound that a loop may end at
 _EPSILON = 2.0**-52
-Rounded = tuple[float, float]  # a value, and a bound of its error to first order
-Bounded = tuple[list[Fraction], list[float]]  # z', and how far it may be from the floats' end
+BoundedValue = tuple[float, float]  # a value, and a bound of its error to first order
+BoundedEnd = tuple[list[Fraction], list[float]]  # z', and how far it may be from the floats' end
 
 
 def must_agree(probe: DualProbe, places: Sequence[Place]) -> None:
-    """UntraceableError where dual numbers and the user's floats part at one of the places.
+    """Raise UntraceableError where dual numbers and the user's floats part at one of the places.
 
     So it is where the code keeps a state, or takes another branch with floats.
     """
 
-    def theirs(place: Place, h: Fraction, mine: State) -> Bounded:
-        ended, near = probe.end(place, h), _AGREES
+    def theirs(place: Place, h: Fraction, mine: State) -> BoundedEnd:
+        end, near = probe.end(place, h), _AGREES
         if probe.opaque:
             limits = [abs(float(x.limit)) for x in probe.comparisons if x.limit]
+            # A loop may end elsewhere with 200 bits than with 53: both ends are then within a few
+            # tolerances of each other.
             near = max([_ENDS_ELSEWHERE, *(4 * x for x in limits if x < _LOOSEST)])
         units = map(float, place.units)
-        return ended, [near * (u + abs(x)) for u, x in zip(units, mine, strict=True)]
+        return end, [near * (u + abs(x)) for u, x in zip(units, mine, strict=True)]
 
     _must_agree(probe.step, places, theirs)
 
 
 def trace_must_agree(step: UserMap, roots: Sequence[Node], places: Sequence[Place]) -> None:
-    """As `must_agree`, for a trace, at many places, and as near as rounding lets it be."""
+    """Check a trace as `must_agree` does, at many places, and as closely as rounding lets it."""
     nodes, kind = in_order(*roots), Duals()
 
-    def theirs(place: Place, h: Fraction, mine: State) -> Bounded | None:
+    def theirs(place: Place, h: Fraction, mine: State) -> BoundedEnd | None:
         start = dict(zip(step.names, place.z, strict=True))
-        start |= {"h": DOUBLE.rounded(h), "t": DOUBLE.rounded(place.t)}
-        ended = _replayed(kind, nodes, roots, start)
-        return None if ended is None else (ended, _allowed(nodes, roots, start, mine, place))
+        start |= {"h": DOUBLE.round_number(h), "t": DOUBLE.round_number(place.t)}
+        end = _replay_trace(kind, nodes, roots, start)
+        return None if end is None else (end, _bound_difference(nodes, roots, start, mine, place))
 
     with kind.running():
-        _must_agree(step, [*places, *(x for place in places[:6] for x in _around(place))], theirs)
+        _must_agree(
+            step, [*places, *(x for place in places[:6] for x in _scatter_places(place))], theirs
+        )
 
 
 def _must_agree(
     step: UserMap, places: Sequence[Place],
-    theirs: Callable[[Place, Fraction, State], Bounded | None],
+    theirs: Callable[[Place, Fraction, State], BoundedEnd | None],
 ) -> None:  # fmt: skip
-    """`theirs`: what is made of a call with floats, and how far it may be from what these end at;
-    None where it is not known."""
+    """Compare calls with floats with `theirs`: the end that is computed for such a call, and how
+    far it may be from what the floats end at; None where it is not known."""
     compared = 0
     for place, h in _calls(places):
-        rounded = place.rounded(DOUBLE.rounded)
-        mine = unless_it_fails(partial(step.at_place, rounded, h))  # other places may do
-        bounded = None if mine is None else theirs(rounded, h, mine)
-        if mine is not None and bounded is not None:
+        rounded_place = place.with_rounded_state(DOUBLE.round_number)
+        floats_end = unless_it_fails(
+            partial(step.at_place, rounded_place, h)
+        )  # other places may do
+        bounded = None if floats_end is None else theirs(rounded_place, h, floats_end)
+        if floats_end is not None and bounded is not None:
             compared += 1
-            if any(abs(Fraction(x) - y) > z for x, y, z in zip(mine, *bounded, strict=True)):
-                raise _parting(step, rounded, h)
+            if any(abs(Fraction(x) - y) > z for x, y, z in zip(floats_end, *bounded, strict=True)):
+                raise _disagreement(step, rounded_place, h)
     if not compared:
         raise UntraceableError("it fails at every place that is tried")
 
@@ -87,7 +93,7 @@ def _calls(places: Sequence[Place]) -> Iterator[tuple[Place, Fraction]]:
             yield place, place.step / part
 
 
-def _around(place: Place) -> list[Place]:
+def _scatter_places(place: Place) -> list[Place]:
     draw = random.Random(1)  # noqa: S311 - any places do
     return [
         replace(
@@ -101,22 +107,24 @@ def _around(place: Place) -> list[Place]:
     ]
 
 
-def _replayed(
+def _replay_trace(
     kind: Duals, nodes: Sequence[Node], roots: Sequence[Node], start: dict[str, Fraction]
 ) -> list[Fraction] | None:
+    """Return the end of the trace from this start; None where it cannot be computed."""
     numbers = {name: kind.rational(x) for name, x in start.items()}
     try:
-        made = through(nodes, replayed(kind, numbers))
-        ended: list[Dual] = [made[root.number] for root in roots]
-        return [fraction(x.value) for x in ended]
+        values = evaluate_nodes(nodes, replay_in(kind, numbers))
+        end: list[Dual] = [values[root.number] for root in roots]
+        return [fraction(x.value) for x in end]
     except (ArithmeticError, ValueError):
         return None
 
 
-def _allowed(
+def _bound_difference(
     nodes: Sequence[Node], roots: Sequence[Node], start: dict[str, Fraction], mine: State,
     place: Place,
 ) -> list[float]:  # fmt: skip
+    """Bound, by component, the distance that rounding alone may leave between trace and floats."""
     try:
         noise = _rounding_noise(nodes, {name: float(x) for name, x in start.items()})
     except (ArithmeticError, ValueError):  # beyond what floats can do
@@ -127,9 +135,9 @@ def _allowed(
     ]
 
 
-def _parting(step: UserMap, place: Place, h: Fraction) -> UntraceableError:
+def _disagreement(step: UserMap, place: Place, h: Fraction) -> UntraceableError:
     where = ", ".join(f"{name} = `{x}`" for name, x in zip(step.names, place.z, strict=True))
-    size = f", h = `{h}`" if step.stepped else ""
+    size = f", h = `{h}`" if step.takes_step_size else ""
     return UntraceableError(read_prose(f"with floats it does something else, at {where}{size}"))
 
 
@@ -137,24 +145,24 @@ def _parting(step: UserMap, place: Place, h: Fraction) -> UntraceableError:
 
 
 def _rounding_noise(nodes: Sequence[Node], start: dict[str, float]) -> dict[int, float]:
-    """A bound of each node's error where each operation is rounded, by the nodes' numbers.
+    """Bound each node's error where each operation is rounded, by the nodes' numbers.
 
     `start`: the coordinates, h and t by name. Raises ArithmeticError or ValueError where floats do
     not reach.
     """
 
-    def rounded(node: Node, x: list[Rounded]) -> Rounded:
-        value, inherited = _made(node, x, start)
+    def round_node(node: Node, x: list[BoundedValue]) -> BoundedValue:
+        value, inherited = _evaluate_node(node, x, start)
         if not math.isfinite(value):
             raise OverflowError
-        own = 0.0 if node.operation == "symbol" else 4 * _EPSILON * abs(value)
-        return value, inherited + own
+        rounding_error = 0.0 if node.operation == "symbol" else 4 * _EPSILON * abs(value)
+        return value, inherited + rounding_error
 
-    return {number: error for number, (_, error) in through(nodes, rounded).items()}
+    return {number: error for number, (_, error) in evaluate_nodes(nodes, round_node).items()}
 
 
-def _made(node: Node, x: list[Rounded], start: dict[str, float]) -> Rounded:
-    """Its value, and the error that its inputs' errors make."""
+def _evaluate_node(node: Node, x: list[BoundedValue], start: dict[str, float]) -> BoundedValue:
+    """Return the node's value, and the error that its inputs' errors cause."""
     match node.operation:
         case "symbol":
             return start[node.value], 0.0

@@ -13,9 +13,9 @@ from verify.arithmetic.exact import fraction
 from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Matrix, Reading, reading_of
 from verify.integrators.tracing.dual import BITS, Comparison, Dual, Duals
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.user_code.number_type import DOUBLE
-from verify.integrators.user_code.step import StepError, Theirs, lifted, within
+from verify.integrators.user_code.step import StepError, Theirs, lift_numbers, limit_time
 from verify.integrators.user_code.user_map import UserMap
 
 _EPSILON = 2.0**-53  # half a unit of a double's last place
@@ -34,37 +34,37 @@ class DualProbe:
         self._functions = {}
         for kind in (self.kind, self.coarse):
             with kind.running():
-                self._functions[kind.bits] = copied(step.function, kind)
+                self._functions[kind.bits] = copy_function(step.function, kind)
 
     @property
     def opaque(self) -> bool:
-        """Whether numbers were compared, so that there may be branches or a tolerance."""
+        """True if numbers were compared, so that there may be branches or a tolerance."""
         return self.kind.compared
 
     @property
     def comparisons(self) -> Sequence[Comparison]:
-        """Those of the last call."""
+        """The comparisons of the last call."""
         return self.kind.comparisons
 
     def end(self, place: Place, h: Fraction) -> list[Fraction]:
-        """z' as the rationals that it is. Raises StepError, and what the user's code raises."""
+        """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
         with self.kind.running():
             one = (gmpy2.mpfr(1),)
             state = [Dual(self.kind, self.kind.rational(x).value, one) for x in place.z]
-            ended = self._called(self.kind, state, place, h)
+            ended = self._call(self.kind, state, place, h)
             return [fraction(x.value) for x in ended]
 
-    def rounded(self, x: Fraction) -> Fraction:
-        """A number as it is called with it: as it stands."""
+    def round_number(self, x: Fraction) -> Fraction:
+        """Return x as it stands: dual numbers have digits enough."""
         return x
 
     def noise(self, place: Place, state: Sequence[Fraction]) -> list[float]:
-        """Of z', our own."""
+        """Return the noise of z' that our own numbers have."""
         return [OWN_NOISE * float(max(abs(x), abs(y)) + u)
                 for x, y, u in zip(state, place.z, place.units, strict=True)]  # fmt: skip
 
     def reading(self, place: Place, h: Fraction) -> Reading:
-        """S and det J − 1. Raises StepError, and what the user's code raises."""
+        """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
         fine = self._jacobian(self.kind, place, h)
         comparisons = self.kind.comparisons
         errors = [[_ROUNDINGS * _EPSILON * abs(float(x)) for x in row] for row in fine]
@@ -75,14 +75,17 @@ class DualProbe:
     def _add_rounding(
         self, errors: list[list[float]], fine: Matrix, place: Place, h: Fraction
     ) -> None:
-        """What 53 bits make of each row, at a place that has no more, in units of the columns."""
-        rounded = place.rounded(DOUBLE.rounded)
+        """Add the noise that 53 bits cause in each row, at a place that has no more, in units of
+        the columns."""
+        rounded_place = place.with_rounded_state(DOUBLE.round_number)
         try:
-            with within(_SECONDS, "rounded to doubles it does not end"):
-                coarse = self._jacobian(self.coarse, rounded, h)
+            with limit_time(_SECONDS, "rounded to doubles it does not end"):
+                coarse = self._jacobian(self.coarse, rounded_place, h)
         except Exception:  # the user's code may raise anything; then its least noise has to do
             return
-        same = fine if rounded.z == place.z else self._jacobian(self.kind, rounded, h)
+        # Both precisions must be compared at the same state: where rounding moves it, the fine
+        # Jacobian is computed again.
+        same = fine if rounded_place.z == place.z else self._jacobian(self.kind, rounded_place, h)
         units = [float(x) for x in place.units]
         for row, one, two in zip(errors, coarse, same, strict=True):
             gaps = [abs(float(x) - float(y)) * u for x, y, u in zip(one, two, units, strict=True)]
@@ -92,17 +95,17 @@ class DualProbe:
 
     def _jacobian(self, kind: Duals, place: Place, h: Fraction) -> Matrix:
         with kind.running():
-            ended = self._called(kind, kind.state(*place.z), place, h)
+            end = self._call(kind, kind.state(*place.z), place, h)
             zeros = (gmpy2.mpfr(0),) * len(place.z)
-            return [x.slopes or zeros for x in ended]
+            return [x.slopes or zeros for x in end]
 
-    def _called(self, kind: Duals, state: list[Dual], place: Place, h: Fraction) -> list[Dual]:
+    def _call(self, kind: Duals, state: list[Dual], place: Place, h: Fraction) -> list[Dual]:
         kind.comparisons = []
         step, size, clock = self.step, kind.rational(h), kind.rational(place.t)
         result: list[Theirs] = step.call(
             self._functions[kind.bits], state, size, clock, kind.rational
         )
-        ended: list[Dual] = lifted(state[0], result)
-        if not all(gmpy2.is_finite(x.value) for x in ended):
+        end: list[Dual] = lift_numbers(state[0], result)
+        if not all(gmpy2.is_finite(x.value) for x in end):
             raise StepError("it returns what is not finite")
-        return ended
+        return end

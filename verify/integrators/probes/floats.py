@@ -12,7 +12,7 @@ from fractions import Fraction
 import gmpy2
 
 from verify.integrators.places.place import Place
-from verify.integrators.places.wrapped import unwrapped
+from verify.integrators.places.wrapped import unwrap
 from verify.integrators.probes.reading import BITS, Reading, reading_of
 from verify.integrators.tracing.dual import Comparison
 from verify.integrators.user_code.step import StepError
@@ -33,38 +33,39 @@ class FloatProbe:
         self.step = step
         self._scatter: dict[tuple[Place, Fraction], list[float]] = {}
 
-    def rounded(self, x: Fraction) -> Fraction:
-        """A number as it is called with it: one of its type."""
-        return self.step.numbers.rounded(x)
+    def round_number(self, x: Fraction) -> Fraction:
+        """Round x to the type of number that the step is called with."""
+        return self.step.numbers.round_number(x)
 
     def end(self, place: Place, h: Fraction) -> list[Fraction]:
-        """z' as the rationals that it is. Raises StepError, and what the user's code raises."""
-        (ended,) = self._ends([place.rounded(self.rounded).z], place, h)
+        """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
+        (ended,) = self._ends([place.with_rounded_state(self.round_number).z], place, h)
         return ended
 
     def noise(self, place: Place, state: Sequence[Fraction]) -> list[float]:
-        """Of z': what a rounding of each operation leaves, at least."""
+        """Return the least noise of z': a rounding of each operation."""
         epsilon = self.step.numbers.epsilon
         return [epsilon * float(max(abs(x), abs(y)))
                 for x, y in zip(state, place.z, strict=True)]  # fmt: skip
 
     def scatter(self, place: Place, h: Fraction) -> list[float]:
-        """By how much the components of z' scatter about a smooth curve: their noise as seen."""
+        """Measure how far the components of z' scatter about a smooth curve: their noise as
+        seen."""
         key = place, h
         if key not in self._scatter:
             self._scatter[key] = self._seen_scatter(place, h)
         return self._scatter[key]
 
     def _seen_scatter(self, place: Place, h: Fraction) -> list[float]:
-        z, epsilon = place.rounded(self.rounded).z, self.step.numbers.epsilon
+        z, epsilon = place.with_rounded_state(self.round_number).z, self.step.numbers.epsilon
         # Over so little a smooth map bends below its numbers' rounding.
         tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
-        moved = [
-            [self.rounded(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
+        states = [
+            [self.round_number(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
             for k in range(_MOVES)
         ]
-        ends = self._ends(moved, place, h)
-        seen = []
+        ends = self._ends(states, place, h)
+        noises = []
         for i in range(len(z)):
             values = [end[i] for end in ends]
             # Third differences of a smooth curve are nothing at such a distance.
@@ -72,14 +73,14 @@ class FloatProbe:
                 float(abs(d - 3 * c + 3 * b - a))
                 for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
             ]
-            least = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
+            smallest_noise = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
             jump = self.step.coarseness * max(float(place.units[i]), abs(float(ends[0][i])))
-            seen.append(least + _SPREAD * max(thirds) / 8 + jump)
-        return seen
+            noises.append(smallest_noise + _SPREAD * max(thirds) / 8 + jump)
+        return noises
 
     def reading(self, place: Place, h: Fraction) -> Reading:
-        """S and det J − 1. Raises StepError, and what the user's code raises."""
-        z, scatter = place.rounded(self.rounded).z, self.scatter(place, h)
+        """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
+        z, scatter = place.with_rounded_state(self.round_number).z, self.scatter(place, h)
         columns, blurs = [], []
         with gmpy2.context(precision=BITS):
             for j in range(len(z)):
@@ -88,25 +89,27 @@ class FloatProbe:
                 blurs.append(blur)
         rows = [list(row) for row in zip(*columns, strict=True)]
         errors = [list(row) for row in zip(*blurs, strict=True)]
-        least = 4 * self.step.numbers.epsilon
+        least_error = 4 * self.step.numbers.epsilon
         for row, error in zip(rows, errors, strict=True):
             for k, x in enumerate(row):
-                error[k] += least * abs(float(x))
+                error[k] += least_error * abs(float(x))
         return reading_of(place, h, rows, errors, self.step.numbers.epsilon)
 
     def _column(
         self, place: Place, h: Fraction, z: Sequence[Fraction], j: int, scatter: list[float]
     ) -> tuple[list["gmpy2.mpfr"], list[float]]:
-        """∂z'/∂z_j, and the errors of its entries."""
+        """Return ∂z'/∂z_j, and the errors of its entries."""
         levels = max(_LEVELS, self.step.numbers.bits // 8)
         widths = [place.reach[j] / 2**k for k in range(1, levels + 1)]
         tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
+        # Two tiny widths stand beside those that are extrapolated: they stay on one side of a jump,
+        # at the price of more noise.
         widths += [2 * tiny, tiny]
         states, steps = [], []
         for width in widths:
             pair = [list(z), list(z)]
             for state, sign in zip(pair, (1, -1), strict=True):
-                state[j] = self.rounded(z[j] + sign * width)
+                state[j] = self.round_number(z[j] + sign * width)
             states += pair
             steps.append(gmpy2.mpq(pair[0][j] - pair[1][j]))
         ends = self._ends(states, place, h)
@@ -125,23 +128,23 @@ class FloatProbe:
     def _ends(
         self, states: Sequence[Sequence[Fraction]], place: Place, h: Fraction
     ) -> list[list[Fraction]]:
-        ends = self.step.exactly(states, self.rounded(h), self.rounded(place.t))
+        ends = self.step.exactly(states, self.round_number(h), self.round_number(place.t))
         if self.step.periods:  # all on one side of where it wraps
             first = ends[0]
-            ends = [list(map(unwrapped, end, first, self.step.periods)) for end in ends]
+            ends = [list(map(unwrap, end, first, self.step.periods)) for end in ends]
         return ends
 
 
 def _best(
     slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float], coarse: bool
 ) -> tuple["gmpy2.mpfr", float]:
-    """What is extrapolated, where the last slopes, of tiny widths, do not contradict it.
+    """Return the extrapolated value, where the last slopes, of tiny widths, do not contradict it.
 
     Where the map jumps within the wider differences, as where it wraps or a loop does one turn
     more, the tiny ones are on one side of it. Of coarse numbers neither is known to be right.
     """
     *wide, twice, tiny = slopes
-    value, error = _extrapolated(wide, noises)
+    value, error = _extrapolate(wide, noises)
     noise = 2 * noises[-1]
     apart = abs(float(tiny - value))
     bent = abs(float(wide[0] - value)) * (noises[0] / noises[-1]) ** 2  # over the tiny width
@@ -151,18 +154,20 @@ def _best(
     return (tiny, noise + bent) if agree and not coarse else (value, error + apart)
 
 
-def _extrapolated(
+def _extrapolate(
     slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float]
 ) -> tuple["gmpy2.mpfr", float]:
-    """The value of the tableau whose error is least, and that error."""
+    """Return the value of the tableau whose error is least, and that error."""
     best, least = slopes[-1], float("inf")
     above: list[gmpy2.mpfr] = []
     for k, slope in enumerate(slopes):
         row = [slope]
-        for m, before in enumerate(above, start=1):
-            row.append(row[-1] + (row[-1] - before) / (4**m - 1))
+        for m, coarser in enumerate(above, start=1):
+            # Central differences have even powers of the width alone: halving it divides them by 4,
+            # 16, ….
+            row.append(row[-1] + (row[-1] - coarser) / (4**m - 1))
             # Both neighbours: one alone may agree by chance.
-            error = max(abs(float(row[m] - row[m - 1])), abs(float(row[m] - before)))
+            error = max(abs(float(row[m] - row[m - 1])), abs(float(row[m] - coarser)))
             error = error + 2 * noises[k]
             if error < least:
                 best, least = row[m], error

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import gmpy2
 
 from verify.integrators.places.place import Place
-from verify.integrators.tracing.linear_algebra import eliminated
+from verify.integrators.tracing.linear_algebra import eliminate
 
 if TYPE_CHECKING:
     Real: TypeAlias = gmpy2.mpfr
@@ -26,7 +26,8 @@ _ROUNDINGS = 32  # of an entry of Ω: what tens of operations in its numbers lea
 
 @dataclass(frozen=True)
 class Reading:
-    """At a place, with step size h (0 of a map that has none): S's entries a < b and det J − 1.
+    """The entries a < b of S, and det J − 1, at a place with step size h (0 of a map that has
+    none).
 
     `defect` and `noise` are of entries in the units of the place, where those of Ω are about 1;
     `entries` are as they stand. `jacobian`: J by rows, as floats.
@@ -43,24 +44,24 @@ class Reading:
 
     @property
     def worst(self) -> Entry:
-        """The entry that is most of all beyond its noise."""
+        """The entry that is farthest beyond its noise."""
         return max(self.entries, key=lambda at: abs(self.entries[at]) / self.noise[at])
 
     @property
-    def shown(self) -> Entry:
+    def largest_entry(self) -> Entry:
         """The largest entry in units of the place, of those beyond their noise where there are."""
         clear = [at for at, x in self.entries.items() if abs(x) > 4 * self.noise[at]]
         return max(clear or self.entries, key=lambda at: abs(self.entries[at]) * self.scales[at])
 
     @property
     def beyond(self) -> float:
-        """How many times its noise that entry is."""
+        """The ratio of the worst entry to its noise."""
         return abs(self.entries[self.worst]) / self.noise[self.worst]
 
     @property
     def defect(self) -> float:
         """The largest entry in units of the place, of those beyond their noise where there are."""
-        return abs(self.entries[self.shown]) * self.scales[self.shown]
+        return abs(self.entries[self.largest_entry]) * self.scales[self.largest_entry]
 
     @property
     def blur(self) -> float:
@@ -71,8 +72,8 @@ class Reading:
 def reading_of(
     place: Place, h: Fraction, jacobian: Matrix, errors: list[list[float]], epsilon: float
 ) -> Reading:
-    """Those of J and the errors of its entries, both by rows; `epsilon`: of the numbers that the
-    code computes in. Some dozens of roundings are allowed of each entry of Ω."""
+    """Compute the reading from J and the errors of its entries, both by rows; `epsilon`: of the
+    numbers that the code computes in. Some dozens of roundings are allowed in each entry of Ω."""
     size, half = len(jacobian), len(jacobian) // 2
     units = [float(x) for x in place.units]
     with gmpy2.context(precision=BITS):
@@ -85,6 +86,8 @@ def reading_of(
         mean = sum(action) / half
         for a, b in combinations(range(size), 2):
             u, v, e, f, x, y = columns[a], columns[b], blurs[a], blurs[b], sizes[a], sizes[b]
+            # S_ab = Σ_i (u_i v_(n+i) − u_(n+i) v_i) − Ω_ab, with u and v the columns a and b of J;
+            # the errors e and f of the columns enter to first order.
             total = gmpy2.mpfr(-1 if b == a + half else 0)
             blur = 0.0
             for i in range(half):
@@ -103,14 +106,17 @@ def reading_of(
 def _volume(
     jacobian: Matrix, errors: list[list[float]], units: Sequence[Fraction]
 ) -> tuple[float, float]:
-    """det J − 1, and its noise by the entries of the inverse (Jacobi's formula)."""
+    """Return det J − 1, and its noise by the entries of the inverse (Jacobi's formula)."""
     scale = [gmpy2.mpfr(float(x)) for x in units]
     rows = [[x * scale[j] / scale[i] for j, x in enumerate(row)] for i, row in enumerate(jacobian)]
     size, one = len(rows), gmpy2.mpfr(1)
     wide = [[*row, *(one * (i == k) for i in range(size))] for k, row in enumerate(rows)]
-    determinant = eliminated(wide, abs) * prod((row[k] for k, row in enumerate(wide)), start=one)
+    # The identity is carried along: one elimination leaves the determinant as the product of the
+    # pivots, and the inverse beside them.
+    determinant = eliminate(wide, abs) * prod((row[k] for k, row in enumerate(wide)), start=one)
     if not determinant or not gmpy2.is_finite(determinant):  # a pivot is 0
         return -1.0, max(map(max, errors), default=0.0)
+    # ∂ det J/∂J_ij = det J (J⁻¹)_ji, in units of the place.
     blur = sum(
         abs(float(row[size + i] / row[j])) * errors[i][j] * float(scale[j] / scale[i])
         for i in range(size)

@@ -16,12 +16,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.files import read_text
 from verify.integrators.tables import kinds
 from verify.integrators.tables.entry import TableEntry
-from verify.integrators.tables.told import TableClaim
-from verify.scenes.mistakes.values import one_line
+from verify.integrators.tables.table_claim import TableClaim
+from verify.scenes.mistakes.values import describe_first_error
 from verify.scenes.toml_file import Lines, lines_of, read_toml
 
 MOST_TABLES = 1000
@@ -40,7 +40,8 @@ class Judgement:
 
 @dataclass(frozen=True)
 class TableFile:
-    """The entries, each with its line. `left_out`: what of the whole is not there, and why."""
+    """The entries of a file, each with its line. `left_out`: what of the whole is missing, and
+    why."""
 
     name: str
     title: str
@@ -48,51 +49,53 @@ class TableFile:
     lines: Lines
     left_out: tuple[tuple[str, str], ...] = ()
 
-    def judged(self) -> Iterator[Judgement]:
-        """Every claim of every table. InputError, with the line, for a table that is none."""
+    def judge(self) -> Iterator[Judgement]:
+        """Yield every claim of every table. Raises InputError, with the line, for what is no
+        table."""
         for index, (entry, line) in enumerate(self.entries):
             try:
                 for claim in kinds.get(entry.kind).claims(entry):
                     yield Judgement(f"{entry.name}/{claim.kind}", entry.name, line, claim)
             except InputError as error:
-                raise located(self.name, self.lines, index, entry.name, error) from None
+                raise locate_error(self.name, self.lines, index, entry.name, error) from None
 
 
 def read_tables(path: Path) -> TableFile:
-    """The tables of a TOML file; InputError names the file, the line, the table and the problem."""
+    """Read the tables of a TOML file. InputError names the file, the line, the table and the
+    problem."""
     data = read_toml(path)
     lines = lines_of(read_text(path))
     for key in sorted(set(data) - set(_ROOT)):
-        at = lines.of("", 0, key) if lines.has("", 0, key) else lines.of(key)
-        where = f"{path.name}:{at}: {key}"
+        line = lines.line_of("", 0, key) if lines.has("", 0, key) else lines.line_of(key)
+        where = f"{path.name}:{line}: {key}"
         raise InputError(where, data[key], f"unknown; allowed: {', '.join(_ROOT)}")
     tables = data.get("table")
     if not isinstance(tables, list) or not tables:
         raise InputError("file", path.name, "must hold [[table]] tables, each with name and kind")
     if len(tables) > MOST_TABLES:
         raise InputError("file", path.name, f"has {len(tables)} tables; allowed: {MOST_TABLES}")
-    found: dict[str, tuple[TableEntry, int]] = {}
+    entries: dict[str, tuple[TableEntry, int]] = {}
     for index, table in enumerate(tables):
         name = table.get("name") if isinstance(table, dict) else None
-        called = name if isinstance(name, str) and name else f"number {index + 1}"
+        label = name if isinstance(name, str) and name else f"number {index + 1}"
         try:
             entry = _model(table).model_validate(table).in_folder(path.parent)
-            if called in found:
-                raise InputError("name", called, "stands twice; each table has its own")
+            if label in entries:
+                raise InputError("name", label, "stands twice; each table has its own")
         except ValidationError as error:
-            said = one_line(error, f"table {called}", _model(table))
-            raise located(path.name, lines, index, called, said) from None
+            problem = describe_first_error(error, f"table {label}", _model(table))
+            raise locate_error(path.name, lines, index, label, problem) from None
         except InputError as error:
-            raise located(path.name, lines, index, called, error) from None
-        found[called] = entry, lines.of("table", index) or 1
+            raise locate_error(path.name, lines, index, label, error) from None
+        entries[label] = entry, lines.line_of("table", index) or 1
     title = str(data.get("title", path.stem))
-    return TableFile(path.name, title, tuple(found.values()), lines, _left_out(path.name, data))
+    return TableFile(path.name, title, tuple(entries.values()), lines, _left_out(path.name, data))
 
 
 def _left_out(name: str, data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """InputError where it is no list of tables with what and why."""
-    given = data.get("left_out", [])
-    rows = given if isinstance(given, list) else [given]
+    """Read what is left out. Raises InputError where it is no list of tables with what and why."""
+    value = data.get("left_out", [])
+    rows = value if isinstance(value, list) else [value]
     for row in rows:
         if not isinstance(row, dict) or set(row) != {"what", "why"}:
             problem = "is a list of tables, as [{ what = …, why = … }]"
@@ -103,24 +106,26 @@ def _left_out(name: str, data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]
 def _model(table: Any) -> type[TableEntry]:
     kind = table.get("kind") if isinstance(table, dict) else None
     if kind is None:
-        allowed = ", ".join(kinds.names())
-        raise InputError("kind", NOT_GIVEN, f"is missing; allowed: {allowed}")
+        kind_names = ", ".join(kinds.names())
+        raise InputError("kind", NOT_GIVEN, f"is missing; allowed: {kind_names}")
     if not isinstance(kind, str) or kind not in kinds.CATALOGUE:
-        raise unknown("kind", kind, kinds.names())
+        raise unknown_name("kind", kind, kinds.names())
     model: type[TableEntry] = kinds.get(kind).Entry
     return model
 
 
-def located(name: str, lines: Lines, index: int, table: str, error: InputError) -> InputError:
-    """The error with the file, the table and the line of the key that it names."""
-    said = error.name.removeprefix(f"table {table}").removeprefix(": ")
-    key = said.split(".")[0].split(" ")[0].split(",")[0]
+def locate_error(name: str, lines: Lines, index: int, table: str, error: InputError) -> InputError:
+    """Return the error with the file, the table and the line of the key that it names."""
+    message = error.name.removeprefix(f"table {table}").removeprefix(": ")
+    key = message.split(".")[0].split(" ")[0].split(",")[0]
+    # The problem names a key, or an entry such as a31 or b_p2: its line is looked for, then that of
+    # the key without indices.
     keys = [key, key.rstrip("_pq0123456789")]
     if error.value is not NOT_GIVEN:  # it may stand in a formula
         keys += ["numbers", "sizes", "half", "tableau", "a"]
-    line = lines.of("table", index, *filter(None, keys))
+    line = lines.line_of("table", index, *filter(None, keys))
     where = f"{name}:{line}: table {table}"
-    return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
+    return type(error)(f"{where}: {message}" if message else where, error.value, error.problem)
 
 
 def check_table(path: str | PathLike[str]) -> list[Judgement]:
@@ -140,4 +145,4 @@ def check_table(path: str | PathLike[str]) -> list[Judgement]:
     >>> found.id, str(found.claim.verdict), found.claim.cost.order
     ('Verlet/order', 'REFUTED', 2)
     """
-    return list(read_tables(Path(path)).judged())
+    return list(read_tables(Path(path)).judge())

@@ -1,8 +1,8 @@
-"""What wrong numbers of a table cost: whether a double can tell, which order or accuracy is lost.
+"""The cost of wrong numbers in a table: if a double can tell, and which order or accuracy is lost.
 
 The printed numbers are compared with the nearest exact ones in units of a double's last place, one
-ulp being 2⁻⁵² times a power of 2. The error constant is the norm of the residues of the order that
-comes next, of trees with 1/σ(t). Wrong digits leave residues r of a lower order k: below the step
+ulp being 2⁻⁵² times a power of 2. The error constant is the norm of the residuals of the order that
+comes next, of trees with 1/σ(t). Wrong digits leave residuals r of a lower order k: below the step
 size at which r h^k is as large as what the method truncates, they are what is seen.
 """
 
@@ -14,10 +14,10 @@ from fractions import Fraction
 
 import flint
 
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.prose import Prose, read_prose
-from verify.schemes.printed.asked import BITS, Asked, ball_of
+from verify.schemes.printed.condition_set import BITS, ConditionSet, ball_of
 from verify.schemes.printed.judged import Judged
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
@@ -27,7 +27,7 @@ DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
 
 
 class Severity(StrEnum):
-    """What kind of mistake it is, the gravest first."""
+    """The kind of a mistake, the gravest first."""
 
     WRONG_ORDER = "wrong order"
     NOT_SYMPLECTIC = "not symplectic as claimed"
@@ -40,10 +40,10 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True)
 class Cost:
-    """`double`: whether a double can tell; None where that is not known. `ulps`: by how many ulps
-    the number that is farthest off differs from the nearest exact one. `order`: what it has, in
-    place of `claimed`. `error_constant`: as printed, and of the nearest exact numbers. `below`: the
-    step size below which wrong digits are what is seen."""
+    """The cost of a mistake. `double`: whether a double can tell; None where that is not known.
+    `ulps`: by how many ulps the number that is farthest off differs from the nearest exact one.
+    `order`: what it has, in place of `claimed`. `error_constant`: as printed, and of the nearest
+    exact numbers. `below`: the step size below which wrong digits are what is seen."""
 
     double: bool | None
     claimed: int | None
@@ -54,8 +54,8 @@ class Cost:
     below: float | None
 
     @property
-    def said(self) -> Prose:
-        """A sentence."""
+    def sentence(self) -> Prose:
+        """A sentence on the cost."""
         parts = []
         if self.order is not None and self.claimed is not None:
             parts.append(f"the order: {self.order} in place of {self.claimed}")
@@ -70,88 +70,95 @@ class Cost:
         return read_prose("; ".join(parts))
 
 
-def cost_of(found: Judged, claimed: int | None, following: Asked | None = None) -> Cost | None:
-    """None where nothing is wrong. `claimed`: an order, if one is; `following`: the conditions of
-    the order after it."""
-    right = found.verdict is not Verdict.REFUTED and found.digits is not False
-    if right or found.verdict is Verdict.UNDECIDED:
+def cost_of(
+    judgement: Judged, claimed: int | None, following: ConditionSet | None = None
+) -> Cost | None:
+    """Return the cost of what is wrong; None where nothing is. `claimed`: an order, if one is
+    claimed; `following`: the conditions of the order after it."""
+    right = judgement.verdict is not Verdict.REFUTED and judgement.digits is not False
+    if right or judgement.verdict is Verdict.UNDECIDED:
         return None
-    ulps = _ulps(found)
+    ulps = _ulps(judgement)
     double: bool | None = None
     if ulps is not None:
         double = ulps >= 1
-    elif found.largest or found.residue:
-        double = max(found.largest, abs(found.residue)) > DOUBLE
-    refuted = found.verdict is Verdict.REFUTED
-    order = None if claimed is None or not refuted else min(found.order, claimed)
+    elif judgement.largest or judgement.residue:
+        double = max(judgement.largest, abs(judgement.residue)) > DOUBLE
+    refuted = judgement.verdict is Verdict.REFUTED
+    order = None if claimed is None or not refuted else min(judgement.order, claimed)
     printed = nearest = below = None
     if following is not None and not refuted:
-        printed, nearest = _constants(found, following)
-        below = _below(found, claimed, printed)
+        printed, nearest = _constants(judgement, following)
+        below = _below(judgement, claimed, printed)
     return Cost(double, claimed, order, ulps, printed, nearest, below)
 
 
-def exact_numbers(found: Judged) -> dict[str, Fraction]:
-    """The numbers that would do: the nearest, or with the misprinted one mended."""
-    if found.nearest is not None:
-        return dict(found.nearest)
-    if found.misprint is not None:
-        return {found.misprint.name: found.misprint.value}
+def exact_numbers(judgement: Judged) -> dict[str, Fraction]:
+    """Return numbers that would be right: the nearest ones, or the misprinted one corrected."""
+    if judgement.nearest is not None:
+        return dict(judgement.nearest)
+    if judgement.misprint is not None:
+        return {judgement.misprint.name: judgement.misprint.value}
     return {}
 
 
-def _ulps(found: Judged) -> float | None:
-    """None where no numbers that would do are known."""
-    if found.read is None:
+def _ulps(judgement: Judged) -> float | None:
+    """Return the largest distance in ulps; None where no right numbers are known."""
+    if judgement.read is None:
         return None
-    values = found.read.values
-    pairs = [(values.get(n), x) for n, x in exact_numbers(found).items()]
+    values = judgement.read.values
+    pairs = [(values.get(n), x) for n, x in exact_numbers(judgement).items()]
     if not pairs or any(y is None for y, _ in pairs):
         return None
     return max(_apart(y, x) for y, x in pairs if y is not None)
 
 
 def _apart(x: Fraction, y: Fraction) -> float:
-    """In ulps of the larger one."""
+    """Return the distance in ulps of the larger number."""
     return float(abs(x - y) / Fraction(max(math.ulp(float(x)), math.ulp(float(y)))))
 
 
-def _constants(found: Judged, following: Asked) -> tuple[float | None, float | None]:
-    assert found.read is not None  # noqa: S101 - digits are of rounded numbers
-    printed = error_constant(following, found.read.values)
-    if found.nearest is None:
+def _constants(judgement: Judged, following: ConditionSet) -> tuple[float | None, float | None]:
+    assert judgement.read is not None  # noqa: S101 - digits are of rounded numbers
+    printed = error_constant(following, judgement.read.values)
+    if judgement.nearest is None:
         return printed, None
-    return printed, error_constant(following, {**found.read.values, **found.nearest})
+    return printed, error_constant(following, {**judgement.read.values, **judgement.nearest})
 
 
-def error_constant(asked: Asked, at: Mapping[str, Fraction]) -> float:
-    """The norm of the residues, with their shares."""
+def error_constant(conditions: ConditionSet, at: Mapping[str, Fraction]) -> float:
+    """Return the norm of the residuals, each with its share."""
     with working_precision(BITS):
         point = {name: flint.arb(flint.fmpq(x.numerator, x.denominator)) for name, x in at.items()}
-        entries = entries_at(asked.entries, point, ball_of)
-        sizes = [float(middle_and_radius(x)[0]) for x in asked.residues(entries, flint.arb(1))]
-    shares = [float(x) for x in asked.shares] or [1.0] * len(sizes)
+        entries = entries_at(conditions.entries, point, ball_of)
+        sizes = [
+            float(midpoint_and_radius(x)[0]) for x in conditions.residues(entries, flint.arb(1))
+        ]
+    # Conditions by words have no symmetry factors: each counts as 1.
+    shares = [float(x) for x in conditions.shares] or [1.0] * len(sizes)
     return math.hypot(*(x * y for x, y in zip(sizes, shares, strict=True)))
 
 
-def _below(found: Judged, claimed: int | None, constant: float | None) -> float | None:
-    """The largest step size at which some residue of a lower order is as large as what is
+def _below(judgement: Judged, claimed: int | None, constant: float | None) -> float | None:
+    """Return the largest step size at which some residual of a lower order is as large as what is
     truncated."""
     if claimed is None or not constant:
         return None
     sizes = [
+        # A residual r of order k and the truncated term C h^(p+1) are equal at h =
+        # (r/C)^(1/(p+1−k)).
         (abs(float(r)) / constant) ** (1 / (claimed + 1 - e.order))
-        for e, r in found.residues
+        for e, r in judgement.residues
         if e.order <= claimed and r
     ]
     return max(sizes, default=None)
 
 
-def severity_of(found: Judged, refuted_as: Severity) -> Severity | None:
-    """What kind of mistake it is; `refuted_as`: where it is more than digits."""
-    if found.verdict is Verdict.REFUTED:
+def severity_of(judgement: Judged, refuted_as: Severity) -> Severity | None:
+    """Return the kind of mistake; `refuted_as`: where it is more than digits."""
+    if judgement.verdict is Verdict.REFUTED:
         return refuted_as
-    if found.digits is not False:
+    if judgement.digits is not False:
         return None
-    cost = cost_of(found, None)
+    cost = cost_of(judgement, None)
     return Severity.DIGITS_BELOW if cost and cost.double is False else Severity.DIGITS_SEEN

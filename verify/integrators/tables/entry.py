@@ -1,4 +1,4 @@
-"""What tables of every kind may have: their keys, and numbers as they are written."""
+"""The keys that tables of every kind may have, and numbers as they are written."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,8 +9,8 @@ from verify.integrators.tables.signs import LONGEST, plain
 from verify.scenes.frozen import Frozen
 
 
-def written(value: Any) -> Any:
-    """A number as the file has it, in our signs; what is no text or whole number stays as it is."""
+def normalize_number(value: Any) -> Any:
+    """Write a number of the file in our signs; return what is no text or whole number as it is."""
     if isinstance(value, bool):
         return value
     if isinstance(value, int):
@@ -18,8 +18,10 @@ def written(value: Any) -> Any:
     return plain(value) if isinstance(value, str) and len(value) <= LONGEST else value
 
 
-Written = Annotated[str, StringConstraints(max_length=LONGEST), BeforeValidator(written)]
-Row = tuple[Written, ...]
+NumberText = Annotated[
+    str, StringConstraints(max_length=LONGEST), BeforeValidator(normalize_number)
+]
+Row = tuple[NumberText, ...]
 Order = Annotated[int, Field(ge=1, le=20)]
 
 
@@ -41,18 +43,18 @@ class TableEntry(Frozen):
     kind: str
     source: str = ""
     read: str = ""
-    numbers: dict[str, Written] = Field(default_factory=dict)
+    numbers: dict[str, NumberText] = Field(default_factory=dict)
     symplectic: StrictBool = False
     symmetric: StrictBool = False
     csv: str | None = None
     _folder: Path = PrivateAttr(default=Path())
 
     def in_folder(self, folder: Path) -> "TableEntry":
-        """The same, with files that lie beside it in that folder."""
+        """Return the entry with the folder in which its other files lie."""
         self._folder = folder
         return self
 
     @property
     def folder(self) -> Path:
-        """Where its files lie."""
+        """The folder of its files."""
         return self._folder

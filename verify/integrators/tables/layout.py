@@ -28,14 +28,16 @@ _BLANKS = re.compile(r"\s{2,}")
 Line = tuple[str | None, list[str]]  # what stands left of a bar, None without one; and the columns
 
 
-def pasted(text: str, name: str = "tableau") -> Block:
-    """InputError where it is no tableau."""
+def parse_tableau(text: str, name: str = "tableau") -> Block:
+    """Parse a tableau that is pasted as text. Raises InputError where it is none."""
     lines = []
     text = re.sub(r"\\\\\s*(\[[^]]*\])?", "\n", text).replace(r"\hline", "\n----\n")  # LaTeX's
     for line in text.translate({ord(bar): "|" for bar in _BARS}).splitlines():
         if line.strip():
             lines.append(None if _is_rule(line) else line)
-    return _made(*_parted([line if line is None else _cells(line) for line in lines]), name)
+    return _build_block(
+        *_split_lines([line if line is None else _cells(line) for line in lines]), name
+    )
 
 
 def _is_rule(line: str) -> bool:
@@ -43,7 +45,7 @@ def _is_rule(line: str) -> bool:
 
 
 def _cells(line: str) -> tuple[str | None, list[str]]:
-    """What stands left of a bar, None where there is none; and the columns."""
+    """Split a line into the part left of a bar, None where there is none, and the columns."""
     left: str | None = None
     if "|" in line:
         left, _, line = line.partition("|")
@@ -54,7 +56,7 @@ def _cells(line: str) -> tuple[str | None, list[str]]:
 
 
 def columns(line: str) -> list[str]:
-    """The numbers of a line, in our signs."""
+    """Return the numbers of a line, in our signs."""
     for mark in ("&", "\t", ";", ","):
         if mark in line:
             parts = line.split(mark)
@@ -63,27 +65,28 @@ def columns(line: str) -> list[str]:
         closer = re.sub(r"\s*([/×·*])\s*", r"\1", line.strip())
         wide = _BLANKS.split(closer)
         parts = wide if any(" " in part for part in wide) and len(wide) > 1 else closer.split()
-    found = [plain(part) for part in parts if part.strip()]
-    for each in found:
-        if len(each) > LONGEST:
-            raise InputError("number", each, f"is longer than {LONGEST} characters")
-    return found
+    numbers = [plain(part) for part in parts if part.strip()]
+    for number in numbers:
+        if len(number) > LONGEST:
+            raise InputError("number", number, f"is longer than {LONGEST} characters")
+    return numbers
 
 
-def _parted(lines: Sequence[Line | None]) -> tuple[list[Line], list[Line]]:
-    """Stages, and weights: what stands below the last rule, or has nothing before its bar."""
+def _split_lines(lines: Sequence[Line | None]) -> tuple[list[Line], list[Line]]:
+    """Split the lines into stages and weights: weights stand below the last rule, or have nothing
+    before their bar."""
     rules = [k for k, line in enumerate(lines) if line is None]
     inner = [k for k in rules if 0 < k < len(lines) - 1]
     if inner:
         cut = inner[0]
         stages = [x for x in lines[:cut] if x is not None]
         return stages, [x for x in lines[cut:] if x is not None]
-    told = [x for x in lines if x is not None]
-    cut = next((k for k, (left, _) in enumerate(told) if left == ""), len(told))
-    return told[:cut], told[cut:]
+    present = [x for x in lines if x is not None]
+    cut = next((k for k, (left, _) in enumerate(present) if left == ""), len(present))
+    return present[:cut], present[cut:]
 
 
-def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Block:
+def _build_block(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Block:
     if not stages or not weights:
         problem = "has no weights; write them below a line of ---, or after an empty first column"
         raise InputError(name, f"{len(stages)} lines", problem)
@@ -112,31 +115,34 @@ def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Block:
 
 
 def csv_rows(folder: Path, name: str) -> list[list[str]]:
-    """The rows of a CSV file that lies in that folder. InputError where it does not, or is none."""
+    """Read the rows of a CSV file in that folder. Raises InputError where it does not lie there, or
+    is none."""
     if Path(name).name != name or name in ("", ".", ".."):
         raise InputError("csv", name, "is no name of a file beside the table's")
     text = read_text(folder / name, _MOST_BYTES).lstrip("\ufeff")
     first = text.splitlines()[0] if text.strip() else ""
+    # Spreadsheets write semicolons where the decimal sign is a comma.
     mark = next((x for x in ("\t", ";") if x in first), ",")
     try:
-        found = list(csv.reader(text.splitlines(), delimiter=mark, strict=True))
+        table = list(csv.reader(text.splitlines(), delimiter=mark, strict=True))
     except csv.Error as error:
         raise InputError("csv", name, f"is no CSV file: {error}") from None
-    return [[cell.strip() for cell in row] for row in found if any(cell.strip() for cell in row)]
+    return [[cell.strip() for cell in row] for row in table if any(cell.strip() for cell in row)]
 
 
 def block_of_csv(folder: Path, name: str) -> Block:
-    """A tableau from a CSV file: times first, weights in rows whose first cell is empty."""
+    """Read a tableau from a CSV file: times first, weights in rows whose first cell is empty."""
     rows = csv_rows(folder, name)
     if rows and not any(x.isdigit() for x in "".join(rows[0])):
         rows = rows[1:]  # a header
     lines: list[Line] = [(row[0], columns("\t".join(x for x in row[1:] if x))) for row in rows]
     stages = [x for x in lines if x[0]]
-    return _made(stages, [x for x in lines if not x[0]], name)
+    return _build_block(stages, [x for x in lines if not x[0]], name)
 
 
 def named_columns(folder: Path, name: str, allowed: Sequence[str]) -> dict[str, list[str]]:
-    """The columns of a CSV file by its header. InputError for a header that is not allowed."""
+    """Read the columns of a CSV file by its header. Raises InputError for a header that is not
+    allowed."""
     rows = csv_rows(folder, name)
     header = [cell.lower() for cell in rows[0]] if rows else []
     wrong = [cell for cell in header if cell not in allowed]
@@ -150,6 +156,6 @@ def named_columns(folder: Path, name: str, allowed: Sequence[str]) -> dict[str, 
 
 
 def one_column(text: str) -> Iterator[str]:
-    """All numbers of a text, line by line."""
+    """Yield all numbers of a text, line by line."""
     for line in text.splitlines():
         yield from columns(line)

@@ -31,7 +31,8 @@ _GROUPED = re.compile(r"\d*\.\d+(?: \d+)+(?![\d/.])")
 
 
 def plain(text: str) -> str:
-    """The same number in the signs of formulas; what is none is left for the formula's reader."""
+    """Write the same number in the signs of formulas; leave what is none for the formula's
+    reader."""
     text = "".join(_SIGNS.get(x, x) for x in text)
     text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+", lambda m: f"^({m[0].translate(_RAISED)})", text)
     text = "".join(_vulgar(x) for x in text)
@@ -52,6 +53,6 @@ def plain(text: str) -> str:
 
 
 def _vulgar(x: str) -> str:
-    """½ and the like, which stand for two numbers and a bar."""
+    """Write ½ and the like, which stand for two numbers and a bar, as a quotient."""
     parts = unicodedata.normalize("NFKC", x)
     return f"({parts.replace(chr(0x2044), '/')})" if chr(0x2044) in parts and len(parts) > 1 else x

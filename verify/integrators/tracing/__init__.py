@@ -1,1 +1,1 @@
-"""What a user's step does to symbols and to dual numbers."""
+"""A user's step applied to symbols and to dual numbers."""

@@ -1,4 +1,4 @@
-"""Which mistake the clock of a traced step looks like.
+"""The mistake that the clock of a traced step looks like.
 
 With t held still at a moment s of the step, H(p, q, s) is autonomous. A step that reads its force
 at one moment is a scheme for that H of an order that it may not have for the motion in time.
@@ -15,10 +15,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
 from verify.integrators.tracing.step_map import traced_map
-from verify.integrators.tracing.trace import Node, in_order, written
+from verify.integrators.tracing.trace import Node, in_order, write_expressions
 from verify.proof.order import convergence_of, size_of
 from verify.schemes.conditions.timed.mistakes import Reading, name_of
-from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.by_formulas import map_from_expressions
 from verify.schemes.steps.step_algebra import State
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees
@@ -32,34 +32,39 @@ _SIMPLE = 1000  # the largest denominator that is shown
 
 
 def clock_mistakes(hamiltonian: Hamiltonian, roots: Sequence[Node], order: int | None) -> list[str]:
-    """One sentence, where the step of these p' and q' has a higher order than `order` with the
-    force held still, or with H read at other times."""
+    """Return one sentence, where the step of these p' and q' has a higher order than `order` with
+    the force held still, or with H read at other times."""
     if order is None or not hamiltonian.time_dependent or "still" in hamiltonian.parameters:
         return []
     p_next, q_next = roots
-    still = _still(hamiltonian, p_next, q_next, order)
+    still = _find_still_clock(hamiltonian, p_next, q_next, order)
     return still or misread(hamiltonian, p_next, q_next, order)
 
 
-def _still(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> list[str]:
+def _find_still_clock(
+    hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int
+) -> list[str]:
     t, h = symbol("t"), symbol("h")
-    still = Hamiltonian(hamiltonian.exact.subs(t, _STILL))
+    # t + part·h becomes the constant `still`, a parameter of an autonomous H, for which the step is
+    # then a scheme of an order of its own.
+    still_hamiltonian = Hamiltonian(hamiltonian.exact.subs(t, _STILL))
     for words, part in MOMENTS.items():
-        made = written((p_next, q_next), _MOST_WRITTEN, {"t": _STILL - part * h})
-        if made is None:
+        formulas = write_expressions((p_next, q_next), _MOST_WRITTEN, {"t": _STILL - part * h})
+        if formulas is None:
             return []
         try:
-            step = map_by_expressions(still, made)
-            found = convergence_of(step).order
+            step = map_from_expressions(still_hamiltonian, formulas)
+            reached = convergence_of(step).order
         except InputError:  # too long, or not smooth
             continue
-        if found is None or found > order:
-            return [stands_still("exact" if found is None else f"of order {found}", words)]
+        if reached is None or reached > order:
+            return [stands_still("exact" if reached is None else f"of order {reached}", words)]
     return []
 
 
 def stands_still(reached: str, words: str) -> str:
-    """What is said of such a clock: `reached` is what the step then is, `words` the moment."""
+    """Describe a clock that stands still: `reached` is the order that the step then has, `words`
+    the moment."""
     return (
         f"it is {reached} as if the force were read at {words} in every stage: its clock stands "
         "still"
@@ -70,46 +75,47 @@ def stands_still(reached: str, words: str) -> str:
 
 
 def misread(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> list[str]:
-    """One sentence, where the step is proved to have a higher order than `order` with each reading
-    at the time when it is due."""
+    """Return one sentence, where the step is proved to have a higher order than `order` with each
+    reading at the time when it is due."""
     if len(in_order(p_next, q_next)) > _MOST_NODES:
         return []
     try:
         readings = Readings(hamiltonian, p_next, q_next)
         reads = _alike(readings.reads)
         wrong = [read for read in reads if abs(read.time - read.due) >= _SAME]
-        mended = _order(hamiltonian, *readings.mended()) if wrong else order
+        mended = _order(hamiltonian, *readings.with_due_times()) if wrong else order
     except (ArithmeticError, ValueError, NoReadingsError, UntraceableError, InputError):
         return []
     if mended is not None and mended <= order:
         return []
     reached = "exact" if mended is None else f"of order {mended}"
     pairs = list(dict.fromkeys((read.due, read.time) for read in wrong))
-    told = ", ".join(
+    moments = ", ".join(
         f"{moment(due)} in place of {moment(time)}" for due, time in pairs[:_MOST_TOLD]
     )
     more = ", …" * (len(pairs) > _MOST_TOLD)
     name = _name(reads)
-    return [f"{name}: " * bool(name) + f"it is {reached} with H read at {told}{more}"]
+    return [f"{name}: " * bool(name) + f"it is {reached} with H read at {moments}{more}"]
 
 
 def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
-    """The order of that map but for the rounding of its coefficients; None where it is exact."""
+    """Return the order of that map but for the rounding of its coefficients; None where it is
+    exact."""
     traced = traced_map(hamiltonian, (p_next, q_next))
-    found = convergence_of(traced.step_map).order
-    if found is None or traced.series is None:
-        return found
+    order = convergence_of(traced.step_map).order
+    if order is None or traced.series is None:
+        return order
     rounded = _rounded_order(*traced.series)
-    return found if rounded is None else max(found, rounded)
+    return order if rounded is None else max(order, rounded)
 
 
 def _rounded_order(field: CanonicalField, step: State) -> int | None:
-    """Up to which power of h it agrees with the flow, with residues below 2⁻⁴⁴ of the coefficients
-    taken for 0; None where it does in all that are looked at.
+    """Return the power of h up to which the map agrees with the flow, with residuals below 2⁻⁴⁴ of
+    the coefficients taken for 0; None where it does in all that are looked at.
 
     Yoshida's 1.3512071919596578 is not 1/(2 − 2^(1/3)): taken by its exact value it gives a map of
-    order 0, whose first Taylor coefficients miss those of the flow by 10⁻¹⁶. Such residues are told
-    from errors by their size beside the coefficients that they are residues of.
+    order 0, whose first Taylor coefficients miss those of the flow by 10⁻¹⁶. Such residuals are
+    distinguished from errors by their size beside the coefficients that they belong to.
     """
     scale = Fraction(0)
     for n in range(step[0].most + 1):
@@ -124,7 +130,7 @@ def _rounded_order(field: CanonicalField, step: State) -> int | None:
 
 
 def _alike(reads: Sequence[Read]) -> list[Read]:
-    """Those of the same times as one, at the place of the first."""
+    """Merge readings of the same times into one, at the place of the first."""
     sizes: dict[tuple[Fraction, Fraction, bool], Fraction] = {}
     for read in reads:
         key = read.time, read.due, read.of_p
@@ -133,24 +139,27 @@ def _alike(reads: Sequence[Read]) -> list[Read]:
 
 
 def _name(reads: Sequence[Read]) -> str | None:
-    """Of the mistake in what is read for p', or for q', where it has one."""
+    """Name the mistake in what is read for p', or for q', where it has a name."""
     ring = Ring((), 0)
     for of_p, what in ((True, "force"), (False, "velocity")):
-        own = [read for read in reads if read.of_p is of_p and read.size]
-        before = [sum((x.size for x in own[:k]), Fraction(0)) for k in range(len(own))]
+        own_reads = [read for read in reads if read.of_p is of_p and read.size]
+        sizes_before = [
+            sum((x.size for x in own_reads[:k]), Fraction(0)) for k in range(len(own_reads))
+        ]
         numbers = [
             [ring.constant(x) for x in column]
-            for column in ([x.time for x in own], [x.due for x in own], before,
-                           [x.size for x in own])
+            for column in ([x.time for x in own_reads], [x.due for x in own_reads], sizes_before,
+                           [x.size for x in own_reads])
         ]  # fmt: skip
-        found = name_of(Reading(ring, what, "stage", *numbers), _SAME) if own else None
-        if found:
-            return found
+        mistake = name_of(Reading(ring, what, "stage", *numbers), _SAME) if own_reads else None
+        if mistake:
+            return mistake
     return None
 
 
 def moment(time: Fraction) -> str:
-    """
+    """Format a time in parts of h after t.
+
     >>> [moment(Fraction(x)) for x in ("0", "1", "-1/2", "3/4", "0.3512071919596578")]
     ['t', 't + h', 't - h/2', 't + 3h/4', 't + 0.35120719h']
     """

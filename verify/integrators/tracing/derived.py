@@ -18,11 +18,11 @@ def _degree(x: Any) -> Any:
 
 
 def _root(x: Any) -> Any:
-    return x.raised(_HALF)
+    return x.raise_to(_HALF)
 
 
 def _log(x: Any) -> Any:
-    return x.applied("log")
+    return x.apply("log")
 
 
 def _log_of(base: int) -> Callable[[Any], Any]:
@@ -30,28 +30,33 @@ def _log_of(base: int) -> Callable[[Any], Any]:
 
 
 def _arcsin(x: Any) -> Any:
-    return (x / _root(1 - x * x)).applied("atan")
+    return (x / _root(1 - x * x)).apply("atan")
 
 
 def _sinc(x: Any) -> Any:
     turned = x.kind.pi() * x
-    return turned.applied("sin") / turned
+    return turned.apply("sin") / turned
 
 
-def _signed(x: Any, at_zero: Any = 0) -> Any:
-    """The sign of x, by comparisons, as a number of its kind."""
+def _sign(x: Any, at_zero: Any = 0) -> Any:
+    """Return the sign of x, by comparisons, as a number of its kind."""
     return x * 0 + (at_zero if x == 0 else 1 if x > 0 else -1)
 
 
 def arctan2(y: Any, x: Any) -> Any:
-    """The angle of the point (x, y); its branch is where y = 0 and x < 0."""
-    if not y.kind.ordered and None in (y.known(), x.known()):  # not there, but smooth elsewhere
-        return 2 * (y / (x + hypot(x, y))).applied("atan")
+    """Return the angle of the point (x, y); its branch is where y = 0 and x < 0."""
+    if not y.kind.ordered and None in (
+        y.exact_value(),
+        x.exact_value(),
+    ):  # not there, but smooth elsewhere
+        return 2 * (y / (x + hypot(x, y))).apply("atan")
+    # The quotient is at most 1 in size, so that nothing is divided by 0 on an axis, and no digits
+    # are lost near it.
     if abs(x) >= abs(y):
-        angle = (y / x).applied("atan")
+        angle = (y / x).apply("atan")
         return angle if x > 0 else angle + (y.kind.pi() if y >= 0 else -y.kind.pi())
     quarter = y.kind.pi() / 2
-    return (quarter if y > 0 else -quarter) - (x / y).applied("atan")
+    return (quarter if y > 0 else -quarter) - (x / y).apply("atan")
 
 
 def _cbrt(x: Any) -> Any:
@@ -59,7 +64,7 @@ def _cbrt(x: Any) -> Any:
 
 
 def hypot(*x: Any) -> Any:
-    """The root of the sum of their squares."""
+    """Return the root of the sum of the squares."""
     return _root(sum(each * each for each in x))
 
 
@@ -72,23 +77,23 @@ _MADE: dict[str, Callable[[Any], Any]] = {
     "degrees": lambda x: x / _degree(x),
     "radians": lambda x: x * _degree(x),
     "exp2": lambda x: 2**x,
-    "expm1": lambda x: x.applied("exp") - 1,
+    "expm1": lambda x: x.apply("exp") - 1,
     "log10": _log_of(10),
     "log1p": lambda x: _log(x + 1),
     "log2": _log_of(2),
     "sinc": _sinc,
-    "sign": _signed,
+    "sign": _sign,
 }
-OF_ONE = _MADE | {f.numpy: methodcaller("applied", name) for name, f in by_name().items()}
+OF_ONE = _MADE | {f.numpy: methodcaller("apply", name) for name, f in by_name().items()}
 # As `math` and new versions of numpy call them.
 OF_ONE |= {name.replace("arc", "a"): call for name, call in OF_ONE.items()}
 OF_ONE |= {"rad2deg": OF_ONE["degrees"], "deg2rad": OF_ONE["radians"]}
 OF_TWO: dict[str, Callable[[Any, Any], Any]] = {
     "arctan2": lambda y, x: y.arctan2(x),
     "hypot": hypot,
-    "copysign": lambda x, y: abs(x) * _signed(y, at_zero=1),
-    "heaviside": lambda x, at_zero: (1 + _signed(x, at_zero=2 * at_zero - 1)) / 2,
-    "logaddexp": lambda x, y: _log(x.applied("exp") + y.applied("exp")),
+    "copysign": lambda x, y: abs(x) * _sign(y, at_zero=1),
+    "heaviside": lambda x, at_zero: (1 + _sign(x, at_zero=2 * at_zero - 1)) / 2,
+    "logaddexp": lambda x, y: _log(x.apply("exp") + y.apply("exp")),
     "maximum": lambda x, y: x if x >= y else y,
     "minimum": lambda x, y: x if x <= y else y,
 }

@@ -41,7 +41,7 @@ class Comparison:
 
     @property
     def sign(self) -> int:
-        """Of the gap: which side of the comparison was taken."""
+        """The sign of the gap: which side of the comparison was taken."""
         return int(self.gap.value > 0) - int(self.gap.value < 0)
 
 
@@ -69,14 +69,14 @@ class Duals(Kind):
         return Dual(self, gmpy2.const_pi(), ())
 
     def state(self, *z: Fraction) -> list["Dual"]:
-        """z, whose derivatives are the unit vectors."""
+        """Return z as dual numbers, whose derivatives are the unit vectors."""
         unit = [[gmpy2.mpfr(int(j == k)) for j in range(len(z))] for k in range(len(z))]
         pairs = zip(z, unit, strict=True)
         return [Dual(self, self.rational(x).value, tuple(row)) for x, row in pairs]
 
 
 def slope_of(name: str, x: Number, y: Number) -> Number:
-    """The slope of y = f(x); of √x at 0, which has none, it is taken to be 0."""
+    """Return the slope of y = f(x); of √x at 0, which has none, it is taken to be 0."""
     if name == "sqrt" and not y:
         return gmpy2.mpfr(0)
     return by_name()[name].derivative(x, y, _apply)
@@ -87,7 +87,8 @@ def _apply(name: str, x: Number) -> Number:
 
 
 def _line_of_user() -> tuple[str, int, int]:
-    """Where the code that is called compares: the innermost frame that is not ours or numpy's."""
+    """Return the line of code that compares: that of the innermost frame that is not ours or
+    numpy's."""
     frame = sys._getframe(2)
     while frame.f_back is not None:
         home = str(frame.f_globals.get("__name__", "")).partition(".")[0]
@@ -107,11 +108,11 @@ class Dual(TracedNumber):
         super().__init__(kind)
         self.value, self.slopes = value, slopes
 
-    def _chained(self, value: Number, slope: Number) -> "Dual":
+    def _chain(self, value: Number, slope: Number) -> "Dual":
         return Dual(self.kind, value, tuple([slope * a for a in self.slopes]))
 
-    def known(self) -> Fraction | None:
-        """Its value where it does not move with the state and is a rational of few bits."""
+    def exact_value(self) -> Fraction | None:
+        """Return its value where it does not move with the state and is a rational of few bits."""
         if any(self.slopes) or not gmpy2.is_finite(self.value):
             return None
         exact = fraction(self.value)
@@ -126,20 +127,20 @@ class Dual(TracedNumber):
         if lifted is None:
             self.refuse("it compares a number with what is none")
         assert isinstance(lifted, Dual)  # noqa: S101 - of this kind
-        return self.compared(lifted)
+        return self.compare(lifted)
 
-    def compared(self, other: "Dual") -> int:
+    def compare(self, other: "Dual") -> int:
         if self.slopes or other.slopes:
             self.kind.compared = True
             if len(self.kind.comparisons) < _MOST_COMPARISONS:
                 limit = None if other.slopes else other.value
-                gap = self.combined("subtract", other)
+                gap = self.combine("subtract", other)
                 self.kind.comparisons.append(Comparison(_line_of_user(), gap, limit))
         if gmpy2.is_nan(self.value) or gmpy2.is_nan(other.value):
             return 2 if gmpy2.is_nan(self.value) else -2
         return int(self.value > other.value) - int(self.value < other.value)
 
-    def combined(self, name: str, other: "Dual") -> "Dual":
+    def combine(self, name: str, other: "Dual") -> "Dual":
         x, y, a, b = self.value, other.value, self.slopes, other.slopes
         if name == "divide" and y == 0:
             raise ZeroDivisionError("division by zero")
@@ -153,10 +154,11 @@ class Dual(TracedNumber):
         elif name == "multiply":
             slopes = [u * y + x * v for u, v in pairs]
         else:
+            # (x/y)' = (x' − z y')/y with z = x/y.
             slopes = [(u - z * v) / y for u, v in pairs]
         return Dual(self.kind, z, tuple(slopes))
 
-    def applied(self, name: str) -> "Dual":
+    def apply(self, name: str) -> "Dual":
         x = self.value
         domain = by_name()[name].domain
         if domain and domain.relation != "!=":
@@ -164,9 +166,9 @@ class Dual(TracedNumber):
             if inside < 0 or (inside == 0 and domain.relation == ">"):
                 raise ValueError("math domain error")
         y = getattr(gmpy2, name)(x)
-        return self._chained(y, slope_of(name, x, y))
+        return self._chain(y, slope_of(name, x, y))
 
-    def raised(self, exponent: Fraction) -> "Dual":
+    def raise_to(self, exponent: Fraction) -> "Dual":
         x = self.value
         if exponent.denominator == 1:
             n = int(exponent)
@@ -174,12 +176,12 @@ class Dual(TracedNumber):
                 return self.kind.rational(Fraction(1))
             if x == 0 and n < 0:
                 raise ZeroDivisionError("0 cannot be raised to a negative power")
-            return self._chained(x**n, n * x ** (n - 1))
+            return self._chain(x**n, n * x ** (n - 1))
         if x <= 0:
             raise UntraceableError("it takes the root of a number that is not positive")
         power = gmpy2.mpfr(gmpy2.mpq(exponent.numerator, exponent.denominator))
         y = x**power
-        return self._chained(y, power * y / x)
+        return self._chain(y, power * y / x)
 
     def isfinite(self) -> bool:
         return bool(gmpy2.is_finite(self.value))

@@ -20,7 +20,7 @@ from typing import Any
 from verify.integrators.tracing.number import Kind, TracedNumber
 from verify.integrators.tracing.purity import (
     attributes,
-    described,
+    describe_reached,
     is_of_user,
     is_plain,
     is_users_module,
@@ -37,13 +37,13 @@ _MAKERS = ("collections", "dataclasses", "functools", "typing")  # of methods of
 _SLOTS = types.MemberDescriptorType | types.GetSetDescriptorType
 
 
-def copied(function: Any, kind: Kind) -> Any:
-    """The function with replaced globals; itself where it is not written in Python."""
+def copy_function(function: Any, kind: Kind) -> Any:
+    """Return the function with replaced globals; itself where it is not written in Python."""
     return _Copier(kind).value(function, getattr(function, "__name__", type(function).__name__))
 
 
 def _is_traced(x: types.FunctionType) -> bool:
-    """Whether it is neither of Python's library nor of one with numbers of its own."""
+    """Return True if it is neither of Python's library nor of one with numbers of its own."""
     home = (x.__module__ or "").partition(".")[0]
     return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
 
@@ -57,10 +57,10 @@ class _Copier:
         self.kept: list[Any] = []  # so that no id is used again
         self.late: dict[tuple[int, str], tuple[Any, str]] = {}  # attributes that are not pure
         self.pure = pure_things()
-        self.builtins = {**vars(builtins), "__import__": self._imported}
+        self.builtins = {**vars(builtins), "__import__": self._import}
 
     def value(self, x: Any, name: str = "") -> Any:
-        """The copy of x, which the function reaches by that name."""
+        """Return the copy of x, which the function reaches by that name."""
         if id(x) in self.copies:
             return self.copies[id(x)]
         if id(x) in self.pure:
@@ -71,30 +71,30 @@ class _Copier:
                     self.outside.watch(str(member), member)
             return x
         try:
-            made = self._copy(x, name)
+            copy = self._copy(x, name)
         except (TypeError, AttributeError):  # it does not let itself be made
-            made = x
-        if made is x and type(x) not in (tuple, frozenset):
-            self.outside.reach(described(x, name))
-        return self._keep(x, made) if made is not x else x
+            copy = x
+        if copy is x and type(x) not in (tuple, frozenset):
+            self.outside.reach(describe_reached(x, name))
+        return self._keep(x, copy) if copy is not x else x
 
-    def _keep(self, x: Any, made: Any) -> Any:
+    def _keep(self, x: Any, copy: Any) -> Any:
         self.kept.append(x)
-        self.copies[id(x)] = made
-        return made
+        self.copies[id(x)] = copy
+        return copy
 
     def _is_method_of_pure(self, x: Any) -> bool:
-        """Whether it is one as `tuple.__new__` and `list.append` are."""
+        """Return True for methods such as `tuple.__new__` and `list.append`."""
         if not isinstance(x, types.BuiltinFunctionType | types.MethodDescriptorType):
             return False
         return id(getattr(x, "__objclass__", getattr(x, "__self__", None))) in self.pure
 
     def attribute(self, module: types.ModuleType, name: str) -> Any:
-        """What a library's module has by that name."""
-        x, called = getattr(module, name), f"{module.__name__}.{name}"
+        """Return the copy of the attribute of that name of a library's module."""
+        x, label = getattr(module, name), f"{module.__name__}.{name}"
         if type(x) in (list, dict, set):  # who may change it is not known
-            self.outside.reach(described(x, called))
-        return self.value(x, called)
+            self.outside.reach(describe_reached(x, label))
+        return self.value(x, label)
 
     def _copy(self, x: Any, name: str) -> Any:
         # numba's functions, and those with a cache, hold the plain one.
@@ -118,31 +118,33 @@ class _Copier:
         return self._holder(x, name)
 
     def _holder(self, x: Any, name: str) -> Any:
-        """A copy of what holds others."""
+        """Copy a container with what it holds."""
         if type(x) in (tuple, frozenset):
             return type(x)(self.value(v, name) for v in x)
         if type(x) is types.MappingProxyType:
             return types.MappingProxyType(self.value(dict(x), name))
-        made: Any
+        copy: Any
         if type(x) in (list, set):
-            made = self._keep(x, type(x)())
-            (made.extend if isinstance(made, list) else made.update)(self.value(v, name) for v in x)
+            copy = self._keep(x, type(x)())
+            (copy.extend if isinstance(copy, list) else copy.update)(self.value(v, name) for v in x)
         elif type(x) is dict:
-            made = self._keep(x, {})
-            made.update((self.value(k, name), self.value(v, name)) for k, v in x.items())
+            copy = self._keep(x, {})
+            copy.update((self.value(k, name), self.value(v, name)) for k, v in x.items())
         elif type(x) in types_of_numpy("ndarray"):
-            made = self._keep(x, x.copy())
+            copy = self._keep(x, x.copy())
             if x.dtype == object:
-                made.flat = [self.value(v, name) for v in x.flat]
+                copy.flat = [self.value(v, name) for v in x.flat]
         elif is_of_user(type(x)) or type(x) is types.SimpleNamespace:
             return self._object(x, name)
         else:
             return x
-        self.outside.watch(name, made)
-        return made
+        # The copy is compared with itself after the call: a change means that the function keeps a
+        # state.
+        self.outside.watch(name, copy)
+        return copy
 
     def scope(self, names: dict[str, Any]) -> "_Scope":
-        """The copy of a module's globals."""
+        """Return the copy of a module's globals."""
         if id(names) not in self.copies:
             self._keep(names, _Scope(names, self))
         scope: _Scope = self.copies[id(names)]
@@ -150,13 +152,15 @@ class _Copier:
 
     def _function(self, x: types.FunctionType) -> types.FunctionType:
         code, scope = x.__code__, self.scope(x.__globals__)
+        # Closures share cells: each is copied once, so that two functions that share a variable
+        # still do.
         cells = dict(zip(code.co_freevars, x.__closure__ or (), strict=True))
         new = {name: cell for name, cell in cells.items() if id(cell) not in self.copies}
         for cell in new.values():
             self._keep(cell, types.CellType())
         closure = tuple(self.copies[id(cell)] for cell in cells.values())
-        made = types.FunctionType(code, scope, x.__name__, None, closure or None)
-        self._keep(x, made)  # before what it calls: it may call itself
+        copy = types.FunctionType(code, scope, x.__name__, None, closure or None)
+        self._keep(x, copy)  # before what it calls: it may call itself
         for name, cell in new.items():
             with contextlib.suppress(ValueError):  # a name that has no value yet
                 self.copies[id(cell)].cell_contents = self.value(cell.cell_contents, name)
@@ -168,13 +172,13 @@ class _Copier:
                         scope[name]
         of_it = f"a default of {x.__name__}"
         if x.__defaults__:
-            made.__defaults__ = tuple(self.value(v, of_it) for v in x.__defaults__)
+            copy.__defaults__ = tuple(self.value(v, of_it) for v in x.__defaults__)
         if x.__kwdefaults__:
-            made.__kwdefaults__ = {k: self.value(v, of_it) for k, v in x.__kwdefaults__.items()}
+            copy.__kwdefaults__ = {k: self.value(v, of_it) for k, v in x.__kwdefaults__.items()}
         for name, v in vars(x).items():
-            setattr(made, name, self.value(v, f"{x.__name__}.{name}"))
-        self.outside.watch(x.__name__, made)
-        return made
+            setattr(copy, name, self.value(v, f"{x.__name__}.{name}"))
+        self.outside.watch(x.__name__, copy)
+        return copy
 
     def _class(self, x: type) -> type:
         if type(x) not in (type, abc.ABCMeta):
@@ -182,53 +186,53 @@ class _Copier:
         bases = tuple(self.value(base, base.__name__) for base in x.__bases__)
         declared = {name: vars(x)[name] for name in _DECLARED if name in vars(x)}
         if not any("__getattr__" in vars(base) for base in x.__mro__):
-            declared["__getattr__"] = lambda own, name: self._asked_late(own, name)
-        made: type = self._keep(x, type(x)(x.__name__, bases, declared))
+            declared["__getattr__"] = lambda instance, name: self._copy_late(instance, name)
+        copy: type = self._keep(x, type(x)(x.__name__, bases, declared))
         for name, part in vars(x).items():
             if name not in _LEFT_OUT and not isinstance(part, _SLOTS):
-                setattr(made, name, self._part(part, f"{x.__name__}.{name}", name))
-        self.outside.watch(x.__name__, made)
-        return made
+                setattr(copy, name, self._part(part, f"{x.__name__}.{name}", name))
+        self.outside.watch(x.__name__, copy)
+        return copy
 
     def _part(self, part: Any, called: str, name: str) -> Any:
-        """Of a class: what is in it by that name."""
+        """Copy what a class has by that name."""
         match part:
             case property():
                 return property(*(f and self.value(f) for f in (part.fget, part.fset, part.fdel)))
             case staticmethod() | classmethod():
                 return type(part)(self._part(part.__func__, called, name))
-        made = isinstance(part, types.FunctionType) and part.__module__ in _MAKERS
-        return part if made or name == "__annotations__" else self.value(part, called)
+        is_generated = isinstance(part, types.FunctionType) and part.__module__ in _MAKERS
+        return part if is_generated or name == "__annotations__" else self.value(part, called)
 
     def _object(self, x: Any, name: str) -> Any:
-        """Of a user's class."""
+        """Copy an object of a user's class."""
         made_of = self.value(type(x), name)
         if made_of is type(x) and made_of is not types.SimpleNamespace:
             return x
         base = next(c for c in (tuple, types.SimpleNamespace, object) if isinstance(x, c))
         inner = [[self.value(v, name) for v in x]] if isinstance(x, tuple) else []
-        made = self._keep(x, base.__new__(made_of, *inner))
+        instance = self._keep(x, base.__new__(made_of, *inner))
         for part, v in attributes(x).items():
-            before, called = dict(self.outside.reached), f"{name}.{part}"
-            copy = self.value(v, called)
-            if copy is v and before != self.outside.reached and not hasattr(made_of, part):
-                self.outside.reached = before  # it is not, before the function asks for it
-                self.late[id(made), part] = v, called
+            reached_before, label = dict(self.outside.reached), f"{name}.{part}"
+            copy = self.value(v, label)
+            if copy is v and reached_before != self.outside.reached and not hasattr(made_of, part):
+                self.outside.reached = reached_before  # it is not, before the function asks for it
+                self.late[id(instance), part] = v, label
             elif part in getattr(x, "__dict__", {}):
-                made.__dict__[part] = copy
+                instance.__dict__[part] = copy
             else:
-                object.__setattr__(made, part, copy)
-        self.outside.watch(name, made)
-        return made
+                object.__setattr__(instance, part, copy)
+        self.outside.watch(name, instance)
+        return instance
 
-    def _asked_late(self, own: Any, name: str) -> Any:
-        """The `__getattr__` of copied objects, which have copies of all else."""
-        if (id(own), name) not in self.late:
-            raise AttributeError(f"{type(own).__name__!r} object has no attribute {name!r}")
-        return self.value(*self.late[id(own), name])
+    def _copy_late(self, instance: Any, name: str) -> Any:
+        """Serve as the `__getattr__` of copied objects, which have copies of all else."""
+        if (id(instance), name) not in self.late:
+            raise AttributeError(f"{type(instance).__name__!r} object has no attribute {name!r}")
+        return self.value(*self.late[id(instance), name])
 
-    def _imported(self, *given: Any, **options: Any) -> Any:
-        return self.value(builtins.__import__(*given, **options))
+    def _import(self, *arguments: Any, **options: Any) -> Any:
+        return self.value(builtins.__import__(*arguments, **options))
 
 
 class _Scope(dict[str, Any]):
@@ -249,7 +253,7 @@ class _Scope(dict[str, Any]):
 
 
 class _Module:
-    """A module, whose functions are copied or replaced as they are asked for."""
+    """A module, whose functions are copied or replaced when they are first used."""
 
     def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
         scope = copier.scope(vars(module)) if is_users_module(module) else None
@@ -272,7 +276,7 @@ class _Module:
 
 
 def names_in(code: types.CodeType) -> Iterable[str]:
-    """The names that the code, and what is defined in it, may look up."""
+    """Yield the names that the code, and what is defined in it, may look up."""
     yield from code.co_names
     for inner in code.co_consts:
         if isinstance(inner, types.CodeType):

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import sympy
 
-from verify.integrators.tracing.trace import Node, expressions, through
+from verify.integrators.tracing.trace import Node, evaluate_nodes, expressions
 
 ONE = -1
 T = TypeVar("T")
@@ -22,25 +22,25 @@ Linear = dict[Any, Scalar]
 _MOST_TERMS = 400  # of a coefficient, beyond which a node is taken as it is
 
 
-def _merged(x: dict[Any, T], y: dict[Any, T], plus: Callable[[T, T], T], zero: T) -> dict[Any, T]:
-    """Sums of what the two have under each key, but for those that are nothing."""
+def _merge(x: dict[Any, T], y: dict[Any, T], plus: Callable[[T, T], T], zero: T) -> dict[Any, T]:
+    """Add what the two have under each key, and drop sums that are 0."""
     total = dict(x)
     for key, value in y.items():
         total[key] = plus(total.get(key, zero), value)
     return {key: value for key, value in total.items() if value}
 
 
-def added(x: Linear, y: Linear) -> Linear:
-    return _merged(x, y, _sum, {})
+def add(x: Linear, y: Linear) -> Linear:
+    return _merge(x, y, _sum, {})
 
 
-def scaled(x: Linear, factor: Scalar) -> Linear:
-    made = {leaf: product(c, factor) for leaf, c in x.items()}
-    return {leaf: c for leaf, c in made.items() if c}
+def scale(x: Linear, factor: Scalar) -> Linear:
+    products = {leaf: product(c, factor) for leaf, c in x.items()}
+    return {leaf: c for leaf, c in products.items() if c}
 
 
 def _sum(x: Scalar, y: Scalar) -> Scalar:
-    return _merged(x, y, operator.add, Fraction(0))
+    return _merge(x, y, operator.add, Fraction(0))
 
 
 def product(x: Scalar, y: Scalar) -> Scalar:
@@ -65,26 +65,27 @@ class Scalars:
         self.symbols = {n.value: n.number for n in nodes if n.operation == "symbol"}
         self.moving: set[int] = set()
         for node in nodes:
-            own = node.operation == "symbol" and node.value in ("p", "q")
-            if own or any(x.number in self.moving for x in node.inputs):
+            is_coordinate = node.operation == "symbol" and node.value in ("p", "q")
+            if is_coordinate or any(x.number in self.moving for x in node.inputs):
                 self.moving.add(node.number)
         still = [node for node in nodes if node.number not in self.moving]
         self._written = expressions(still, {})
-        self._scalar = through(still, self._as_scalar)
+        self._scalar = evaluate_nodes(still, self._as_scalar)
         self._linear: dict[int, Linear] = {}
         for node in nodes:
             self._linear[node.number] = self._as_linear(node)
 
     def leaf(self, number: int) -> Node:
-        """The node of a leaf; for `ONE`, a node that is the number 1."""
+        """Return the node of a leaf; for `ONE`, a node that is the number 1."""
         return self.nodes[number] if number != ONE else Node("number", (), Fraction(1), ONE)
 
     def linear(self, node: Node) -> Linear:
         return self._linear[node.number] if node.number != ONE else {ONE: self.one}
 
     def clock(self, node: Node) -> tuple[Fraction, Fraction] | None:
-        """a and c of a node a (t + c h), a not 0; None of any other."""
+        """Return a and c of a node a (t + c h), a not 0; None of any other."""
         terms = self._scalar.get(node.number, {})
+        # A clock is linear in t and h alone: any other monomial ends the search.
         named = {(("t", 1),): Fraction(0), (("h", 1),): Fraction(0)}
         for monomial, value in terms.items():
             key = tuple((self.nodes[number].value, power) for number, power in monomial)
@@ -97,11 +98,11 @@ class Scalars:
     def sum(self, terms: Sequence[tuple[Scalar, Node]]) -> Linear:
         total: Linear = {}
         for coefficient, node in terms:
-            total = added(total, scaled(self.linear(node), coefficient))
+            total = add(total, scale(self.linear(node), coefficient))
         return total
 
     def parts(self, node: Node) -> list[tuple[Scalar, Node]]:
-        """A sum's or a multiple's parts; none of another node."""
+        """Return a sum's or a multiple's parts; none of another node."""
         minus: Scalar = {(): Fraction(-1)}
         match node.operation:
             case "add" | "subtract":
@@ -125,36 +126,38 @@ class Scalars:
         return sympy.Add(*terms)
 
     def _as_scalar(self, node: Node, x: Sequence[Scalar]) -> Scalar:
-        found: Scalar | None = None
+        scalar: Scalar | None = None
         match node.operation:
             case "number":
                 return {(): node.value} if node.value else {}
             case "add":
-                found = _sum(*x)
+                scalar = _sum(*x)
             case "subtract":
-                found = _sum(x[0], product(x[1], {(): Fraction(-1)}))
+                scalar = _sum(x[0], product(x[1], {(): Fraction(-1)}))
             case "multiply":
-                found = product(*x)
+                scalar = product(*x)
             case "divide":
                 inverse = _inverse(x[1])
-                found = None if inverse is None else product(x[0], inverse)
+                scalar = None if inverse is None else product(x[0], inverse)
             case "power" if node.value.denominator == 1 and node.value > 0:
-                found = self.one
+                scalar = self.one
                 for _ in range(int(node.value)):
-                    found = product(found, x[0])
-        short = found is not None and len(found) <= _MOST_TERMS
-        return found if found is not None and short else {((node.number, 1),): Fraction(1)}
+                    scalar = product(scalar, x[0])
+        # A polynomial of too many terms is replaced by its node as one more symbol. Equal
+        # polynomials may then look different, so that a shear may be missed, but none is invented.
+        short = scalar is not None and len(scalar) <= _MOST_TERMS
+        return scalar if scalar is not None and short else {((node.number, 1),): Fraction(1)}
 
     def _as_linear(self, node: Node) -> Linear:
         if node.number not in self.moving:
-            own = self._scalar[node.number]
-            return {ONE: own} if own else {}
+            constant = self._scalar[node.number]
+            return {ONE: constant} if constant else {}
         parts = self.parts(node)
         return self.sum(parts) if parts else {node.number: self.one}
 
 
 def _inverse(x: Scalar) -> Scalar | None:
-    """1/x of a single term; None of a sum."""
+    """Return 1/x of a single term; None of a sum."""
     if len(x) != 1:
         return None
     ((monomial, value),) = x.items()

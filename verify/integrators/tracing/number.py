@@ -56,7 +56,7 @@ class UntraceableError(TypeError):
 
 
 def reading(value: float) -> Fraction | None:
-    """The simple rational whose nearest float this is; None where there is none.
+    """Return the simple rational whose nearest float this is; None where there is none.
 
     `value` is finite.
     """
@@ -68,11 +68,12 @@ def reading(value: float) -> Fraction | None:
 
 
 class Kind(ABC):
-    """What makes numbers of one kind, and what it took floats for.
+    """A maker of numbers of one kind, with a record of the floats that it read.
 
     `readings`: floats that were read as another number than their value; `rounded`: those that were
-    taken by their binary value, and are no integers; `refused`: what was asked of its numbers and
-    cannot be had, as code may catch the error; `outside`: what it reached beside its arguments.
+    taken by their binary value, and are no integers; `refused`: operations that were requested of
+    its numbers and are impossible, as code may catch the error; `outside`: what it reached beside
+    its arguments.
     """
 
     ordered = True  # whether its numbers can be compared
@@ -91,7 +92,8 @@ class Kind(ABC):
 
 
 def constant(kind: Kind, value: Any) -> "TracedNumber | None":
-    """A user's number as one of ours; None for what is no number. Raises UntraceableError."""
+    """Return a user's number as one of ours; None for what is no number. Raises
+    UntraceableError."""
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()  # one of numpy's scalars
     if isinstance(value, TracedNumber):
@@ -105,6 +107,8 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
     if value - value != 0:
         raise UntraceableError("it computes with infinity or NaN")
     exact = Fraction(value)
+    # First a number that was written as it stands, as 0.5; then a short rational or decimal that
+    # rounds to this float, as 0.1; else the binary value, which counts as rounded.
     read = exact if _is_written(value, exact) else reading(value)
     if read is None:
         kind.rounded.add(value)
@@ -115,10 +119,10 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
 
 
 def _is_written(value: float, exact: Fraction) -> bool:
-    """Whether a float is likely to be the number that was written, and no rounded product.
+    """Return True if a float is likely to be the number that was written, and no rounded product.
 
-    From 10¹² on a double has few bits after its point, whatever it comes from: 75674920197265.2,
-    a product, is …265.203125.
+    From 10¹² on a double has few bits after its point, whatever it comes from: 75674920197265.2, a
+    product, is …265.203125.
     """
     plain = exact.denominator <= _SIMPLE and abs(exact) < _WHOLE
     return plain and _digits(value) <= _EXACT_DIGITS and Fraction(repr(value)) == exact
@@ -131,16 +135,16 @@ def _digits(value: float) -> int:
 def _operator(
     name: str, *, swapped: bool = False
 ) -> Callable[["TracedNumber", object], "TracedNumber"]:
-    """The method of `TracedNumber` that is an operator, or, `swapped`, its other side's."""
+    """Return the method of `TracedNumber` that is an operator, or, `swapped`, its other side's."""
 
-    def combined(self: "TracedNumber", other: object) -> "TracedNumber":
+    def apply_operator(self: "TracedNumber", other: object) -> "TracedNumber":
         lifted = constant(self.kind, other)
         if lifted is None:
             unknown: TracedNumber = NotImplemented  # Python then asks the other one
             return unknown
-        return lifted.combined(name, self) if swapped else self.combined(name, lifted)
+        return lifted.combine(name, self) if swapped else self.combine(name, lifted)
 
-    return combined
+    return apply_operator
 
 
 def _comparison(holds: Callable[[int, int], bool]) -> Callable[["TracedNumber", object], bool]:
@@ -159,30 +163,32 @@ class TracedNumber(ABC):
     # -- what a subclass says -----------------------------------------------------------------
 
     @abstractmethod
-    def combined(self, name: str, other: Any) -> "TracedNumber":  # Any: of the subclass itself
-        """self + other for "add", and so "subtract", "multiply", "divide"; of the same kind."""
+    def combine(self, name: str, other: Any) -> "TracedNumber":  # Any: of the subclass itself
+        """Return self + other for "add", and so for "subtract", "multiply", "divide"; other is of
+        the same kind."""
 
     @abstractmethod
-    def applied(self, name: str) -> "TracedNumber":
-        """The function of `verify.functions` of that name at it."""
+    def apply(self, name: str) -> "TracedNumber":
+        """Return the function of `verify.functions` of that name at this number."""
 
     @abstractmethod
-    def raised(self, exponent: Fraction) -> "TracedNumber": ...
+    def raise_to(self, exponent: Fraction) -> "TracedNumber": ...
 
     @abstractmethod
-    def known(self) -> Fraction | None:
-        """Its value, where it is a rational number that does not depend on p, q and h."""
+    def exact_value(self) -> Fraction | None:
+        """Return its value, where it is a rational number that does not depend on p, q and h."""
 
     def arctan2(self, other: Any) -> "TracedNumber":
-        """The angle of the point (other, self), of whose coordinates one may be a plain number."""
+        """Return the angle of the point (other, self), of whose coordinates one may be a plain
+        number."""
         lifted = constant(self.kind, other)
         if lifted is None:
             self.refuse("it takes the angle of what is no number")
         angle: TracedNumber = derived.arctan2(self, lifted)
         return angle
 
-    def compared(self, other: Any) -> int:
-        """−1, 0 or 1."""
+    def compare(self, other: Any) -> int:
+        """Return −1, 0 or 1."""
         self.refuse("it compares numbers")
 
     def refuse(self, problem: str) -> NoReturn:
@@ -206,10 +212,10 @@ class TracedNumber(ABC):
         exponent = constant(self.kind, other)
         if exponent is None or modulus is not None:
             return NotImplemented
-        known = exponent.known()
-        if known is not None:
-            return self.raised(known)
-        return (exponent * self.applied("log")).applied("exp")
+        value = exponent.exact_value()
+        if value is not None:
+            return self.raise_to(value)
+        return (exponent * self.apply("log")).apply("exp")
 
     def __rpow__(self, other: object) -> "TracedNumber":
         base = constant(self.kind, other)
@@ -228,10 +234,10 @@ class TracedNumber(ABC):
         lifted = constant(self.kind, other)
         if lifted is None:
             self.refuse("it compares a number with what is none")
-        mine, others = self.known(), lifted.known()
+        mine, others = self.exact_value(), lifted.exact_value()
         if mine is not None and others is not None:
             return (mine > others) - (mine < others)
-        return self.compared(lifted)
+        return self.compare(lifted)
 
     __lt__, __le__ = _comparison(operator.lt), _comparison(operator.le)
     __gt__, __ge__ = _comparison(operator.gt), _comparison(operator.ge)
@@ -249,10 +255,10 @@ class TracedNumber(ABC):
         return -self if self._order(0) < 0 else self
 
     def _number(self, problem: str = "it turns numbers into floats or integers") -> Fraction:
-        known = self.known()
-        if known is None:
+        value = self.exact_value()
+        if value is None:
             self.refuse(problem)
-        return known
+        return value
 
     def __round__(self, digits: int | None = None) -> int | Fraction:
         return round(self._number("it rounds numbers"), digits)
@@ -287,7 +293,7 @@ class TracedNumber(ABC):
     # -- numpy --------------------------------------------------------------------------------
 
     def __getattr__(self, name: str) -> "Callable[..., TracedNumber]":
-        """`sin`, `arctan`, …: what numpy calls of the objects in an array."""
+        """Return `sin`, `arctan`, …: the methods that numpy calls of the objects in an array."""
         if name in derived.OF_ONE:
             return lambda: derived.OF_ONE[name](self)
         if name in derived.OF_TWO:

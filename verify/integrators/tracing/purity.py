@@ -1,4 +1,4 @@
-"""Which things that a function reaches are pure, and whether what it was handed has changed.
+"""The purity of what a function reaches, and changes of what it was handed.
 
 A trace is of one call. It is a proof for all calls only where the function is the same each time:
 where what it reaches is on a list here, and all else that it reaches is a copy of ours which stands
@@ -45,7 +45,7 @@ Contents = Mapping[Any, Any]  # by names of attributes, or by places
 
 
 def pure_things() -> dict[int, tuple[str, Any]]:
-    """What is pure in the modules that are loaded, with its name, by its id."""
+    """Return what is pure in the modules that are loaded, with its name, by its id."""
     return _pure_in(tuple(name for name in _PURE if name in sys.modules))
 
 
@@ -71,7 +71,8 @@ def _is_pure(home: str, x: Any) -> bool:
 
 
 def is_plain(x: Any) -> bool:
-    """Whether it never changes and holds nothing that does: a number, a text, None, a type."""
+    """Return True if it never changes and holds nothing that does: a number, a text, None, a
+    type."""
     kind = type(x)
     if isinstance(x, type) and issubclass(x, BaseException):
         return not is_of_user(x)
@@ -85,69 +86,72 @@ def is_plain(x: Any) -> bool:
 
 
 def types_of_numpy(*names: str) -> tuple[type[Any], ...]:
-    """Those types of numpy's; none where it is not loaded."""
+    """Return those types of numpy's; none where it is not loaded."""
     return tuple(getattr(sys.modules["numpy"], x) for x in names) if "numpy" in sys.modules else ()
 
 
 def is_users_module(x: types.ModuleType) -> bool:
-    """Whether it is the user's: neither of Python's library nor installed."""
+    """Return True if it is the user's: neither of Python's library nor installed."""
+    # Modules without a file are built in: they are no user's.
     folders = Path(getattr(x, "__file__", None) or "site-packages").parts
     standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
     return not standard and not {"site-packages", "dist-packages"} & set(folders)
 
 
 def is_of_user(x: Any) -> bool:
-    """Whether a function or class is the user's: of no library, nor of this package."""
+    """Return True if a function or class is the user's: of no library, nor of this package."""
     home = x.__module__ or ""
+    # What has no module, or is of `__main__`, was written by the user.
     module = sys.modules.get(home)
     if module is None or home == "__main__":
         return True
     return home.partition(".")[0] != __name__.partition(".")[0] and is_users_module(module)
 
 
-def described(x: Any, name: str) -> str:
-    """What a user can look for: `time.time`, or its name with its type."""
+def describe_reached(x: Any, name: str) -> str:
+    """Describe it by what a user can look for: `time.time`, or its name with its type."""
     if not isinstance(x, type | types.FunctionType | types.BuiltinFunctionType | types.MethodType):
-        return f"{name} ({_shown(type(x))})"
-    return name if "." in name or not getattr(x, "__module__", None) else _shown(x)
+        return f"{name} ({_qualified_name(type(x))})"
+    return name if "." in name or not getattr(x, "__module__", None) else _qualified_name(x)
 
 
-def _shown(x: Any) -> str:
+def _qualified_name(x: Any) -> str:
     home = "" if x.__module__ in ("builtins", "__main__") else f"{x.__module__}."
     return ".".join(part.lstrip("_") or part for part in f"{home}{x.__qualname__}".split("."))
 
 
 class Outside:
-    """What a traced function reached that is not pure, and what it was handed that may change."""
+    """The impure things that a traced function reached, and the mutable ones that it was handed."""
 
     def __init__(self) -> None:
         self.reached: dict[str, None] = {}  # in their order
         self._watched: list[tuple[str, Any, Contents]] = []
 
     def reach(self, text: str) -> None:
-        """It reached this."""
+        """Record that the function reached this."""
         self.reached[text] = None
 
     def watch(self, name: str, x: Any, before: Contents | None = None) -> None:
-        """It was handed x. `before`: what it then holds, where that is not what it holds now."""
+        """Record that it was handed x. `before`: what x then holds, where that is not what it holds
+        now."""
         self._watched.append((name, x, contents(x) if before is None else before))
 
     @property
     def texts(self) -> list[str]:
         """All that keeps the trace from being a proof for every call."""
         changed = {
-            f"{_joined(name, part)} is changed": None
+            f"{_join_name(name, part)} is changed": None
             for name, x, before in self._watched
-            for part in _changed(before, contents(x))
+            for part in _changed_parts(before, contents(x))
         }
         return [*self.reached, *changed]
 
 
-def _joined(name: str, part: str | int) -> str:
+def _join_name(name: str, part: str | int) -> str:
     return name if isinstance(part, int) else f"{name}.{part}".lstrip(".")
 
 
-def _changed(before: Contents, after: Contents) -> list[str | int]:
+def _changed_parts(before: Contents, after: Contents) -> list[str | int]:
     return [
         part
         for part in {**before, **after}
@@ -160,7 +164,7 @@ def _same(x: Any, y: Any) -> bool:
 
 
 def contents(x: Any) -> dict[Any, Any]:
-    """What it holds, by the names of its attributes, or by places."""
+    """Return what x holds, by the names of its attributes, or by places."""
     if isinstance(x, types.CellType):
         with contextlib.suppress(ValueError):  # it has no value yet
             return {0: x.cell_contents}
@@ -175,7 +179,7 @@ def contents(x: Any) -> dict[Any, Any]:
 
 
 def attributes(x: Any) -> dict[Any, Any]:
-    """Those that it holds itself, but for what a property keeps of them."""
+    """Return the attributes that x holds itself, but for what a property keeps of them."""
     slots = {
         name: part.__get__(x)
         for base in type(x).__mro__

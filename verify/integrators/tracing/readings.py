@@ -1,4 +1,4 @@
-"""At which times a traced step reads H, and when each reading is due.
+"""The times at which a traced step reads H, and the time at which each reading is due.
 
 A reading is an operation in which what moves with p and q meets what is a function of t, as the sum
 in −q³ + cos t. It is due at t + c h where what moves there has gone, to first order in h, c of the
@@ -20,7 +20,7 @@ from verify.arithmetic.exact import fraction
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.linear_sums import Scalars
-from verify.integrators.tracing.trace import Node, Tape, in_order, replayed, through
+from verify.integrators.tracing.trace import Node, Tape, evaluate_nodes, in_order, replay_in
 
 _AT = {"p": Fraction(2, 7), "q": Fraction(5, 11), "t": Fraction(3, 13)}  # any that is not special
 _MOST_DENOMINATOR, _CLEAR = 2**64, Fraction(1, 2**150)  # of a time made of floats
@@ -44,7 +44,8 @@ class Read:
 
 @dataclass(frozen=True)
 class _Place:
-    """The operation, which of its inputs reads, and a for each a (t + c h) in what that is of."""
+    """The operation that reads, which of its inputs reads, and a for each a (t + c h) in what that
+    is of."""
 
     at: Node
     index: int
@@ -57,7 +58,7 @@ class _Place:
 
 
 class Readings:
-    """Those of a trace, in the order in which they are done. Raises NoReadingsError, or what
+    """The readings of a trace, in the order in which they are done. Raises NoReadingsError, or what
     numbers raise where it cannot be computed at a point."""
 
     def __init__(self, hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> None:
@@ -73,18 +74,21 @@ class Readings:
             for place, c, part in zip(self._places, due, parts, strict=True)
         ]
 
-    def mended(self) -> tuple[Node, Node]:
-        """p' and q' of the same trace with each reading at the time when it is due."""
+    def with_due_times(self) -> tuple[Node, Node]:
+        """Return p' and q' of the same trace with each reading at the time when it is due."""
+        # The trace is replayed on a fresh tape, so that the corrected step can be proved as any
+        # other.
         tape = Tape()
         p, q, h, t = (tape.symbol(name) for name in "pqht")
         times = [t + h * read.due for read in self.reads]
-        made = self._replayed(tape, {"p": p, "q": q, "h": h, "t": t}, times)
-        one, two = (made[root.number] for root in self.roots)
+        values = self._replay(tape, {"p": p, "q": q, "h": h, "t": t}, times)
+        one, two = (values[root.number] for root in self.roots)
         return one.node, two.node
 
     def _place(self, node: Node) -> _Place | None:
-        """Where the node reads a time."""
+        """Find where the node reads a time."""
         still = [k for k, x in enumerate(node.inputs) if x.number not in self._scalars.moving]
+        # A reading combines one input that moves with p and q and one that does not.
         if node.number not in self._scalars.moving or len(still) != 1:
             return None
         clocks: dict[int, tuple[Fraction, Fraction]] = {}
@@ -96,31 +100,34 @@ class Readings:
                 clocks[x.number] = clock
             else:
                 waiting += x.inputs
+        # A node that mixes several times has no single due time.
         times = {c for _, c in clocks.values()}
         if len(times) > 1:
             raise NoReadingsError
         factors = {number: a for number, (a, _) in clocks.items()}
         return _Place(node, still[0], factors, times.pop()) if times else None
 
-    def _replayed(self, kind: Any, symbols: Mapping[str, Any], times: Sequence[Any]) -> Any:
-        """All nodes in numbers of that kind, each reading at the time given for it."""
-        plain = replayed(kind, symbols)
+    def _replay(self, kind: Any, symbols: Mapping[str, Any], times: Sequence[Any]) -> Any:
+        """Evaluate all nodes in numbers of that kind, each reading at the time that `times` has for
+        it."""
+        plain = replay_in(kind, symbols)
         places = {place.at.number: (place, t) for place, t in zip(self._places, times, strict=True)}
 
         def made_of(node: Node, inputs: list[Any]) -> Any:
             if node.number in places:
                 place, t = places[node.number]
                 read = node.inputs[place.index]
-                known = {number: t * factor for number, factor in place.clocks.items()}
-                inner = [x for x in in_order(read) if x.number not in known]
+                shifted = {number: t * factor for number, factor in place.clocks.items()}
+                inner = [x for x in in_order(read) if x.number not in shifted]
                 inputs = list(inputs)
-                inputs[place.index] = through(inner, plain, known)[read.number]
+                inputs[place.index] = evaluate_nodes(inner, plain, shifted)[read.number]
             return plain(node, inputs)
 
-        return through(self.nodes, made_of)
+        return evaluate_nodes(self.nodes, made_of)
 
     def _due(self) -> list[Fraction]:
-        """By derivatives along h, and along the flow in place of it, at a very small step."""
+        """Compute the due times by derivatives along h, and along the flow in place of it, at a
+        very small step."""
         kind, at = self._kind, self._at
         zero, one, h = gmpy2.mpfr(0), gmpy2.mpfr(1), kind.rational(_STEP).value
         t = Dual(kind, at["t"], (zero, zero))
@@ -130,10 +137,10 @@ class Readings:
             "h": Dual(kind, h, (one, zero)),
             "t": t,
         }
-        made = self._replayed(kind, symbols, [t] * len(self._places))
+        values = self._replay(kind, symbols, [t] * len(self._places))
         due = []
         for place in self._places:
-            x = made[place.moves.number]
+            x = values[place.moves.number]
             along_h, along_flow = x.slopes or (zero, zero)
             if not along_flow:
                 raise NoReadingsError
@@ -143,15 +150,16 @@ class Readings:
         return due
 
     def _part(self, place: _Place) -> tuple[Fraction, bool]:
-        """By the derivatives of p' and q' along its time, at a very small step."""
+        """Measure a reading's part of the step by the derivatives of p' and q' along its time, at a
+        very small step."""
         kind, at = self._kind, self._at
         zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
         still = {name: Dual(kind, at[name], (zero,)) for name in "pqt"}
-        moved = Dual(kind, at["t"], (one,))
-        times = [moved if x is place else still["t"] for x in self._places]
+        moving_time = Dual(kind, at["t"], (one,))
+        times = [moving_time if x is place else still["t"] for x in self._places]
         h = kind.rational(_STEP)
-        made = self._replayed(kind, {**still, "h": h}, times)
-        slopes = [(made[root.number].slopes or (zero,))[0] / h.value for root in self.roots]
+        values = self._replay(kind, {**still, "h": h}, times)
+        slopes = [(values[root.number].slopes or (zero,))[0] / h.value for root in self.roots]
         whole = -at["H_qt"], at["H_pt"]
         parts = [
             fraction(slope / x) if x else Fraction(0)
@@ -163,18 +171,18 @@ class Readings:
 
 
 def _numbers(hamiltonian: Hamiltonian) -> dict[str, "gmpy2.mpfr"]:
-    """The point, and derivatives of H at it."""
+    """Return the point, and derivatives of H at it."""
     p, q, t = (symbol(name) for name in "pqt")
     exact = hamiltonian.exact
-    wanted = {"H_p": (p,), "H_q": (q,), "H_pt": (p, t), "H_qt": (q, t)}
-    at = {symbol(name): sympy.Rational(x.numerator, x.denominator) for name, x in _AT.items()}
-    found = {name: gmpy2.mpfr(gmpy2.mpq(x)) for name, x in _AT.items()}
-    for name, by in wanted.items():
-        value = sympy.N(exact.diff(*by).subs(at), _BITS // 3)
+    derivatives = {"H_p": (p,), "H_q": (q,), "H_pt": (p, t), "H_qt": (q, t)}
+    point = {symbol(name): sympy.Rational(x.numerator, x.denominator) for name, x in _AT.items()}
+    numbers = {name: gmpy2.mpfr(gmpy2.mpq(x)) for name, x in _AT.items()}
+    for name, by in derivatives.items():
+        value = sympy.N(exact.diff(*by).subs(point), _BITS // 3)
         if not value.is_real:
             raise NoReadingsError
-        found[name] = gmpy2.mpfr(str(value))
-    return found
+        numbers[name] = gmpy2.mpfr(str(value))
+    return numbers
 
 
 def _rational(x: "gmpy2.mpfr") -> Fraction:

@@ -1,4 +1,4 @@
-"""What stands in place of `math`'s and numpy's functions, so that they know our numbers, too."""
+"""Replacements of `math`'s and numpy's functions that know our numbers, too."""
 
 import operator
 from collections.abc import Callable
@@ -21,25 +21,28 @@ _COUNTS = ("log2", "log10", "exp2", "sign", "maximum", "minimum", "fmax", "fmin"
 
 
 def replacement(kind: Kind, called: str, x: Any) -> Any:
-    """For x, which is called so, as `math.sin` is; x itself where none is needed."""
+    """Return the replacement of x, which is called so, as `math.sin` is; x itself where none is
+    needed."""
     home, _, name = called.rpartition(".")
     if name in _FLOATS:
         return Float
     if home == "numpy.linalg" and name in ("solve", "inv", "det"):
-        return _guarded(partial(getattr(linear_algebra, name), kind), x)
+        return _guard(partial(getattr(linear_algebra, name), kind), x)
     if home not in ("math", "numpy"):
         return x
     if name in ("pi", "e", "tau"):
         pi = kind.pi()
-        return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).applied("exp")}[name]
+        return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).apply("exp")}[name]
     if name in _OF_NUMBERS or (home == "math" and name == "pow"):
-        return _applied(kind, _OF_NUMBERS.get(name, operator.pow), x, plain=name not in _COUNTS)
+        return _apply_to_numbers(
+            kind, _OF_NUMBERS.get(name, operator.pow), x, plain=name not in _COUNTS
+        )
     if name in (*_FILLED, *_TYPED):
         return _of_objects(x, untold=name in _FILLED)
     if home == "math":
-        return _guarded(_OTHERS[name], x) if name in _OTHERS else x
+        return _guard(_OTHERS[name], x) if name in _OTHERS else x
     if name in _OF_NUMPY:
-        return _guarded(_OF_NUMPY[name], x)
+        return _guard(_OF_NUMPY[name], x)
     return x
 
 
@@ -59,17 +62,21 @@ class Float(float, metaclass=_FloatType):
 
 
 def _of_objects(original: Callable[..., Any], *, untold: bool) -> Callable[..., Any]:
-    """What makes an array of floats makes one of objects, which our numbers can be put into.
+    """Make a function that builds arrays of floats build arrays of objects, which our numbers can
+    be put into.
 
-    `untold`: it makes one of floats where no type is told.
+    `untold`: it builds one of floats where no type is named.
     """
 
-    def call(*given: Any, **options: Any) -> Any:
-        given = (*given[:1], *(object if _is_float(x) else x for x in given[1:]))
-        told = options.get("dtype") is not None or any(isinstance(x, type) for x in given[1:])
-        if _is_float(options.get("dtype")) or (untold and not told):
+    def call(*arguments: Any, **options: Any) -> Any:
+        # The first argument is a shape or the contents; a type may stand in any later place.
+        arguments = (*arguments[:1], *(object if _is_float(x) else x for x in arguments[1:]))
+        has_type = options.get("dtype") is not None or any(
+            isinstance(x, type) for x in arguments[1:]
+        )
+        if _is_float(options.get("dtype")) or (untold and not has_type):
             options["dtype"] = object
-        return original(*given, **options)
+        return original(*arguments, **options)
 
     return call
 
@@ -82,23 +89,25 @@ def _of_our_numbers(x: Any) -> bool:
     return str(getattr(x, "dtype", "")) == "object"
 
 
-def _applied(
-    kind: Kind, own: Callable[..., Any], original: Callable[..., Any], *, plain: bool = True
+def _apply_to_numbers(
+    kind: Kind, function: Callable[..., Any], original: Callable[..., Any], *, plain: bool = True
 ) -> Callable[..., Any]:
-    """The function of ours for our numbers, alone and in arrays; where `plain`, for others, too,
+    """Return our function for our numbers, alone and in arrays; where `plain`, for others, too,
     whose value stays exact."""
 
-    def call(*given: Any, **options: Any) -> Any:
-        if options or not given:
-            return original(*given, **options)
-        if all(isinstance(x, TracedNumber | _PLAIN) for x in given):
-            if plain or any(isinstance(x, TracedNumber) for x in given):
-                return own(*(constant(kind, x) for x in given))
-        elif any(map(_of_our_numbers, given)):
+    def call(*arguments: Any, **options: Any) -> Any:
+        if options or not arguments:
+            return original(*arguments, **options)
+        if all(isinstance(x, TracedNumber | _PLAIN) for x in arguments):
+            if plain or any(isinstance(x, TracedNumber) for x in arguments):
+                return function(*(constant(kind, x) for x in arguments))
+        # numpy's own functions call methods of the objects in an array; those that have none are
+        # mapped here, entry by entry.
+        elif any(map(_of_our_numbers, arguments)):
             import numpy as np
 
-            return np.frompyfunc(call, len(given), 1)(*given)
-        return original(*given)
+            return np.frompyfunc(call, len(arguments), 1)(*arguments)
+        return original(*arguments)
 
     vars(call).update(
         {name: getattr(original, name) for name in _METHODS if hasattr(original, name)}
@@ -106,13 +115,14 @@ def _applied(
     return call
 
 
-def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[..., Any]:
-    """`own` where one of our numbers is given, alone or in a sequence, else the original."""
+def _guard(function: Callable[..., Any], original: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `function` where one of our numbers is an argument, alone or in a sequence, else the
+    original."""
 
-    def call(*given: Any, **options: Any) -> Any:
-        numbers = [y for x in given for y in (x if isinstance(x, list | tuple) else [x])]
+    def call(*arguments: Any, **options: Any) -> Any:
+        numbers = [y for x in arguments for y in (x if isinstance(x, list | tuple) else [x])]
         ours = any(isinstance(x, TracedNumber) or _of_our_numbers(x) for x in numbers)
-        return (own if ours else original)(*given, **options)
+        return (function if ours else original)(*arguments, **options)
 
     return call
 
@@ -134,8 +144,8 @@ def _near(x: Any, y: Any, rtol: float = 1e-5, atol: float = 1e-8) -> Any:
     return abs(x - y) <= atol + rtol * abs(y)
 
 
-def _all_near(*given: Any, **options: Any) -> bool:
-    near = _near(*given, **options)
+def _all_near(*arguments: Any, **options: Any) -> bool:
+    near = _near(*arguments, **options)
     return bool(near.all() if hasattr(near, "all") else near)
 
 

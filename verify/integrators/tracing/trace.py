@@ -1,4 +1,4 @@
-"""What a user's step does to symbols: its operations as a graph, each written once.
+"""A user's step applied to symbols: its operations as a graph, each written once.
 
 `Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
 """
@@ -17,7 +17,7 @@ from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, Unt
 MOST_NODES = 20_000
 _MOST_BITS = 20_000  # of a folded number
 _SYMBOLS = "symbol"
-Made = TypeVar("Made")
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Tape(Kind):
 
     def __init__(self) -> None:
         super().__init__()
-        self.positive = False  # whether it was asked for the sign of h
+        self.positive = False  # whether the sign of h was used
         self._nodes: dict[tuple[object, ...], Node] = {}
 
     def symbol(self, name: str) -> "Traced":
@@ -56,19 +56,21 @@ class Tape(Kind):
 
     @property
     def nodes(self) -> Iterable[Node]:
-        """All that were made, in their order."""
+        """All nodes, in the order in which they were recorded."""
         return self._nodes.values()
 
     def check(self) -> None:
-        """UntraceableError where code caught the error of what a symbol cannot.
+        """Raise UntraceableError where code caught the error of what a symbol cannot do.
 
-        What is traced is then what it does where that fails.
+        The trace is then of what the code does where that fails.
         """
         if self.refused:
             caught = "and catches the error of a symbol that cannot"
             raise UntraceableError(f"{self.refused[0]}, {caught}")
 
     def node(self, operation: str, inputs: tuple[Node, ...], value: Any = None) -> Node:
+        # The same operation on the same nodes is the same node, so that common subexpressions are
+        # recorded once.
         key = (operation, *(x.number for x in inputs), value)
         if key not in self._nodes:
             if len(self._nodes) >= MOST_NODES:
@@ -87,20 +89,20 @@ class Traced(TracedNumber):
         super().__init__(kind)
         self.node = node
 
-    def known(self) -> Fraction | None:
+    def exact_value(self) -> Fraction | None:
         return self.node.value if self.node.operation == "number" else None
 
-    def compared(self, other: "Traced") -> int:
-        """h > 0, and nothing is known of the sign of anything else."""
-        known = other.known()
+    def compare(self, other: "Traced") -> int:
+        """Return 1 for h > 0; nothing is known of the sign of anything else."""
+        value = other.exact_value()
         is_h = (self.node.operation, self.node.value) == (_SYMBOLS, "h")
-        if is_h and known is not None and known <= 0:
+        if is_h and value is not None and value <= 0:
             self.kind.positive = True
             return 1
         self.refuse("it compares numbers")
 
-    def combined(self, name: str, other: "Traced") -> "Traced":
-        x, y = self.known(), other.known()
+    def combine(self, name: str, other: "Traced") -> "Traced":
+        x, y = self.exact_value(), other.exact_value()
         if x is not None and y is not None:
             if name == "divide" and y == 0:
                 raise ZeroDivisionError
@@ -116,59 +118,62 @@ class Traced(TracedNumber):
         return Traced(self.kind, self.kind.node(name, (self.node, other.node)))
 
     def _times(self, x: Fraction) -> "Traced":
-        """The number stands first, and 0 times anything is 0."""
+        """Multiply by x; the number stands first, and 0 times anything is 0."""
         number = self.kind.rational(x)
         if x == 0:
             return number
         return Traced(self.kind, self.kind.node("multiply", (number.node, self.node)))
 
-    def applied(self, name: str) -> "Traced":
+    def apply(self, name: str) -> "Traced":
         return Traced(self.kind, self.kind.node(name, (self.node,)))
 
-    def raised(self, exponent: Fraction) -> "Traced":
+    def raise_to(self, exponent: Fraction) -> "Traced":
         if abs(exponent.numerator) > MAX_EXPONENT or exponent.denominator > MAX_EXPONENT:
             raise UntraceableError(f"it has the exponent {float(exponent):g}")
         if exponent == 0:
             return self.kind.rational(Fraction(1))
         if exponent == 1:
             return self
-        known = self.known()
-        if known is not None and exponent.denominator == 1:
-            return self.kind.rational(known ** int(exponent))
+        value = self.exact_value()
+        if value is not None and exponent.denominator == 1:
+            return self.kind.rational(value ** int(exponent))
         return Traced(self.kind, self.kind.node("power", (self.node,), exponent))
 
 
 def in_order(*roots: Node) -> list[Node]:
-    """The nodes that the roots are made of, each after its inputs."""
-    seen: dict[int, Node] = {}
-    waiting = list(roots)
-    while waiting:
-        node = waiting.pop()
-        if node.number not in seen:
-            seen[node.number] = node
-            waiting += node.inputs
-    return [seen[number] for number in sorted(seen)]
+    """Return the nodes that the roots are made of, each after its inputs."""
+    nodes: dict[int, Node] = {}
+    pending = list(roots)
+    while pending:
+        node = pending.pop()
+        if node.number not in nodes:
+            nodes[node.number] = node
+            pending += node.inputs
+    # Numbers grow from inputs to results, so that they sort the nodes. A recursion would reach
+    # Python's limit in long traces.
+    return [nodes[number] for number in sorted(nodes)]
 
 
-def through(
+def evaluate_nodes(
     nodes: Iterable[Node],
-    made_of: Callable[[Node, list[Any]], Made],
-    known: Mapping[int, Made] | None = None,
-) -> dict[int, Made]:
-    """What is made of each node, from what was made of its inputs, by the nodes' numbers.
+    made_of: Callable[[Node, list[Any]], Value],
+    prior_values: Mapping[int, Value] | None = None,
+) -> dict[int, Value]:
+    """Evaluate each node from its inputs' values, and return the values by the nodes' numbers.
 
-    `known`: of other nodes, of which these are made.
+    `prior_values`: of other nodes, from which these are computed.
     """
-    made = dict(known or {})
+    values = dict(prior_values or {})
     for node in nodes:
-        made[node.number] = made_of(node, [made[x.number] for x in node.inputs])
-    return made
+        values[node.number] = made_of(node, [values[x.number] for x in node.inputs])
+    return values
 
 
-def replayed(kind: Kind, symbols: Mapping[str, Any]) -> Callable[[Node, list[Any]], Any]:
-    """What makes a node again in numbers of that kind, from its inputs; see `through`."""
+def replay_in(kind: Kind, symbols: Mapping[str, Any]) -> Callable[[Node, list[Any]], Any]:
+    """Return a function that evaluates a node in numbers of that kind, from its inputs; see
+    `evaluate_nodes`."""
 
-    def made(node: Node, x: list[Any]) -> Any:
+    def replay_node(node: Node, x: list[Any]) -> Any:
         match node.operation:
             case "symbol":
                 return symbols[node.value]
@@ -177,22 +182,23 @@ def replayed(kind: Kind, symbols: Mapping[str, Any]) -> Callable[[Node, list[Any
             case "pi":
                 return kind.pi()
             case "power":
-                return x[0].raised(node.value)
+                return x[0].raise_to(node.value)
             case "add" | "subtract" | "multiply" | "divide" as name:
-                return x[0].combined(name, x[1])
+                return x[0].combine(name, x[1])
             case name:
-                return x[0].applied(name)
+                return x[0].apply(name)
 
-    return made
+    return replay_node
 
 
 def expressions(
     nodes: Iterable[Node],
     put: Mapping[str, sympy.Expr],
-    known: Mapping[int, sympy.Expr] | None = None,
+    prior_values: Mapping[int, sympy.Expr] | None = None,
 ) -> dict[int, sympy.Expr]:
-    """Each node as an expression, with symbols replaced by what is put for them; see `through`."""
-    return through(nodes, lambda node, inputs: _expression(node, inputs, put), known)
+    """Return each node as an expression, with symbols replaced as `put` says; see
+    `evaluate_nodes`."""
+    return evaluate_nodes(nodes, lambda node, inputs: _expression(node, inputs, put), prior_values)
 
 
 def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) -> sympy.Expr:
@@ -212,17 +218,18 @@ def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) ->
 
 
 def sizes(nodes: Iterable[Node]) -> dict[int, int]:
-    """How many operations each node is, where nothing is written once; see `through`."""
-    return through(nodes, lambda _, inputs: 1 + sum(inputs))
+    """Count the operations of each node, where nothing is written once; see `evaluate_nodes`."""
+    return evaluate_nodes(nodes, lambda _, inputs: 1 + sum(inputs))
 
 
-def written(
+def write_expressions(
     roots: Sequence[Node], most: int, put: Mapping[str, sympy.Expr] | None = None
 ) -> list[sympy.Expr] | None:
-    """The roots as expressions; None where they are more operations than that, all together."""
+    """Return the roots as expressions; None where they are more operations than that, all
+    together."""
     nodes = in_order(*roots)
     size = sizes(nodes)
     if sum(size[root.number] for root in roots) > most:
         return None
-    made = expressions(nodes, put or {})
-    return [made[root.number] for root in roots]
+    values = expressions(nodes, put or {})
+    return [values[root.number] for root in roots]

@@ -29,7 +29,8 @@ ROLES = {
 
 
 def role_of(name: str) -> str:
-    """Which of p, q, t, h and z an argument of that name is; empty where the name does not tell."""
+    """Return which of p, q, t, h and z an argument of that name is; empty where the name does not
+    tell."""
     return ROLES.get(name.lower().strip("_"), "")
 
 
@@ -55,10 +56,10 @@ class Pair(tuple[Theirs, ...]):
 
 
 def pair(parts: Sequence[Theirs], order: tuple[str, ...]) -> Pair:
-    """p and q in that order as one thing."""
-    made = Pair(parts)
-    made.order = order
-    return made
+    """Return p and q in that order as one thing."""
+    both = Pair(parts)
+    both.order = order
+    return both
 
 
 @dataclass(frozen=True)
@@ -76,26 +77,26 @@ class Layout:
     record: Callable[..., Theirs] | None = None  # of a named tuple that an annotation names
 
     @property
-    def timed(self) -> bool:
-        """Whether t goes in."""
+    def takes_time(self) -> bool:
+        """True if t is an argument."""
         return "t" in self.roles
 
     @property
-    def stepped(self) -> bool:
-        """Whether h goes in."""
+    def takes_step_size(self) -> bool:
+        """True if h is an argument."""
         return "h" in self.roles
 
     def arguments(
         self, z: Sequence[Theirs], h: Theirs, t: Theirs
     ) -> list[Theirs]:  # what the function is called with
-        """The function's arguments for z, in its order."""
+        """Return the function's arguments for z, in its order."""
         n = len(z) // 2
         halves = {"p": z[:n], "q": z[n:]}
         parts: dict[str, Theirs] = {"h": h, "t": t}
         if "z" in self.roles:
             parts["z"] = self._whole(z, halves)
         else:
-            parts |= {name: self._shaped(x) for name, x in halves.items()}
+            parts |= {name: self._shape_half(x) for name, x in halves.items()}
         return [parts[name] for name in self.roles]
 
     def _whole(self, z: Sequence[Theirs], halves: dict[str, Sequence[Theirs]]) -> Theirs:
@@ -106,21 +107,23 @@ class Layout:
             return array([*first, *second], (len(z),))
         if self.kind == "rows":
             return array([*first, *second], (2, *self.shape))
-        parts = [self._shaped(first), self._shaped(second)]
+        parts = [self._shape_half(first), self._shape_half(second)]
         if self.record is not None:
             return self.record(*parts)
         return pair(parts, self.halves)
 
-    def _shaped(self, x: Sequence[Theirs]) -> Theirs:
+    def _shape_half(self, x: Sequence[Theirs]) -> Theirs:
         if self.kind == "list":
             return list(x)
         return array(x, self.shape) if self.shape else x[0]
 
     def state(self, result: Theirs, size: int) -> list[Theirs]:
-        """z' of what the function returned. Raises StepError."""
-        numbers = list(_numbers(result, self.wanted, depth=4))
+        """Return z' from the function's result. Raises StepError."""
+        # Any nesting of lists, tuples and arrays is accepted, as long as the numbers are as many as
+        # in z.
+        numbers = list(_numbers(result, self.expected_result, depth=4))
         if len(numbers) != size:
-            raise StepError(f"it returns {_shape_of(result, len(numbers))}; {self.wanted}")
+            raise StepError(f"it returns {_shape_of(result, len(numbers))}; {self.expected_result}")
         if self.places:
             return [numbers[place] for place in self.places]
         halves = self.halves
@@ -128,11 +131,12 @@ class Layout:
         if sorted(fields) == ["p", "q"]:
             halves = (fields[0], fields[1])
         n = size // 2
+        # In z p stands before q, whatever order the user's function has.
         return numbers if halves == ("p", "q") else [*numbers[n:], *numbers[:n]]
 
     @property
-    def wanted(self) -> str:
-        """What has to be returned, for people."""
+    def expected_result(self) -> str:
+        """The result that the function has to return, for people."""
         if "z" in self.roles:
             return "wanted: z', of the shape of z"
         first, second = self.halves
@@ -147,7 +151,7 @@ class Layout:
 
 
 def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:
-    """The shapes and kinds in which p and q of so many degrees may stand, the usual first."""
+    """Yield the shapes and kinds in which p and q of so many degrees may stand, the usual first."""
     if degrees == 1:
         yield from (((), "array"), ((1,), "array"), ((1, 1), "array"))
         return
@@ -157,13 +161,13 @@ def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:
 
 
 def array(numbers: Sequence[Theirs], shape: tuple[int, ...]) -> Theirs:
-    """An array of floats; or of numbers of ours, as objects."""
+    """Build an array of floats; or of numbers of ours, as objects."""
     import numpy as np
 
-    made = np.empty(prod(shape), dtype=float if isinstance(numbers[0], float) else object)
+    objects = np.empty(prod(shape), dtype=float if isinstance(numbers[0], float) else object)
     for k, x in enumerate(numbers):
-        made[k] = x
-    return made.reshape(shape)
+        objects[k] = x
+    return objects.reshape(shape)
 
 
 def _shape_of(result: Theirs, count: int) -> str:

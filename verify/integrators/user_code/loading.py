@@ -19,9 +19,9 @@ from itertools import permutations
 from pathlib import Path
 from types import ModuleType
 
-from verify.errors import InputError, is_meant, nearest
+from verify.errors import InputError, find_nearest, format_suggestion
 from verify.integrators.user_code.layout import Layout, role_of, shapes
-from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contained, last_line
+from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contain_effects, last_line
 from verify.integrators.user_code.user_map import UserMap
 
 _MOST_SECONDS = 86_400
@@ -35,7 +35,7 @@ _WANTED = {
 
 
 def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
-    """The function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
+    """Load the function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
 
     It is looked for in the current folder first. `called`: what an error calls it. Raises
     InputError where it does not import, has no such name, or that is no function.
@@ -45,27 +45,29 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
         raise InputError(called, target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
     if place.endswith(":"):
         raise InputError(called, target, f"write one : in it, as {place[:-1]}:{name}")
-    with contained():
+    with contain_effects():
         module = _module(place, target, called)
-        found: Theirs = module
+        target_object: Theirs = module
         for part in name.split("."):
-            if not hasattr(found, part):
-                known = sorted(x for x, one in vars(module).items() if inspect.isfunction(one))
-                has = it_has(known, name) if known else "it has no function"
+            if not hasattr(target_object, part):
+                names = sorted(x for x, one in vars(module).items() if inspect.isfunction(one))
+                has = list_functions(names, name) if names else "it has no function"
                 raise InputError(called, target, f"{place} has no {name}; {has}")
-            found = getattr(found, part)
-    if not callable(found):
-        raise InputError(called, target, f"{name} is no function but {type(found).__name__}")
-    function: Callable[..., Theirs] = found
+            target_object = getattr(target_object, part)
+    if not callable(target_object):
+        raise InputError(
+            called, target, f"{name} is no function but {type(target_object).__name__}"
+        )
+    function: Callable[..., Theirs] = target_object
     return function
 
 
-def it_has(functions: Sequence[str], wanted: str) -> str:
-    """Which functions there are, the nearest to what was wanted first."""
-    near = nearest(wanted, functions)
+def list_functions(functions: Sequence[str], wanted: str) -> str:
+    """List the functions, the nearest to the wanted name first."""
+    near = find_nearest(wanted, functions)
     first = sorted(functions, key=lambda name: name != near)[:_LISTED]
     more = f", and {len(functions) - _LISTED} more" if len(functions) > _LISTED else ""
-    return f"{is_meant(near)}it has: {', '.join(first)}{more}"
+    return f"{format_suggestion(near)}it has: {', '.join(first)}{more}"
 
 
 def _module(place: str, target: str, called: str) -> ModuleType:
@@ -92,35 +94,40 @@ def _module(place: str, target: str, called: str) -> ModuleType:
 
 
 def from_file(path: Path) -> ModuleType:
-    """The module that a .py file is, which is run anew."""
+    """Run a .py file anew and return its module."""
     name = _free_name(path.stem, path.parent.resolve())
-    return _executed(spec_from_file_location(name, path))
+    return _execute(spec_from_file_location(name, path))
 
 
 def from_folder(name: str) -> ModuleType:
-    """The module of that name in the current folder, else the one that is installed."""
+    """Import the module of that name from the current folder, else the one that is installed."""
     top, dot, rest = name.partition(".")
-    here = Path.cwd()
-    there = PathFinder.find_spec(top, [str(here)])
-    free = _free_name(top, here)
-    if there is None or there.origin is None:  # a folder without code is behind libraries, too
+    folder = Path.cwd()
+    spec = PathFinder.find_spec(top, [str(folder)])
+    free = _free_name(top, folder)
+    if spec is None or spec.origin is None:  # a folder without code is behind libraries, too
         return import_module(name)
     if free != top and free not in sys.modules:
-        inside = there.submodule_search_locations
-        _executed(spec_from_file_location(free, there.origin, submodule_search_locations=inside))
+        inside = spec.submodule_search_locations
+        _execute(spec_from_file_location(free, spec.origin, submodule_search_locations=inside))
     return import_module(f"{free}{dot}{rest}")
 
 
 def _free_name(name: str, folder: Path) -> str:
-    """The name, or another one where that is a library's; the folder's other modules are found."""
-    before = [x for x in sys.path if Path(x).resolve() != folder]
-    taken = name in sys.stdlib_module_names or PathFinder.find_spec(name, before) is not None
+    """Return the name, or another one where that is a library's; the folder's other modules are
+    found."""
+    other_folders = [x for x in sys.path if Path(x).resolve() != folder]
+    is_taken = (
+        name in sys.stdlib_module_names or PathFinder.find_spec(name, other_folders) is not None
+    )
+    # The folder comes last: a user's `random.py` must not replace Python's for the libraries that
+    # are imported later.
     if str(folder) not in sys.path:
         sys.path.append(str(folder))
-    return f"{name}_{hash(folder) & 0xFFFFFFFF:x}" if taken else name
+    return f"{name}_{hash(folder) & 0xFFFFFFFF:x}" if is_taken else name
 
 
-def _executed(spec: ModuleSpec | None) -> ModuleType:
+def _execute(spec: ModuleSpec | None) -> ModuleType:
     assert spec is not None and spec.loader is not None  # noqa: PT018, S101 - a file has one
     module = module_from_spec(spec)
     sys.modules[spec.name] = module  # as pickles and dataclasses in it expect
@@ -158,7 +165,7 @@ def callee_from(
     time_limit: float = TIME_LIMIT,
     strict: bool = False,
 ) -> Callee:
-    """The function with the coordinates `names`, p and q or p1 … qn.
+    """Return the function as a callee with the coordinates `names`, p and q or p1 … qn.
 
     `stepped`: whether it has an h. `arguments`: "q,p,h" or another order, "q1,p1,q2,p2" of the one
     z that a map takes; without it the names of its arguments tell, where they do. `parameters`:
@@ -172,21 +179,24 @@ def callee_from(
     signature = _Signature(function, stepped, values, strict)
     places: tuple[int, ...] = ()
     if arguments is None:
-        orders, named = signature.orders()
+        orders, names_tell = signature.orders()
     else:
         order, places = _order(arguments, names, stepped, signature)
-        orders, named = [order], True
+        orders, names_tell = [order], True
     halves = [("p", "q")] if places else None
     layouts = [x for roles in orders for x in _layouts(roles, len(names) // 2, halves)]
     layouts = [replace(x, places=places, record=signature.record) for x in layouts]
-    used = {name: x for name, x in values.items() if name in signature.takes}
-    step = UserMap(function, layouts[0], names, used, limit=time_limit)
+    values_taken = {name: x for name, x in values.items() if name in signature.takes}
+    step = UserMap(function, layouts[0], names, values_taken, limit=time_limit)
     several = len({(x.roles, x.halves) for x in layouts}) > 1
-    return Callee(step, tuple(layouts), named and not several, signature.shown(len(orders[0])))
+    return Callee(
+        step, tuple(layouts), names_tell and not several, signature.argument_names(len(orders[0]))
+    )
 
 
 def foreign_callee(step: UserMap) -> Callee:
-    """A step of a library or a program, whose layout is what its interface says."""
+    """Return a step of a library or a program as a callee, whose layout is that of its
+    interface."""
     return Callee(step, (step.layout,))
 
 
@@ -200,62 +210,62 @@ class _Signature:
         self.stepped, self.record = stepped, None
         self.takes: set[str] = set()
         try:
-            named = list(inspect.signature(function).parameters.values())
+            parameters = list(inspect.signature(function).parameters.values())
         except (TypeError, ValueError):  # some functions written in C have none
-            named = []
-        self.text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, named))})"
-        every = {x.name for x in named}
+            parameters = []
+        self.text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, parameters))})"
+        every = {x.name for x in parameters}
         for name in values if strict else ():
             if name not in every:
                 raise InputError("parameter", name, f"is no argument of {self.text}")
-        places = [x for x in named if x.kind in _POSITIONAL]
-        self.variadic = not named or any(x.kind is x.VAR_POSITIONAL for x in named)
+        places = [x for x in parameters if x.kind in _POSITIONAL]
+        self.variadic = not parameters or any(x.kind is x.VAR_POSITIONAL for x in parameters)
         # A parameter of H that is called as a coordinate is one all the same; a map's is not.
         roles = ("p", "q", "h") if stepped else ()
         self.places = [x for x in places if x.name not in values or role_of(x.name) in roles]
         self.needed = [x for x in self.places if x.default is x.empty]
-        self.takes = {x.name for x in named if x.name in values and x not in self.places[:4]}
-        keywords = [x for x in named if x.kind is x.KEYWORD_ONLY and x.default is x.empty]
+        self.takes = {x.name for x in parameters if x.name in values and x not in self.places[:4]}
+        keywords = [x for x in parameters if x.kind is x.KEYWORD_ONLY and x.default is x.empty]
         if any(x.name not in values for x in keywords):
             raise self.wrong()
         if self.places and _is_record(self.places[0].annotation):
             self.record = self.places[0].annotation
 
     def wrong(self) -> InputError:
-        """What is said of a signature that is none."""
+        """Return the error of a signature that is none of a step's or a map's."""
         return InputError("integrator" if self.stepped else "map", self.text, _WANTED[self.stepped])
 
-    def shown(self, count: int) -> tuple[str, ...]:
-        """The names of the first arguments."""
+    def argument_names(self, count: int) -> tuple[str, ...]:
+        """Return the names of the first arguments."""
         return tuple(x.name for x in self.places[:count])
 
     def orders(self) -> tuple[list[tuple[str, ...]], bool]:
-        """Roles of its arguments, the likeliest first; and whether their names tell them."""
+        """Return roles of its arguments, the likeliest first; and whether their names tell them."""
         if self.variadic and not self.needed:
             return [tuple("pqh" if self.stepped else "pq")], True
         roles = [role_of(x.name) for x in self.places]
-        for wanted in _ROLES[self.stepped]:
-            told = roles[: len(wanted)]
-            if sorted(told) == sorted(wanted) and len(self.needed) <= len(wanted):
-                return [tuple(told)], True
+        for expected in _ROLES[self.stepped]:
+            named_roles = roles[: len(expected)]
+            if sorted(named_roles) == sorted(expected) and len(self.needed) <= len(expected):
+                return [tuple(named_roles)], True
         counts = {len(x): x for x in reversed(_ROLES[self.stepped])}  # where both fit, with p and q
         count = len(self.needed)
         if count not in counts:
             count = max((n for n in counts if count <= n <= len(self.places)), default=0)
-        named = set(roles[:count]) - {""}
-        both, all_told = {"p", "q"} <= named, {"p", "q", "h"} <= named
+        roles_from_names = set(roles[:count]) - {""}
+        both, all_told = {"p", "q"} <= roles_from_names, {"p", "q", "h"} <= roles_from_names
         if not count or (self.stepped and ((count == 2 and both) or (count == 4 and all_told))):
             raise self.wrong()
         # To a map p and q are alike.
-        return list(_filled(roles[:count], counts[count])), not self.stepped or count == 1
+        return list(_matching_orders(roles[:count], counts[count])), not self.stepped or count == 1
 
 
-def _filled(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, ...]]:
-    """Orders that keep to the roles that names tell; the usual order first."""
-    kept = [role if role in wanted and roles.count(role) == 1 else "" for role in roles]
+def _matching_orders(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, ...]]:
+    """Yield orders that agree with the roles that names tell; the usual order first."""
+    fixed = [role if role in wanted and roles.count(role) == 1 else "" for role in roles]
     orders = sorted(set(permutations(wanted)), key=lambda x: (x != tuple(wanted), x))
     for order in orders:
-        if all(role in ("", one) for role, one in zip(kept, order, strict=True)):
+        if all(role in ("", one) for role, one in zip(fixed, order, strict=True)):
             yield order
 
 
@@ -286,7 +296,7 @@ def _layouts(
 def _order(
     arguments: str, names: tuple[str, ...], stepped: bool, signature: _Signature
 ) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """The roles that are written, and where coordinates stand in one z."""
+    """Parse the roles that are written, and where coordinates stand in one z."""
     words = [name.strip() for name in arguments.split(",")]
     if not stepped and sorted(words) == sorted(names):
         if len(names) == 2 and len(signature.needed) == 2:
@@ -294,9 +304,9 @@ def _order(
         return ("z",), tuple(map(words.index, names))
     roles = [role_of(word) for word in words]
     if sorted(roles) not in map(sorted, _ROLES[stepped]):
-        listed = ", ".join(names)
+        names_text = ", ".join(names)
         problem = "is no order of p, q and h, such as q,p,h, nor of p, q, t and h"
         raise InputError(
-            "--arguments", arguments, problem if stepped else f"is no order of {listed}"
+            "--arguments", arguments, problem if stepped else f"is no order of {names_text}"
         )
     return tuple(roles), ()

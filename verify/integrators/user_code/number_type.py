@@ -6,7 +6,7 @@ from fractions import Fraction
 import gmpy2
 
 from verify.arithmetic.exact import fraction
-from verify.errors import unknown
+from verify.errors import unknown_name
 
 
 @dataclass(frozen=True)
@@ -24,16 +24,16 @@ class NumberType:
 
     @property
     def declared_as(self) -> str:
-        """What it is called in a sentence."""
+        """The name of the type in a sentence."""
         return self.name if self.parts > 1 else self.declared
 
     @property
     def epsilon(self) -> float:
-        """Between 1 and the next number."""
+        """The distance between 1 and the next number."""
         return 2.0 ** (1 - self.bits)
 
-    def rounded(self, x: Fraction) -> Fraction:
-        """The nearest number of the type, but for its range."""
+    def round_number(self, x: Fraction) -> Fraction:
+        """Return the nearest number of the type, but for its range."""
         if self.parts > 1:
             return sum(map(Fraction, two_doubles(x)), Fraction(0))
         if self is DOUBLE:
@@ -42,7 +42,8 @@ class NumberType:
 
 
 def two_doubles(x: Fraction) -> tuple[float, float]:
-    """The nearest double, and that of the rest."""
+    """Return the nearest double, and that of the rest."""
+    # The nearest double, then the nearest one to what is left: their sum has at least 106 bits.
     high = float(x)
     return high, float(x - Fraction(high))
 
@@ -55,7 +56,9 @@ TYPES = {each.name: each for each in (DOUBLE, LONG_DOUBLE, FLOAT128, DOUBLE_DOUB
 
 
 def type_of(name: str) -> NumberType:
-    """By its name. Raises InputError for one that is not known."""
+    """Return the type of that name. Raises InputError for one that is not known."""
     if name not in TYPES:
-        raise unknown("--type", name, TYPES, aliases={"quad": "float128", "binary128": "float128"})
+        raise unknown_name(
+            "--type", name, TYPES, aliases={"quad": "float128", "binary128": "float128"}
+        )
     return TYPES[name]

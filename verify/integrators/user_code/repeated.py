@@ -1,15 +1,14 @@
-"""A user's map called many hundred times: one map of z, and one that is smooth in floats.
+"""Many hundred calls of a user's map: it must be one map of z, and one that is smooth in floats.
 
 From each place p or q moves away by a little, then by twice as much, and so on. A smooth map bends
 as the square of such a move. Where its numbers have few digits, or a value that was kept for a
 point nearby is taken, it jumps. Then all is called again, in other orders.
 
-What of a user's function outlives its calls, and whether they change it.
-
-Globals that it names, the cells and defaults of it and of the functions that it reaches, the
-attributes of functions, objects and classes of the user's: all as bytes, by the name through which
-the function reaches them. Of a library's module it is the numbers and texts in it that count, and
-its classes are constant.
+The module also reads what of a user's function outlives its calls, and if they change it: globals
+that it names, the cells and defaults of it and of the functions that it reaches, the attributes of
+functions, objects and classes of the user's: all as bytes, by the name through which the function
+reaches them. Of a library's module it is the numbers and texts in it that count, and its classes
+are constant.
 """
 
 import contextlib
@@ -30,39 +29,43 @@ from verify.integrators.tracing.purity import is_of_user, is_plain, is_users_mod
 from verify.integrators.user_code.faults import Fault, not_a_function
 from verify.integrators.user_code.step import last_line
 from verify.integrators.user_code.user_map import State, UserMap
-from verify.prose import Prose, joined, prose, read_prose
+from verify.prose import Prose, join_prose, prose, read_prose
 from verify.verdict import Verdict
 
-Kept = Mapping[str, bytes]  # by name
+KeptState = Mapping[str, bytes]  # by name
 
 
-def kept_by(function: Callable[..., Any]) -> Kept:
-    """What the function keeps now."""
+def read_kept_state(function: Callable[..., Any]) -> KeptState:
+    """Return what the function keeps between calls, now."""
     with warnings.catch_warnings(action="ignore"):  # of what is not to be pickled any more
-        kept = {name: _bytes(value) for name, value in _reached(_plain(function))}
-    return {**kept, **_generators()}
+        state = {
+            name: _bytes(value) for name, value in _reachable_values(_unwrap_function(function))
+        }
+    return {**state, **_generators()}
 
 
-def _generators() -> Kept:
-    """What random numbers come from, where a module hides it."""
-    kept = {"random": _bytes(random.getstate())}
+def _generators() -> KeptState:
+    """Return the states of random generators, which modules hide."""
+    # A step that draws random numbers changes these states, though it names none of them.
+    states = {"random": _bytes(random.getstate())}
     if "numpy.random" in sys.modules:
-        kept["numpy.random"] = _bytes(sys.modules["numpy.random"].get_state())
-    return kept
+        states["numpy.random"] = _bytes(sys.modules["numpy.random"].get_state())
+    return states
 
 
-def changed(before: Kept, after: Kept) -> list[str]:
-    """The names under which something else is kept now."""
+def changed_names(before: KeptState, after: KeptState) -> list[str]:
+    """Return the names under which something else is kept now."""
     return [name for name in {**before, **after} if before.get(name) != after.get(name)]
 
 
-def _plain(x: Any) -> Any:
-    """What numba and caches wrap; an object's method for the object itself where it is called."""
+def _unwrap_function(x: Any) -> Any:
+    """Return the function that numba and caches wrap; for a method of an object, the object
+    itself."""
     inner = getattr(x, "py_func", None) or getattr(x, "__wrapped__", None)
     return inner if isinstance(inner, types.FunctionType) else x
 
 
-def _reached(x: Any) -> Iterator[tuple[str, Any]]:
+def _reachable_values(x: Any) -> Iterator[tuple[str, Any]]:
     if not isinstance(x, types.FunctionType):
         yield getattr(x, "__name__", type(x).__name__), x
         return
@@ -89,7 +92,7 @@ def _bytes(value: Any) -> bytes:
 
 
 class _Blank:
-    """Stands for what is written by its contents."""
+    """A stand-in for an object that is written by its contents."""
 
 
 class _Pickler(pickle.Pickler):
@@ -99,9 +102,9 @@ class _Pickler(pickle.Pickler):
     """
 
     def reducer_override(self, x: Any) -> Any:
-        function = _plain(x)
+        function = _unwrap_function(x)
         if isinstance(function, types.FunctionType):
-            return _Blank, (), dict(_reached(function)) if is_of_user(function) else None
+            return _Blank, (), dict(_reachable_values(function)) if is_of_user(function) else None
         if isinstance(x, type):
             return (_Blank, (), _attributes(x)) if is_of_user(x) else NotImplemented
         if isinstance(x, types.ModuleType):
@@ -118,7 +121,7 @@ class _Pickler(pickle.Pickler):
 
 
 def _turns(x: Any) -> Any:
-    """Where a generator stands."""
+    """Return where a generator stands."""
     frame = getattr(x, "gi_frame", None)
     return frame and (frame.f_lasti, dict(frame.f_locals))
 
@@ -156,7 +159,7 @@ class _Ladder:
 
 
 def _ladders(places: Sequence[Place]) -> list[_Ladder]:
-    made = []
+    ladders = []
     for place in places[:_PLACES]:
         z, half = [float(x) for x in place.z], len(place.z) // 2
         for moves_p in (True, False):
@@ -165,64 +168,74 @@ def _ladders(places: Sequence[Place]) -> list[_Ladder]:
                 z,
                 *([x + move * r for x, r in zip(z, reach, strict=True)] for move in _MOVES),
             ]
-            made.append(_Ladder(place, moves_p, tuple(map(tuple, states))))
-    return made
+            ladders.append(_Ladder(place, moves_p, tuple(map(tuple, states))))
+    return ladders
 
 
-def repeated(step: UserMap, places: Sequence[Place]) -> list[Fault]:
-    """What shows when it is called often, as time allows: that it keeps a state, or is coarse."""
+def find_repetition_faults(step: UserMap, places: Sequence[Place]) -> list[Fault]:
+    """Return the faults that show when it is called often, as time allows: that it keeps a state,
+    or is coarse."""
+    # These calls may take a small part of the time: proofs and measurements need the rest.
     until = step.left - min(_PART * step.left, _MOST_SECONDS)
     ladders = _ladders(places)
-    before, others = {} if step.foreign else kept_by(step.function), set[str]()
+    before, changed_keys = {} if step.foreign else read_kept_state(step.function), set[str]()
 
     def watch() -> None:
         if not step.foreign:  # of another process it shows in what it returns alone
-            others.update(changed(before, kept_by(step.function)))
+            changed_keys.update(changed_names(before, read_kept_state(step.function)))
 
-    known: dict[tuple[Place, State], Outcome] = {}
+    outcomes: dict[tuple[Place, State], Outcome] = {}
     for ladder in ladders:
         for state in ladder.states:
             key = ladder.place, state
-            if step.left > until and key not in known:
-                known[key] = _outcome(step, *key)
-            if len(known) == 1:  # what comes and goes is seen after an odd number of calls
+            if step.left > until and key not in outcomes:
+                outcomes[key] = _outcome(step, *key)
+            if len(outcomes) == 1:  # what comes and goes is seen after an odd number of calls
                 watch()
         watch()
-    faults = _again(step, known, until)
+    faults = _repeat_calls(step, outcomes, until)
     if any(fault.fatal for fault in faults):
         return faults
     watch()
-    return [*(faults or _coarse(step, ladders, known)), *_state_faults(sorted(others))]
+    return [
+        *(faults or _check_coarseness(step, ladders, outcomes)),
+        *_state_faults(sorted(changed_keys)),
+    ]
 
 
 def _outcome(step: UserMap, place: Place, state: State) -> Outcome:
     try:
-        return step.at(state, float(place.step / 8), float(place.t))
+        return step.evaluate(state, float(place.step / 8), float(place.t))
     except Exception as error:  # the user's code may raise anything
         return error
 
 
-def _again(step: UserMap, known: dict[tuple[Place, State], Outcome], until: float) -> list[Fault]:
-    """Whether the same arguments give the same result, bit by bit, in other orders of calls."""
-    order = list(known)[::-1]
+def _repeat_calls(
+    step: UserMap, outcomes: dict[tuple[Place, State], Outcome], until: float
+) -> list[Fault]:
+    """Check that the same arguments give the same result, bit by bit, in other orders of calls."""
+    # The reverse order first: a step that depends on the call before it shows there at once.
+    order = list(outcomes)[::-1]
     for turn in range(_ROUNDS):
         for place, state in order:
             if step.left <= until:
                 return []
-            fault = _parted(step, state, known[place, state], _outcome(step, place, state))
+            fault = _compare_outcomes(
+                step, state, outcomes[place, state], _outcome(step, place, state)
+            )
             if fault is not None and step.left > 0:
                 return [fault]
         random.Random(turn).shuffle(order)  # noqa: S311 - any orders do
     return []
 
 
-def _parted(step: UserMap, state: State, before: Outcome, after: Outcome) -> Fault | None:
-    raised = [x for x in (before, after) if isinstance(x, Exception)]
-    if len(raised) == 1:
-        said = prose(
-            "it raises ", last_line(raised[0]), " at one call and not at another, the same"
+def _compare_outcomes(step: UserMap, state: State, before: Outcome, after: Outcome) -> Fault | None:
+    errors = [x for x in (before, after) if isinstance(x, Exception)]
+    if len(errors) == 1:
+        text = prose(
+            "it raises ", last_line(errors[0]), " at one call and not at another, the same"
         )
-        return Fault("fails", said, Verdict.UNDECIDED)
+        return Fault("fails", text, Verdict.UNDECIDED)
     if isinstance(before, tuple) and isinstance(after, tuple) and before != after:
         return not_a_function(step, state, before, after)
     return None
@@ -231,35 +244,40 @@ def _parted(step: UserMap, state: State, before: Outcome, after: Outcome) -> Fau
 def _state_faults(names: Sequence[str]) -> list[Fault]:
     if not names:
         return []
-    listed: Prose = joined(", ", map(prose, names[:3]))
-    said = prose("it keeps a state from call to call, so that no trace of it is a proof: ", listed)
-    return [Fault("keeps a state", said, Verdict.MEASURED)]
+    names_text: Prose = join_prose(", ", map(prose, names[:3]))
+    text = prose(
+        "it keeps a state from call to call, so that no trace of it is a proof: ", names_text
+    )
+    return [Fault("keeps a state", text, Verdict.MEASURED)]
 
 
-def _coarse(
-    step: UserMap, ladders: Sequence[_Ladder], known: dict[tuple[Place, State], Outcome]
+def _check_coarseness(
+    step: UserMap, ladders: Sequence[_Ladder], outcomes: dict[tuple[Place, State], Outcome]
 ) -> list[Fault]:
-    """Whether it jumps at most places: at a few it may, where a loop does one turn more."""
+    """Check if it jumps at most places: at a few it may, where a loop does one turn more."""
     jumps: list[_Jump] = []
     for moves_p in (True, False):
-        each = [_jump(x, known) for x in ladders if x.moves_p is moves_p]
-        told = [jump for jump in each if jump is not None]
-        seen = [(size, move) for size, move in told if size > 0]
-        jumps += seen if 2 * len(seen) > len(told) else []
+        jumps_of_ladders = [_largest_jump(x, outcomes) for x in ladders if x.moves_p is moves_p]
+        decided = [jump for jump in jumps_of_ladders if jump is not None]
+        positive = [(size, move) for size, move in decided if size > 0]
+        jumps += positive if 2 * len(positive) > len(decided) else []
     if not jumps:
         return []
     step.coarseness, move = max(jumps, key=itemgetter(0))
-    said = (
+    text = (
         f"its numbers are coarse: p' or q' jumps by `{step.coarseness:.1e}` as p or q moves by "
         f"`{move:.1e}`, as where they are of single precision, are rounded, or are kept "
         "from calls nearby; no order holds below that"
     )
-    return [Fault("coarse", read_prose(said), Verdict.UNDECIDED)]
+    return [Fault("coarse", read_prose(text), Verdict.UNDECIDED)]
 
 
-def _jump(ladder: _Ladder, known: dict[tuple[Place, State], Outcome]) -> _Jump | None:
-    """The largest jump along a ladder, of size 0 where there is none. None where a call failed."""
-    outcomes = [known.get((ladder.place, state)) for state in ladder.states]
+def _largest_jump(
+    ladder: _Ladder, all_outcomes: dict[tuple[Place, State], Outcome]
+) -> _Jump | None:
+    """Return the largest jump along a ladder, of size 0 where there is none. None where a call
+    failed."""
+    outcomes = [all_outcomes.get((ladder.place, state)) for state in ladder.states]
     states = [x for x in outcomes if isinstance(x, tuple)]
     if len(states) < len(outcomes):
         return None
@@ -267,12 +285,14 @@ def _jump(ladder: _Ladder, known: dict[tuple[Place, State], Outcome]) -> _Jump |
     sizes = [
         max(u, *(abs(state[k]) for state in (*states, *ladder.states))) for k, u in enumerate(units)
     ]
-    here, *away = [[x / s for x, s in zip(state, sizes, strict=True)] for state in states]
+    first, *rest = [[x / s for x, s in zip(state, sizes, strict=True)] for state in states]
     # One that is off its line: twice the way makes twice the change.
     bent = [
-        (move, max(abs((b - a) - (a - x)) for x, a, b in zip(here, one, two, strict=True)))
-        for move, one, two in zip(_MOVES, away, away[1:], strict=False)
+        (move, max(abs((b - a) - (a - x)) for x, a, b in zip(first, one, two, strict=True)))
+        for move, one, two in zip(_MOVES, rest, rest[1:], strict=False)
     ]
+    # Wide moves show how the map bends; nearer by the bend of a smooth map falls as the square of
+    # the move.
     curvature = max(size / move**2 for move, size in bent if move >= _WIDE)
     jumps = [
         (size, move) for move, size in bent if size > 2 * _COARSE + _BENDS * curvature * move**2

@@ -1,4 +1,4 @@
-"""What a user's code answers in a second process, in the reverse order: the same, where it is a
+"""The answers of a user's code in a second process, in the reverse order: the same, where it is a
 function of its arguments.
 
 The child is a fork, so that it begins with all that the code keeps here. It shows nothing, runs
@@ -23,7 +23,8 @@ S = TypeVar("S")
 def outcomes_elsewhere(
     call: Callable[[S], object], states: Sequence[S], seconds: float
 ) -> list[str | None]:
-    """`outcome` at each state, from the last to the first; None where none came in that time."""
+    """Return `outcome` at each state, from the last to the first; None where none came in that
+    time."""
     if not hasattr(os, "fork"):
         return [None] * len(states)
     reader, writer = os.pipe()
@@ -47,7 +48,8 @@ def outcomes_elsewhere(
 
 
 def outcome(call: Callable[[S], object], state: S) -> str:
-    """All digits of the numbers that it returns there, or the type of what it raises."""
+    """Return all digits of the numbers that the call returns there, or the type of what it
+    raises."""
     try:
         return _text(call(state))
     except BaseException as error:
@@ -65,7 +67,7 @@ def _text(x: Any) -> str:
 
 
 def _answer(writer: int, call: Callable[[S], object], states: Sequence[S]) -> NoReturn:
-    """What the child does."""
+    """Answer in the child, and end it."""
     try:
         os.setpgid(0, 0)
         nowhere = os.open(os.devnull, os.O_RDWR)
@@ -80,13 +82,15 @@ def _answer(writer: int, call: Callable[[S], object], states: Sequence[S]) -> No
 
 
 def _read(reader: int, count: int, seconds: float) -> list[str]:
-    """So many lines, or those that come in time."""
-    read, until = b"", time.monotonic() + seconds
+    """Read so many lines, or those that come in time."""
+    received_bytes, until = b"", time.monotonic() + seconds
     with selectors.DefaultSelector() as waiting:
         waiting.register(reader, selectors.EVENT_READ)
-        while read.count(b"\n") < count and waiting.select(max(until - time.monotonic(), 0)):
+        while received_bytes.count(b"\n") < count and waiting.select(
+            max(until - time.monotonic(), 0)
+        ):
             part = os.read(reader, 1 << 16)
             if not part:  # it has ended
                 break
-            read += part
-    return read.decode().split("\n")[:-1]
+            received_bytes += part
+    return received_bytes.decode().split("\n")[:-1]

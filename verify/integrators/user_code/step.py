@@ -25,7 +25,8 @@ _AGAIN, _SOONEST = 1.0, 0.01
 
 
 class StepError(Exception):
-    """What the user's function did instead of a step: `said`, one clause, "it …", for people."""
+    """The error of a function that did something else than a step: `said`, one clause, "it …", for
+    people."""
 
     def __init__(self, said: str) -> None:
         self.said = prose(said)
@@ -37,24 +38,24 @@ class _OverTimeError(BaseException):  # so that `except Exception` in the user's
 
 
 def last_line(error: BaseException) -> str:
-    """The user's exception as Python's last line of a traceback has it."""
+    """Format the user's exception as Python's last line of a traceback has it."""
     lines = str(error).split("\n")
     return f"{type(error).__name__}: {lines[0]}" if lines[0] else type(error).__name__
 
 
 @contextlib.contextmanager
-def contained() -> Iterator[None]:
-    """Around code of a user's: what it prints goes to standard error, as JSON stands alone on
-    standard output, and `os._exit` is as `sys.exit`, as it would end this program without a word.
-    """
-    end, own = os._exit, os.getpid()
+def contain_effects() -> Iterator[None]:
+    """Run code of a user's so that what it prints goes to standard error, as JSON stands alone on
+    standard output, and `os._exit` is as `sys.exit`, as it would end this program without a
+    word."""
+    end, process = os._exit, os.getpid()
 
-    def stopped(status: int) -> NoReturn:
-        if os.getpid() != own:  # a process that it has forked
+    def stop(status: int) -> NoReturn:
+        if os.getpid() != process:  # a process that it has forked
             end(status)
         raise SystemExit(status)
 
-    os._exit = stopped
+    os._exit = stop
     try:
         with contextlib.redirect_stdout(sys.stderr):
             yield
@@ -70,20 +71,20 @@ class Limited(Protocol):
 
 
 @contextlib.contextmanager
-def limited(owner: Limited, too_long: str = "a call of it does not end") -> Iterator[None]:
-    """Around every call of a user's code: what it prints, what it raises, and how long it takes."""
+def limit_call(owner: Limited, too_long: str = "a call of it does not end") -> Iterator[None]:
+    """Guard a call of a user's code: what it prints, what it raises, and how long it takes."""
     if owner.left <= 0:
         raise StepError("its calls took all the time that there is")
     try:
-        with contained(), within(owner.left, f"{too_long} within {owner.left:.3g} s"):
+        with contain_effects(), limit_time(owner.left, f"{too_long} within {owner.left:.3g} s"):
             yield
     except SystemExit:
         raise StepError("it calls sys.exit, or os._exit") from None
 
 
 @contextlib.contextmanager
-def within(seconds: float, problem: str) -> Iterator[None]:
-    """StepError with this problem where what is done here does not end in time.
+def limit_time(seconds: float, problem: str) -> Iterator[None]:
+    """Raise StepError with this problem where the body does not end in time.
 
     It may stand in another one, whose time goes on. In other threads than the main one, and on
     systems without alarms, there is no limit.
@@ -102,7 +103,7 @@ def within(seconds: float, problem: str) -> Iterator[None]:
     if before is None:
         yield
         return
-    begun = time.perf_counter()
+    start = time.perf_counter()
     try:
         # Sooner it could ring before what is done here has begun, where nobody would take it.
         signal.setitimer(signal.ITIMER_REAL, max(seconds, _SOONEST), _AGAIN)
@@ -117,31 +118,32 @@ def within(seconds: float, problem: str) -> Iterator[None]:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
         if outer:
-            spent = time.perf_counter() - begun
+            spent = time.perf_counter() - start
             signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _SOONEST), _AGAIN)
 
 
 def unless_it_fails(call: Callable[[], T]) -> T | None:
-    """What a call of the user's code makes; None where it raises, which may be anything."""
+    """Return the result of a call of the user's code; None where it raises, which may be
+    anything."""
     try:
         return call()
     except Exception:
         return None
 
 
-def lifted(first: Theirs, found: Sequence[Theirs]) -> list[Theirs]:
-    """What was returned, all as numbers of the kind of `first`. Raises StepError."""
+def lift_numbers(first: Theirs, result: Sequence[Theirs]) -> list[Theirs]:
+    """Return the result as numbers of the kind of `first`. Raises StepError."""
     zero = first * 0
-    made = [zero + x for x in found]
-    if any(type(x) is not type(first) for x in made):
+    numbers = [zero + x for x in result]
+    if any(type(x) is not type(first) for x in numbers):
         raise StepError("it returns what is no number")
-    return made
+    return numbers
 
 
 def why(error: Exception) -> Prose:
-    """What is said of an error that the user's code, or what we do with it, raised."""
-    known = isinstance(error, UntraceableError | StepError | InputError)
-    return prose(error.args[0] if known and error.args else last_line(error))
+    """Describe an error that the user's code, or what we do with it, raised."""
+    is_ours = isinstance(error, UntraceableError | StepError | InputError)
+    return prose(error.args[0] if is_ours and error.args else last_line(error))
 
 
 def real(x: Theirs) -> float:

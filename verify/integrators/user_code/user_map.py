@@ -1,7 +1,7 @@
 """A user's own step or map as it is called: z → z', in any number of degrees of freedom.
 
-A step has an h, and perhaps a t; a map has neither. What is asked of either goes through here, in
-floats, in numbers of ours, or in those of another program.
+A step has an h, and perhaps a t; a map has neither. All calls of either go through here, in floats,
+in numbers of ours, or in those of another program.
 """
 
 import math
@@ -13,7 +13,7 @@ from fractions import Fraction
 from verify.integrators.places.place import Place
 from verify.integrators.user_code.layout import Layout, OfNumber
 from verify.integrators.user_code.number_type import DOUBLE, NumberType
-from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limited, real
+from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limit_call, real
 
 State = tuple[float, ...]
 
@@ -44,33 +44,33 @@ class UserMap:
 
     @property
     def left(self) -> float:
-        """Seconds that are left."""
+        """The seconds that are left."""
         if self.until is None:
             self.until = time.monotonic() + self.limit
         return self.until - time.monotonic()
 
     def hold_back(self, seconds: float) -> None:
-        """Keeps seconds for later; gives them back where they are less than 0."""
+        """Keep seconds for later; give them back where they are less than 0."""
         self.until = time.monotonic() + self.left - seconds
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
+        """The degrees of freedom."""
         return len(self.names) // 2
 
     @property
-    def stepped(self) -> bool:
-        """Whether it is a step, with an h."""
-        return self.layout.stepped
+    def takes_step_size(self) -> bool:
+        """True if it is a step, with an h."""
+        return self.layout.takes_step_size
 
     @property
-    def timed(self) -> bool:
-        """Whether it takes t."""
-        return self.layout.timed
+    def takes_time(self) -> bool:
+        """True if it takes t."""
+        return self.layout.takes_time
 
     @property
     def ways(self) -> tuple[str, ...]:
-        """In which it can be measured, the clearest first."""
+        """The ways in which it can be measured, the clearest first."""
         return ("floats",) if self.foreign else ("duals", "floats")
 
     def call(
@@ -81,33 +81,37 @@ class UserMap:
         t: Theirs,
         number: OfNumber,
     ) -> list[Theirs]:
-        """z' of the function, or a copy of it. Raises StepError, and what the user's code raises.
+        """Return z' of the function, or of a copy of it. Raises StepError, and what the user's code
+        raises.
 
         `number`: makes of a parameter what the function takes.
         """
         masses = [number(x) for x in self.masses]
         if masses:
+            # The function computes with velocities: p/m goes in, and m v comes out as p.
             z = [*(x / m for x, m in zip(z, masses, strict=False)), *z[len(masses) :]]
-        named = {name: number(x) for name, x in self.parameters.items()}
-        with limited(self):
-            result = function(*self.layout.arguments(z, h, t), **named)
-            after = self.layout.state(result, len(self.names))
+        options = {name: number(x) for name, x in self.parameters.items()}
+        with limit_call(self):
+            result = function(*self.layout.arguments(z, h, t), **options)
+            state = self.layout.state(result, len(self.names))
         if masses:
-            after = [*(x * m for x, m in zip(after, masses, strict=False)), *after[len(masses) :]]
-        return after
+            state = [*(x * m for x, m in zip(state, masses, strict=False)), *state[len(masses) :]]
+        return state
 
-    def at(self, z: Sequence[float], h: float, t: float) -> State:
-        """z' as floats. Raises StepError, also for what is not finite."""
+    def evaluate(self, z: Sequence[float], h: float, t: float) -> State:
+        """Return z' as floats. Raises StepError, also for what is not finite."""
         state = tuple(map(real, self.call(self.function, z, h, t, float)))
         if not all(map(math.isfinite, state)):
-            shown = ", ".join(f"{x:g}" for x in state)
-            raise StepError(f"it returns what is not finite ({shown}){self.place(z, h)}")
+            numbers = ", ".join(f"{x:g}" for x in state)
+            raise StepError(f"it returns what is not finite ({numbers}){self.place(z, h)}")
         return state
 
     def exactly(
         self, states: Sequence[Sequence[Fraction]], h: Fraction, t: Fraction
     ) -> list[list[Fraction]]:
-        """z' of each z as the numbers of its type that they are. Raises StepError, as `at`."""
+        """Return z' of each z as the numbers of its type that they are. Raises StepError, as
+        `evaluate`."""
+        # Another program answers many calls in one exchange, which takes a fraction of the time.
         several = getattr(self.function, "several", None)
         if several is not None and not self.masses:
             return self._together(several, states, h, t)
@@ -115,16 +119,16 @@ class UserMap:
 
     def _of_its_type(self, z: Sequence[Fraction], h: Fraction, t: Fraction) -> list[Fraction]:
         if self.numbers is DOUBLE:
-            return [Fraction(x) for x in self.at([float(x) for x in z], float(h), float(t))]
+            return [Fraction(x) for x in self.evaluate([float(x) for x in z], float(h), float(t))]
         return [Fraction(x) for x in self.call(self.function, z, h, t, Fraction)]
 
     def _together(
         self, several: Callable[..., Theirs], states: Sequence[Sequence[Fraction]], h: Fraction,
         t: Fraction,
     ) -> list[list[Fraction]]:  # fmt: skip
-        """By one exchange with another program."""
+        """Call all states by one exchange with another program."""
         n = self.degrees
-        with limited(self, "calls of it do not end"):
+        with limit_call(self, "calls of it do not end"):
             answers = several([(z[:n], z[n:], t, h) for z in states])
         for answer in answers:
             if isinstance(answer, StepError):
@@ -132,17 +136,17 @@ class UserMap:
         return [[Fraction(x) for half in answer for x in half] for answer in answers]
 
     def at_place(self, place: Place, h: Fraction) -> State:
-        """z' as floats of a step from there; as `at`."""
-        return self.at([float(x) for x in place.z], float(h), float(place.t))
+        """Return z' as floats of a step from there; as `evaluate`."""
+        return self.evaluate([float(x) for x in place.z], float(h), float(place.t))
 
     def entry(self, at: tuple[int, int]) -> str:
-        """The name of an entry of S, such as dp1∧dq1."""
+        """Return the name of an entry of S, such as dp1∧dq1."""
         return "∧".join(f"d{self.names[k]}" for k in at)
 
     def state(self, z: Sequence[float | Fraction]) -> str:
-        """A state as text, for what is said of it."""
+        """Format a state, for messages."""
         return ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))
 
     def place(self, z: Sequence[float | Fraction], h: float | Fraction) -> str:
-        """A state and a step size as text, for what is said of a call."""
-        return f" at {self.state(z)}" + (f", h = {float(h):g}" if self.stepped else "")
+        """Format a state and a step size, for messages on a call."""
+        return f" at {self.state(z)}" + (f", h = {float(h):g}" if self.takes_step_size else "")

@@ -1,1 +1,1 @@
-"""What one step computes: a step map → a straight-line program, and its lines of source."""
+"""The computation of one step: a step map → a straight-line program, and its lines of source."""

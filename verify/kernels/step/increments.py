@@ -1,4 +1,4 @@
-"""The increments of p and q, written with what they have in common only once.
+"""The increments of p and q, with their common parts written only once.
 
 For H = p²/2 + V(q) the Lie-derivative scheme has q' = q + h p + (h²/2) X p + (h³/6) X² p + … beside
 p' = p + h X p + (h²/2) X² p + …: with a_k = h^k/(k+1)! X^k p they are p' = p + 2 a_1 + 3 a_2 + …
@@ -20,16 +20,21 @@ Pair = tuple[int, int]
 
 
 def increments(evaluator: Evaluator, ring: Ring, pair: tuple[Poly, Poly], h: int) -> Pair:
-    """The indices of the increments of p and q, a `pair`; `h` is the index of the step size."""
+    """Return the indices of the increments of p and q, a `pair`; `h` is the index of the step
+    size."""
     ways = [_Way(ring, pair, None)]
+    # Sharing saves operations but makes p' wait for q': it is not tried where latency counts.
     if not (evaluator.pipelined or h_inside(ring, *pair)):
-        ways += [way for first in (0, 1) if (way := _Way(ring, pair, first)).shared]
-    return evaluator.cheapest([partial(way.write, evaluator, h) for way in ways])
+        ways += [way for first in (0, 1) if (way := _Way(ring, pair, first)).ratios]
+    return evaluator.choose_cheapest([partial(way.write, evaluator, h) for way in ways])
 
 
 @dataclass
 class _Way:
-    """`first`: which increment's coefficients are taken from the other's; None where none are."""
+    """One way to write the two increments.
+
+    `first`: the increment whose coefficients are taken from the other's; None where none are.
+    """
 
     ring: Ring
     pair: tuple[Poly, Poly]
@@ -37,13 +42,13 @@ class _Way:
 
     @cached_property
     def parts(self) -> tuple[dict[int, Poly], dict[int, Poly]]:
-        """(coefficients of the first, of the second) by powers of h."""
+        """The coefficients of the first and of the second increment, by powers of h."""
         ring, (u, v) = self.ring, self.pair
         one, two = ring.powers(u, "h"), ring.powers(v, "h")
         return (one, two) if self.first == 0 else (two, one)
 
     @cached_property
-    def shared(self) -> dict[int, int]:
+    def ratios(self) -> dict[int, int]:
         """{k: r}: the first's coefficient of h^k is r times the second's of h^(k+1)."""
         one, two = self.parts
         if not two or min(two) < 1:
@@ -57,19 +62,21 @@ class _Way:
         if self.first is None:
             u, v = self.pair
             return evaluator.evaluate(u), evaluator.evaluate(v)
-        (one, two), shared = self.parts, self.shared
-        own = evaluator.evaluate(_sum(ring, {k: x for k, x in one.items() if k not in shared}))
-        inner = {k - 1: x for k, x in two.items() if k - 1 not in shared}
-        other = evaluator.evaluate(_sum(ring, inner))
-        for k, times in shared.items():
+        (one, two), ratios = self.parts, self.ratios
+        one_value = evaluator.evaluate(
+            _sum(ring, {k: x for k, x in one.items() if k not in ratios})
+        )
+        inner = {k - 1: x for k, x in two.items() if k - 1 not in ratios}
+        other_value = evaluator.evaluate(_sum(ring, inner))
+        for k, times in ratios.items():
             value = evaluator.evaluate(_sum(ring, {k: two[k + 1]}))
-            other = program.add(other, value)
-            own = program.add(own, program.times(value, times))
-        other = program.mul(h, other)
-        return (own, other) if self.first == 0 else (other, own)
+            other_value = program.add(other_value, value)
+            one_value = program.add(one_value, program.times(value, times))
+        other_value = program.mul(h, other_value)
+        return (one_value, other_value) if self.first == 0 else (other_value, one_value)
 
 
 def _sum(ring: Ring, parts: Mapping[int, Poly]) -> Poly:
-    """Σ h^k parts[k]."""
+    """Return Σ h^k parts[k]."""
     h = ring.variable("h")
     return sum((h**k * x for k, x in parts.items()), ring.zero)

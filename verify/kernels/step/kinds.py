@@ -1,7 +1,8 @@
-"""The kinds of operations of a straight-line program, each with what belongs to it.
+"""The kinds of operations of a straight-line program, with their costs.
 
-`args` are the indices of earlier results; `kind` tells the kinds apart. What is not static has a
-`latency`, until its result is there, and a `cost`: a product is worth several sums.
+`args` are the indices of earlier results; `kind` tells the kinds apart. An operation that is not
+static has a `latency`, until its result is available, and a `cost`: a product counts as several
+sums.
 """
 
 from dataclasses import dataclass
@@ -34,7 +35,7 @@ class _OfTwo:
 
 @dataclass(frozen=True, slots=True)
 class Input(_OfNone):
-    """A number that is given under a name."""
+    """A named input."""
 
     kind: ClassVar[Literal["input"]] = "input"
     name: str
@@ -42,7 +43,7 @@ class Input(_OfNone):
 
 @dataclass(frozen=True, slots=True)
 class Constant(_OfNone):
-    """A rational."""
+    """A rational number."""
 
     kind: ClassVar[Literal["const"]] = "const"
     value: Fraction
@@ -111,7 +112,7 @@ class Call(_OfOne):
 
 @dataclass(frozen=True, slots=True)
 class Solution(_OfOne):
-    """The unknown of that number that a loop, its one argument, has found."""
+    """The unknown of that number that a loop, its one argument, has computed."""
 
     kind: ClassVar[Literal["solved"]] = "solved"
     number: int
@@ -134,5 +135,5 @@ Op: TypeAlias = Input | Constant | Pi | Unary | Binary | Solving | Solution
 
 
 def may_leave_range(op: Op) -> bool:
-    """Whether its value may leave a range in which its arguments are."""
+    """Return True if the value may leave a range that contains the arguments."""
     return op.kind in ("inverse", "root") or (op.kind == "call" and op.function.lipschitz is None)

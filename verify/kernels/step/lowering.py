@@ -1,4 +1,5 @@
-"""A program's operations → lines of source, those before the loop apart from those in it."""
+"""A program's operations → lines of source, separated into those before the loop and those in
+it."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
@@ -20,8 +21,8 @@ class Lowering:
     """Writes a program's values as variables `prefix` + index.
 
     `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
-    where it has `cos_sin` or `sin_cos`. Where it has no `root` that of a number is a number too,
-    given to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
+    where it has `cos_sin` or `sin_cos`. Where it has no `root`, the root of a number is a number
+    too, known to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
     `verify.arithmetic.number_system`).
     """
 
@@ -30,18 +31,18 @@ class Lowering:
     prefix: str = "v"
     bits: int = 0
     guard: str | None = None
-    _written: set[int] = field(default_factory=set)
+    _already_written: set[int] = field(default_factory=set)
 
     def name(self, index: int) -> str:
-        """The variable that holds an operation's value."""
+        """Return the variable that holds an operation's value."""
         return f"{self.prefix}{index}"
 
     def live(self, roots: Sequence[int]) -> list[int]:
-        """The operations that the roots need, in their order."""
+        """Return the operations that the roots need, in their order."""
         return self.program.live(roots)
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
-        """The lines that compute the roots: those before the loop, and those in it."""
+        """Return the lines that compute the roots: those before the loop, and those in it."""
         program, live = self.program, self.live(roots)
         ops, prefix, static_ones = program.ops, self.prefix, program.static
         static: list[str] = []
@@ -51,7 +52,7 @@ class Lowering:
             if op.kind == "add" or op.kind == "sub" or op.kind == "mul":
                 x, y = op.args
                 line = f"{prefix}{index} = {prefix}{x} {_INFIX[op.kind]} {prefix}{y}"
-            elif op.kind == "const" or index in self._written:
+            elif op.kind == "const" or index in self._already_written:
                 continue
             elif op.kind == "loop":
                 before, inside = self._newton(program.loops[op.number])
@@ -64,7 +65,7 @@ class Lowering:
         return static, dynamic
 
     def _pair(self, index: int, live: Sequence[int]) -> str | None:
-        """cos and sin of one argument in one call, where the arithmetic has that."""
+        """Write cos and sin of one argument as one call, where the arithmetic has that."""
         op = self.program.ops[index]
         both = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
         names = both.split("_") if both else ()
@@ -75,21 +76,22 @@ class Lowering:
             for i in live
             if isinstance(other := self.program.ops[i], Call) and other.args == op.args
         }
+        # A combined call pays only where both values are needed.
         if not calls.keys() >= {*names}:
             return None
-        self._written |= {calls[name] for name in names}
+        self._already_written |= {calls[name] for name in names}
         first, second = (self.name(calls[name]) for name in names)
         return f"{first}, {second} = {both}({self.name(op.args[0])})"
 
     def inner(self, loop: Loop) -> "Lowering":
-        """That of an inner loop's program, under a prefix of its own."""
+        """Return the lowering of an inner loop's program, with a prefix of its own."""
         return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
 
     def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
-        """The lines before the outer loop, and the inner loop."""
+        """Return the lines before the outer loop, and the inner loop."""
         inner = self.inner(loop)
         static, turn = inner.lines([*loop.updates, *loop.determinants])
-        made = newton.Source(
+        loop_source = newton.Source(
             prefix=f"u{loop.number}_",
             starts=[self.name(index) for index in loop.starts],
             updates=[inner.name(index) for index in loop.updates],
@@ -98,29 +100,29 @@ class Lowering:
             turn=turn,
             guard=self.guard,
         )
-        return static, made.lines()
+        return static, loop_source.lines()
 
     def function(self, index: int) -> str | None:
-        """The name of the function that an operation calls, where it calls one."""
+        """Return the name of the function that an operation calls, where it calls one."""
         op = self.program.ops[index]
         if op.kind == "root" and self._radicand(op) is None:
             return "sqrt" if op.degree == 2 else "root"
         return op.function.name if op.kind == "call" else None
 
-    def called(self, roots: Sequence[int]) -> set[str]:
-        """The names of all functions that the roots need, those in inner loops included."""
+    def function_names(self, roots: Sequence[int]) -> set[str]:
+        """Return the names of all functions that the roots need, including those in inner loops."""
         live = self.live(roots)
         names = {name for index in live if (name := self.function(index))}
         for loop in self.loops(live):
-            names |= self.inner(loop).called([*loop.updates, *loop.determinants])
+            names |= self.inner(loop).function_names([*loop.updates, *loop.determinants])
         return names
 
     def solves(self, roots: Sequence[int]) -> bool:
-        """Whether equations are solved for the roots."""
+        """Return True if equations are solved for the roots."""
         return bool(self.loops(self.live(roots)))
 
     def loops(self, live: Sequence[int]) -> list[Loop]:
-        """The inner loops among live operations, in their order."""
+        """Return the inner loops among live operations, in their order."""
         ops = (self.program.ops[index] for index in live)
         return [self.program.loops[op.number] for op in ops if op.kind == "loop"]
 
@@ -147,7 +149,8 @@ class Lowering:
         return f"{self.function(index)}({args[0]})"
 
     def _radicand(self, op: Root) -> Fraction | None:
-        """What it is the root of, where that is a number and there is no function for the root."""
+        """Return the number whose root this is, where there is one and the arithmetic has no
+        function for the root."""
         inner = self.program.ops[op.args[0]]
         if op.degree == 2 or "root" in self.functions or inner.kind != "const":
             return None
@@ -156,26 +159,28 @@ class Lowering:
     def named_constants(
         self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None
     ) -> dict[str, Number]:
-        """The constants, and roots that are given, as numbers by their names in the source.
+        """Return the constants, and roots of numbers, as numbers by their names in the source.
 
         `roots`: those alone that these need.
         """
-        program, found = self.program, dict[str, Number]()
+        program, constants = self.program, dict[str, Number]()
         live = range(len(program.ops)) if roots is None else self.live(roots)
         for index in live:
             op = program.ops[index]
             if op.kind == "const":
-                found[self.name(index)] = number(op.value)
+                constants[self.name(index)] = number(op.value)
             elif op.kind == "root" and (radicand := self._radicand(op)) is not None:
                 root = _root(radicand, op.degree, self.bits + _GUARD)
-                found[f"number_{self.name(index)}"] = number(root)
+                constants[f"number_{self.name(index)}"] = number(root)
         for loop in self.loops(live):
-            needed = None if roots is None else [*loop.updates, *loop.determinants]
-            found |= self.inner(loop).named_constants(number, needed)
-        return found
+            inner_roots = None if roots is None else [*loop.updates, *loop.determinants]
+            constants |= self.inner(loop).named_constants(number, inner_roots)
+        return constants
 
 
 def _root(x: Fraction, degree: int, bits: int) -> Fraction:
-    """x^(1/degree), less than 2^(1 − bits) below it, for x > 0."""
+    """Return x^(1/degree), less than 2^(1 − bits) below it, for x > 0."""
+    # iroot rounds down, so the result is below the root by less than one unit of 2^−bits, and the
+    # integer division by less than one more.
     scaled = (x.numerator << degree * bits) // x.denominator
     return Fraction(int(gmpy2.iroot(gmpy2.mpz(scaled), degree)[0]), 1 << bits)

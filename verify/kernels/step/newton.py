@@ -1,17 +1,18 @@
-"""Newton's method for unknowns that are given by equations, as the source of a loop in the loop.
+"""Newton's method for unknowns that are defined by equations, as the source of a loop in the loop.
 
-It goes on until an update is no more than the last places of what it is added to, p or q, or is
-followed by one that would be. Of Newton's updates each is a multiple of the square of the one
+It goes on until an update is no more than the last places of the p or q that it is added to, or
+would be followed by such a one. Each of Newton's updates is a multiple of the square of the one
 before; the last two give the multiple, so that after one of `size` the next would have the size
-size·(size/last)². That is believed once half of the digits stand. An update that is no smaller than
-the one before is rounding and no more, if half of the digits stand, and ends it as well.
+size·(size/last)². That is believed once half of the digits are settled. An update that is no
+smaller than the one before is only rounding, if half of the digits are settled, and ends it as
+well.
 
-What is wanted is the solution that goes over into 0 with h. On the way there ∂F/∂Z, which is the
+The solution sought is the one that goes over into 0 with h. On the way there ∂F/∂Z, which is the
 unit matrix at h = 0, does not become singular; so a solution where its determinant is not positive
 is another one. Where that is found, where an update grows out of all proportion, an unknown leaves
-the arithmetic's range, or 25 updates do not settle, it is begun once more, at 0. Where that fails
-too the unknowns are set to 0/0, by which the run ends at that step. (Where h is so large that there
-are several solutions with a positive determinant, it may be any of them.)
+the arithmetic's range, or 25 updates do not settle, the method starts once more, at 0. Where that
+fails too the unknowns are set to 0/0, which ends the run at that step. (Where h is so large that
+there are several solutions with a positive determinant, it may be any of them.)
 """
 
 from collections.abc import Callable, Sequence
@@ -25,7 +26,8 @@ _ATTEMPTS = 2
 
 
 def constants(bits: int, number: Callable[[Fraction], Number]) -> dict[str, Number]:
-    """What the loops compare with, by its names in the source, for numbers of so many bits."""
+    """Return the numbers that the loops compare with, by their names in the source, for numbers of
+    so many bits."""
     return {
         "newton_zero": number(Fraction(0)),
         "newton_last": number(Fraction(1, 2 ** (bits + 1))),
@@ -36,9 +38,9 @@ def constants(bits: int, number: Callable[[Fraction], Number]) -> dict[str, Numb
 
 @dataclass(frozen=True)
 class Source:
-    """The loop for unknowns `prefix`0, `prefix`1, …; everything else are names of values.
+    """The loop for unknowns `prefix`0, `prefix`1, …; all other fields are names of values.
 
-    `turn`: the lines that make the `updates`, to be subtracted, and the `determinants`, whose
+    `turn`: the lines that compute the `updates`, to be subtracted, and the `determinants`, whose
     product is that of ∂F/∂Z. `guard` as in `verify.arithmetic.number_system.Arithmetic`.
     """
 
@@ -55,14 +57,15 @@ class Source:
         return [f"{self.prefix}{k}" for k in range(len(self.updates))]
 
     def lines(self) -> list[str]:
-        found = f"{self.prefix}found"
+        """Return the statements of both attempts."""
+        converged = f"{self.prefix}found"
         pairs = zip(self.unknowns, self.starts, strict=True)
         positive = " * ".join(self.determinants)
         attempt = [
-            f"{found} = 0",
+            f"{converged} = 0",
             f"for turn in range({MOST_UPDATES}):",
-            *(f"    {line}" for line in self._turn(f"{found} = 1")),
-            f"if {found} == 1 and {positive} > newton_zero: break",
+            *(f"    {line}" for line in self._iteration_lines(f"{converged} = 1")),
+            f"if {converged} == 1 and {positive} > newton_zero: break",
             f"if attempt == {_ATTEMPTS - 1}:",
             *(f"    {u} = ({u} - {u}) / ({u} - {u})" for u in self.unknowns),
             "    break",
@@ -78,20 +81,22 @@ class Source:
             *(f"    {line}" for line in attempt),
         ]
 
-    def _turn(self, done: str) -> list[str]:
+    def _iteration_lines(self, stop: str) -> list[str]:
+        """Return the statements of one iteration; `stop` is run where it has converged."""
         size, last, first, ratio = (self.prefix + n for n in ("size", "last", "first", "ratio"))
-        changed = zip(self.unknowns, self.updates, strict=True)
+        pairs = zip(self.unknowns, self.updates, strict=True)
         sizes, widths, small = self._by_component()
         whole = " + ".join(width for width, _ in widths)
-        end = [f"    {done}", "    break"]
+        end = [f"    {stop}", "    break"]
         return [
-            *self._guarded(),
+            *self._guard_lines(),
             *self.turn,
-            *(f"{u} = {u} - {d}" for u, d in changed),
+            *(f"{u} = {u} - {d}" for u, d in pairs),
             *(f"{name} = {sum_}" for name, sum_ in (*sizes, *widths)),
             f"{size} = {' + '.join(name for name, _ in sizes)}",
             f"if {small('')}:",
             *end,
+            # The first update sets the scale; one that is 2^16 times as large has diverged.
             f"if turn == 0: {first} = {size} + {whole}",
             f"if turn > 0 and {size} <= newton_half * ({whole}):",
             f"    {ratio} = {size} / {last}",
@@ -104,14 +109,14 @@ class Source:
     def _by_component(
         self,
     ) -> tuple[list[tuple[str, str]], list[tuple[str, str]], Callable[[str], str]]:
-        """Of p and of q: names and sums of the updates' sizes, and of what they are added to; and
-        the condition that all sizes, times a factor, are small."""
+        """Return, for p and for q, names and sums of the sizes of the updates and of the values
+        they are added to; and the condition that all sizes, times a factor, are small."""
         sizes, widths = [], []
-        for part, of in enumerate(dict.fromkeys(self.added_to)):
-            own = [k for k, name in enumerate(self.added_to) if name == of]
-            total = " + ".join(f"abs({self.updates[k]})" for k in own)
+        for part, base in enumerate(dict.fromkeys(self.added_to)):
+            members = [k for k, name in enumerate(self.added_to) if name == base]
+            total = " + ".join(f"abs({self.updates[k]})" for k in members)
             sizes.append((f"{self.prefix}by{part}", total))
-            total = " + ".join(f"abs({x})" for x in (of, *(self.unknowns[k] for k in own)))
+            total = " + ".join(f"abs({x})" for x in (base, *(self.unknowns[k] for k in members)))
             widths.append((f"{self.prefix}of{part}", total))
 
         def small(factor: str) -> str:
@@ -120,7 +125,7 @@ class Source:
 
         return sizes, widths, small
 
-    def _guarded(self) -> list[str]:
+    def _guard_lines(self) -> list[str]:
         if self.guard is None:
             return []
         inside = " and ".join(self.guard.format(x=u) for u in self.unknowns)

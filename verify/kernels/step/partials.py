@@ -1,4 +1,5 @@
-"""Partial derivatives of a program's values by its inputs, written into the same program.
+"""Partial derivatives of a program's values with respect to its inputs, written into the same
+program.
 
 Forwards, operation by operation. A polynomial that is nested by Horner's rule has its inner sums
 as derivatives, and no operation is written twice, so that they cost little beside the values.
@@ -10,42 +11,44 @@ from fractions import Fraction
 from verify.kernels.step.operations import Op, Program
 from verify.kernels.step.slopes import slope_of
 
-Gradient = Mapping[int, int]  # by input, of what is not 0
+Gradient = Mapping[int, int]  # by input; zeros are left out
 
 
 class Partials:
-    """∂/∂x of a program's values, x being these of its inputs, by their indices."""
+    """∂/∂x of a program's values, for inputs x given by their indices."""
 
     def __init__(self, program: Program, inputs: Sequence[int]) -> None:
         self.program, self.inputs = program, tuple(inputs)
-        self._found: dict[int, Gradient] = {}
+        self._gradients: dict[int, Gradient] = {}
 
     def gradient(self, index: int) -> list[int]:
-        """The indices of ∂/∂x of a value, input by input.
+        """Return the indices of ∂/∂x of a value, input by input.
 
         Raises NotImplementedError of a value for which equations are solved.
         """
-        for at in self.program.live([index]):
-            if at not in self._found:
-                self._found[at] = self._of(at)
-        zero, own = self.program.constant(Fraction(0)), self._found[index]
-        return [own.get(x, zero) for x in self.inputs]
+        for live_index in self.program.live([index]):
+            if live_index not in self._gradients:
+                self._gradients[live_index] = self._compute_gradient(live_index)
+        zero, partials = self.program.constant(Fraction(0)), self._gradients[index]
+        return [partials.get(x, zero) for x in self.inputs]
 
-    def _of(self, index: int) -> Gradient:
+    def _compute_gradient(self, index: int) -> Gradient:
         if index in self.inputs:
             return {index: self.program.constant(Fraction(1))}
         op = self.program.ops[index]
+        # Values that do not depend on the inputs have an empty gradient, which keeps the program
+        # short.
         if self.program.static[index] or op.kind == "input":
             return {}
-        parts = [self._found[a] for a in op.args]
+        parts = [self._gradients[a] for a in op.args]
         if op.kind in ("loop", "solved"):
             raise NotImplementedError("the derivative of a solution of equations")
-        moved = [x for part in parts for x in part]
-        slopes = self._slopes(index, op) if moved else ()
-        return {x: self._chain(x, parts, slopes) for x in dict.fromkeys(moved)}
+        varying = [x for part in parts for x in part]
+        slopes = self._slopes(index, op) if varying else ()
+        return {x: self._chain(x, parts, slopes) for x in dict.fromkeys(varying)}
 
     def _chain(self, x: int, parts: Sequence[Gradient], slopes: Sequence[int]) -> int:
-        """Σ slope · ∂argument/∂x."""
+        """Return Σ slope · ∂argument/∂x."""
         program = self.program
         total = program.constant(Fraction(0))
         for part, slope in zip(parts, slopes, strict=True):
@@ -54,7 +57,7 @@ class Partials:
         return total
 
     def _slopes(self, index: int, op: Op) -> tuple[int, ...]:
-        """∂ of the operation by each of its arguments."""
+        """Return the derivatives of the operation by each of its arguments."""
         program = self.program
         one = program.constant(Fraction(1))
         match op.kind:
@@ -75,7 +78,8 @@ class Partials:
         return ()
 
     def _of_root(self, index: int, degree: int) -> int:
-        """y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
+        """Return y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
         program = self.program
+        # Written in y, as x may be an inner value that nothing else needs.
         below = program.mul(program.quotient(degree, 1), program.power(index, degree - 1))
         return program.inverse(below)

@@ -1,7 +1,7 @@
-"""Polynomials in generators → a straight-line program, in which nothing is made twice.
+"""Polynomials in generators → a straight-line program, in which no operation occurs twice.
 
 A polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters look like
-inside it, since what is static is computed once before the loop.
+inside it, since static values are computed once before the loop.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -32,7 +32,7 @@ class _TooDearError(Exception):
 
 
 class Evaluator:
-    """Writes ring elements into a program, at the point whose variables are given inputs.
+    """Writes ring elements into a program, at the point whose variables are the inputs.
 
     `pipelined`: of the ways to sum a polynomial take that of least latency, not of fewest
     operations.
@@ -44,23 +44,24 @@ class Evaluator:
         self.program = program
         self.ring = ring
         self.pipelined = pipelined
-        self._at: dict[int, int] = {}
+        self._index_of: dict[int, int] = {}
         self._inputs = inputs
-        self._most: int | None = None  # operations, beyond which a trial is given up
+        self._cost_limit: int | None = None  # operations, beyond which a trial is given up
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
-        """The index of x's value, or of its product with a static value (the index `factor`)."""
-        used = self.ring.generators_in(x)
-        for generator in used:
-            self.at(generator)
-        dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
-        terms = self._collect(x, dynamic, {g.index for g in used}.difference(dynamic))
+        """Return the index of x's value, or of its product with a static value (the index
+        `factor`)."""
+        generators = self.ring.generators_in(x)
+        for generator in generators:
+            self.index_of_generator(generator)
+        dynamic = [g.index for g in generators if not self.program.static[self._index_of[g.index]]]
+        terms = self._collect(x, dynamic, {g.index for g in generators}.difference(dynamic))
         if factor is not None:
             terms = [(outer, self.program.mul(c, factor)) for outer, c in terms]
-        return self._nested(terms, [self._at[i] for i in dynamic])
+        return self._sum_terms(terms, [self._index_of[i] for i in dynamic])
 
     def combination(self, weights: Sequence[int], values: Sequence[int]) -> int:
-        """The index of Σ weights · values, of static weights, in the cheapest way."""
+        """Return the index of Σ weights · values, for static weights, in the cheapest way."""
         program = self.program
         constant, parts = program.quotient(0, 1), dict[int, int]()
         for weight, value in zip(weights, values, strict=True):
@@ -73,45 +74,50 @@ class Evaluator:
         terms = [(tuple(int(k == j) for j in range(size)), w) for k, (_, w) in enumerate(every)]
         if not program.is_constant(constant, 0):
             terms.append(((0,) * size, constant))
-        return self._nested(terms, [x for x, _ in every])
+        return self._sum_terms(terms, [x for x, _ in every])
 
-    def cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
-        """What the way returns that writes the fewest operations; of such the first."""
+    def choose_cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
+        """Return the result of the way that writes the fewest operations, the first of such."""
         if len(ways) == 1:
             return ways[0]()
-        program, known, most, mark = self.program, self._at, self._most, self.program.mark()
+        program, index_of, cost_limit, mark = (
+            self.program,
+            self._index_of,
+            self._cost_limit,
+            self.program.mark(),
+        )
         best: tuple[int, Tail, dict[int, int], T] | None = None
         # Each way is written behind the mark, cut off, and the cheapest is put back; what costs
         # more than the best so far gives up on its way.
         for way in ways:
-            self._at = dict(known)
+            self._index_of = dict(index_of)
             try:
-                found = way()
+                value = way()
             except _TooDearError:
                 program.cut(mark)
                 continue
             cost, tail = program.cost, program.cut(mark)
             if best is None or cost < best[0]:
-                best = cost, tail, self._at, found
-                self._most = cost
-        self._most = most
+                best = cost, tail, self._index_of, value
+                self._cost_limit = cost
+        self._cost_limit = cost_limit
         if best is None:
             raise _TooDearError
         program.put_back(best[1])
-        self._at = best[2]
+        self._index_of = best[2]
         return best[3]
 
     def copy(self) -> "Evaluator":
-        """The same, with a copy of its program."""
+        """Return the same, with a copy of its program."""
         other = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
-        other._at = dict(self._at)
+        other._index_of = dict(self._index_of)
         return other
 
-    def at(self, generator: Generator) -> int:
-        """The index of a generator's value."""
-        if generator.index not in self._at:
-            self._at[generator.index] = self._generator(generator)
-        return self._at[generator.index]
+    def index_of_generator(self, generator: Generator) -> int:
+        """Return the index of a generator's value."""
+        if generator.index not in self._index_of:
+            self._index_of[generator.index] = self._generator(generator)
+        return self._index_of[generator.index]
 
     def _generator(self, g: Generator) -> int:
         if g.kind == "variable":
@@ -126,9 +132,11 @@ class Evaluator:
         return self.program.call(in_rings()[g.kind], inner)
 
     def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
-        """x by monomials in the dynamic generators, the static coefficients evaluated."""
+        """Return x by monomials in the dynamic generators, the static coefficients evaluated."""
+        # The polynomial is read as one in the dynamic generators, with static polynomials as
+        # coefficients.
         parts: dict[tuple[int, ...], int] = {}
-        program, at = self.program, [(i, self._at[i]) for i in sorted(static)]
+        program, static_values = self.program, [(i, self._index_of[i]) for i in sorted(static)]
         by_outer: dict[tuple[int, ...], list[tuple[tuple[int, ...], flint.fmpq]]] = {}
         for monomial, c in terms_of(x):
             outer = tuple([int(monomial[i]) for i in dynamic])
@@ -139,7 +147,7 @@ class Evaluator:
             total = program.constant(zero)
             for monomial, c in terms:
                 product = program.quotient(int(c.p), int(c.q))
-                for index, value in at:
+                for index, value in static_values:
                     if n := monomial[index]:
                         power = powers.get((index, n))
                         if power is None:
@@ -149,8 +157,8 @@ class Evaluator:
             parts[outer] = total
         return list(parts.items())
 
-    def _nested(self, terms: list[Term], variables: list[int]) -> int:
-        """The sum of the terms by the cheapest of the ways that are tried.
+    def _sum_terms(self, terms: list[Term], variables: list[int]) -> int:
+        """Return the sum of the terms by the cheapest of the ways that are tried.
 
         Ways: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
         (least latency: pairs of coefficients first, then pairs of pairs).
@@ -165,11 +173,12 @@ class Evaluator:
             orders = list(permutations(occurring))
         program, mark = self.program, self.program.mark()
         best: tuple[Cost, Tail, int] | None = None
+        # With k variables there are k! orders; `_MOST_VARIABLES` bounds them by 24.
         for order in orders:
             nest = _nest(terms, order)
             values = [variables[k] for k in order]
             for sum_ in (self._horner, self._estrin):
-                result = self._sum(nest, values, 0, sum_)
+                result = self._sum_nest(nest, values, 0, sum_)
                 latency, count = program.depth[result], program.cost
                 cost = (latency, count) if self.pipelined else (count, latency)
                 tail = program.cut(mark)
@@ -177,22 +186,26 @@ class Evaluator:
                     best = cost, tail, result
         assert best is not None  # noqa: S101 - there is one way at least
         program.put_back(best[1])
-        if self._most is not None and program.cost > self._most:
+        if self._cost_limit is not None and program.cost > self._cost_limit:
             raise _TooDearError
         return best[2]
 
-    def _sum(
-        self, nest: Nest, values: list[int], at: int, sum_: Callable[[dict[int, int], int], int]
+    def _sum_nest(
+        self, nest: Nest, values: list[int], depth: int, sum_: Callable[[dict[int, int], int], int]
     ) -> int:
-        """A polynomial in the variable of number `at`, its coefficients in those after it."""
+        """Return the value of a polynomial in the variable of number `depth`, its coefficients in
+        those after it."""
         coefficients: dict[int, int] = nest
-        if at + 1 < len(values):
-            coefficients = {n: self._sum(part, values, at + 1, sum_) for n, part in nest.items()}
+        if depth + 1 < len(values):
+            coefficients = {
+                n: self._sum_nest(part, values, depth + 1, sum_) for n, part in nest.items()
+            }
         if len(coefficients) == 1 and 0 in coefficients:
             return coefficients[0]
-        return sum_(coefficients, values[at])
+        return sum_(coefficients, values[depth])
 
     def _horner(self, coefficients: dict[int, int], x: int) -> int:
+        """Return Σ c_n xⁿ by Horner's rule, with powers for gaps between exponents."""
         program = self.program
         add, mul, power = program.add, program.mul, program.power
         powers = sorted(coefficients, reverse=True)
@@ -206,18 +219,19 @@ class Evaluator:
     def _estrin(self, coefficients: dict[int, int], x: int) -> int:
         """c₀ + c₁ x + (c₂ + c₃ x) x² + …, pairwise again in x²."""
         program = self.program
+        # Each turn halves the degree: the depth is logarithmic, where Horner's rule is linear.
         while set(coefficients) != {0}:
-            paired: dict[int, int] = {}
+            pairs: dict[int, int] = {}
             for n, c in sorted(coefficients.items()):
                 term = program.mul(c, x) if n % 2 else c
                 half = n // 2
-                paired[half] = program.add(paired[half], term) if half in paired else term
-            coefficients, x = paired, program.mul(x, x)
+                pairs[half] = program.add(pairs[half], term) if half in pairs else term
+            coefficients, x = pairs, program.mul(x, x)
         return coefficients[0]
 
 
 def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
-    """The terms by the exponents of the variables in this order."""
+    """Return the terms by the exponents of the variables in this order."""
     *outer, last = order
     nest: Nest = {}
     for exponents, coefficient in terms:

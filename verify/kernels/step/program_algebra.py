@@ -3,9 +3,9 @@
 See `verify.schemes.steps.step_algebra`; a value is an operation of a program. Equations are solved
 by Newton's method, with derivatives taken in the loop's own program.
 
-Derivatives are made forwards, with what a step is made of. Those of f at a stage are elements of
-H's ring, evaluated beside f itself, so that they share what f is made of; where equations are
-solved, Z = R(Z, z), they are ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
+Derivatives are taken forwards, operation by operation of the step. Those of f at a stage are
+elements of H's ring, evaluated together with f itself, so that they share its parts; where
+equations are solved, Z = R(Z, z), they are ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """An operation, by its index, of the program that it stands in."""
+    """An operation, by its index, of the program that it belongs to."""
 
     program: Program
     index: int
@@ -35,30 +35,33 @@ class Value:
 
 @dataclass(frozen=True, eq=False)
 class Dual(Value):
-    """The same with its derivatives, as indices in the program, of the algebra that it is of."""
+    """A value with its derivatives, as indices in the program, and the algebra that it belongs
+    to."""
 
     gradient: tuple[int, ...]
     algebra: TangentAlgebra
 
 
 class ProgramAlgebra(StepAlgebra[Value]):
-    """Writes into `program`; `named` has the inputs: h, the coordinates, t, the parameters.
+    """Writes into `program`; `inputs` has the indices of h, the coordinates, t, the parameters.
 
-    `outer`: what a loop's program takes values over from. `points`: the coordinates of where f is
-    looked at.
+    `outer`: the algebra whose values a loop's program takes over. `points`: the coordinates of all
+    points at which f is evaluated.
     """
 
     def __init__(
         self,
         program: Program,
         field: CanonicalField,
-        named: Mapping[str, int],
+        inputs: Mapping[str, int],
         pipelined: bool,
         outer: ProgramAlgebra | None = None,
     ) -> None:
         self.program, self.field, self.pipelined = program, field, pipelined
-        self.outer, self.taken, self.points = outer, set[int](), set[int]()
-        self.named = named if outer is None else {n: self._taken(at) for n, at in named.items()}
+        self.outer, self.outer_indices, self.points = outer, set[int](), set[int]()
+        self.inputs = (
+            inputs if outer is None else {n: self._take_over(index) for n, index in inputs.items()}
+        )
 
     @property
     def nothing(self) -> Value:
@@ -71,81 +74,83 @@ class ProgramAlgebra(StepAlgebra[Value]):
     def along_flow(self, eta: int) -> list[Value]:
         n, evaluator, moves = self.size // 2, self.evaluator(), self.field.flow_changes(eta)
         pairs = [
-            increments(evaluator, self.field.ring, pair, self.named["h"])
+            increments(evaluator, self.field.ring, pair, self.inputs["h"])
             for pair in zip(moves[:n], moves[n:], strict=True)
         ]
         return [self.value(pair[part]) for part in (0, 1) for pair in pairs]
 
     def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Value]:
-        at = self.at(changes, clock)
-        return [self.value(at.evaluate(self.field.slopes[k])) for k in places]
+        evaluator = self.evaluator_at(changes, clock)
+        return [self.value(evaluator.evaluate(self.field.slopes[k])) for k in places]
 
-    def sheared(
+    def shear(
         self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
     ) -> list[Value]:
-        """With h and the size in the coefficients of f, which are made once."""
-        at, result = self.at(changes, clock), list(changes)
+        """Write the shear with h and the size in the coefficients of f, which are computed once."""
+        evaluator, result = self.evaluator_at(changes, clock), list(changes)
         for k, move in zip(places, self.field.shears(size, places), strict=True):
-            total = self.program.add(self.own(changes[k]), at.evaluate(move))
+            total = self.program.add(self.local_index(changes[k]), evaluator.evaluate(move))
             result[k] = self.value(total)
         return result
 
-    def at(self, changes: Sequence[Value], clock: Number) -> Evaluator:
-        """What evaluates elements of the ring at z + changes, and at t + clock h."""
-        program, named = self.program, dict(self.named)
+    def evaluator_at(self, changes: Sequence[Value], clock: Number) -> Evaluator:
+        """Return an evaluator of ring elements at z + changes, and at t + clock h."""
+        program, inputs = self.program, dict(self.inputs)
         for name, change in zip(self.field.names, changes, strict=True):
-            named[name] = program.add(named[name], self.own(change))
-            self.points.add(named[name])
+            inputs[name] = program.add(inputs[name], self.local_index(change))
+            self.points.add(inputs[name])
         if self.field.timed:
-            late = program.mul(named["h"], self._coefficient(clock))
-            named["t"] = program.add(named["t"], late)
-        return Evaluator(program, self.field.ring, named, self.pipelined)
+            late = program.mul(inputs["h"], self._coefficient(clock))
+            inputs["t"] = program.add(inputs["t"], late)
+        return Evaluator(program, self.field.ring, inputs, self.pipelined)
 
-    def moved(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Value:
+    def move(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Value:
         program, evaluator = self.program, self.evaluator()
-        shares = [program.mul(self.named["h"], self._coefficient(w)) for w in weights]
-        move = evaluator.combination(shares, [self.own(x) for x in slopes])
-        return self.value(program.add(self.own(change), move))
+        shares = [program.mul(self.inputs["h"], self._coefficient(w)) for w in weights]
+        move = evaluator.combination(shares, [self.local_index(x) for x in slopes])
+        return self.value(program.add(self.local_index(change), move))
 
-    def between(self, x: Value, y: Value, share: Fraction) -> Value:
+    def add_share(self, x: Value, y: Value, share: Fraction) -> Value:
         program = self.program
-        part = program.mul(program.constant(share), self.own(y))
-        return self.value(program.add(self.own(x), part))
+        part = program.mul(program.constant(share), self.local_index(y))
+        return self.value(program.add(self.local_index(x), part))
 
-    def solved(self, count: int, right: Right) -> list[Value]:
-        """By Newton's method, from what the right side is at 0."""
+    def solve(self, count: int, right: Right) -> list[Value]:
+        """Solve by Newton's method, starting from the right side at 0."""
         outer, number, inner = self.program, len(self.program.loops), Program()
-        starts = [self.own(x) for x in right(self, [self.nothing] * count)]
-        own = [inner.input(f"u{number}_{k}", static=False) for k in range(count)]
-        algebra = ProgramAlgebra(inner, self.field, self.named, self.pipelined, self)
+        starts = [self.local_index(x) for x in right(self, [self.nothing] * count)]
+        unknowns = [inner.input(f"u{number}_{k}", static=False) for k in range(count)]
+        algebra = ProgramAlgebra(inner, self.field, self.inputs, self.pipelined, self)
         tangents = TangentAlgebra(algebra, count)
-        sides = tangents.read(right, [algebra.value(x) for x in own])
-        residuals = [inner.add(x, inner.neg(y.index)) for x, y in zip(own, sides, strict=True)]
+        sides = tangents.read_right_side(right, [algebra.value(x) for x in unknowns])
+        residuals = [inner.add(x, inner.neg(y.index)) for x, y in zip(unknowns, sides, strict=True)]
+        # F(Z) = Z − R(Z) has the derivative 1 − ∂R/∂Z, by which the residual is divided.
         matrix = _less_one(inner, [side.gradient for side in sides])
-        updates, pivots = eliminated(inner, matrix, [[x] for x in residuals])
+        updates, pivots = eliminate(inner, matrix, [[x] for x in residuals])
         names = self.field.names
-        scale = [self.named[names[k % self.size]] for k in range(count)]
+        # Unknown k is a change of coordinate k mod 2n, whose size decides which update is small.
+        scale = [self.inputs[names[k % self.size]] for k in range(count)]
         steps = [x for (x,) in updates]
         loop = Loop(number, inner, *map(tuple, (steps, starts, scale, pivots)))
-        return [self.value(at) for at in outer.solve(loop, sorted(algebra.taken))]
+        return [self.value(index) for index in outer.solve(loop, sorted(algebra.outer_indices))]
 
     # -- values -------------------------------------------------------------------------------
 
     def value(self, index: int) -> Value:
         return Value(self.program, index)
 
-    def own(self, x: Value) -> int:
-        """A value's index; one of the outer program becomes an input of the loop."""
-        return x.index if x.program is self.program else self._taken(x.index)
+    def local_index(self, x: Value) -> int:
+        """Return a value's index; one of the outer program becomes an input of the loop."""
+        return x.index if x.program is self.program else self._take_over(x.index)
 
-    def _taken(self, index: int) -> int:
+    def _take_over(self, index: int) -> int:
         assert self.outer is not None  # noqa: S101 - there are values of two programs at most
-        given, program = self.outer.program, self.program
-        op = given.ops[index]
+        outer_program, program = self.outer.program, self.program
+        op = outer_program.ops[index]
         if op.kind == "const":
             return program.constant(op.value)
-        self.taken.add(index)
-        return program.input(f"v{index}", static=given.static[index])
+        self.outer_indices.add(index)
+        return program.input(f"v{index}", static=outer_program.static[index])
 
     def _coefficient(self, x: Number) -> int:
         if isinstance(x, Fraction):
@@ -153,13 +158,13 @@ class ProgramAlgebra(StepAlgebra[Value]):
         return self.evaluator().evaluate(x)
 
     def evaluator(self) -> Evaluator:
-        return Evaluator(self.program, self.field.ring, self.named, self.pipelined)
+        return Evaluator(self.program, self.field.ring, self.inputs, self.pipelined)
 
 
 class TangentAlgebra(StepAlgebra[Dual]):
-    """With derivatives: the coordinates' own among the first, where `outer` is none and they move;
-    then, of `unknowns` that are seeds, theirs. In a loop's program all but the unknowns is held.
-    """
+    """The algebra with derivatives, by the coordinates first, where `outer` is none and they move,
+    then by `unknowns` that are seeds. In a loop's program all values but the unknowns are held
+    constant."""
 
     def __init__(
         self,
@@ -183,8 +188,8 @@ class TangentAlgebra(StepAlgebra[Dual]):
     def size(self) -> int:
         return self.plain.size
 
-    def read(self, right: Right, unknowns: Sequence[Value]) -> list[Dual]:
-        """What a right side is of these unknowns, with its derivatives by them too."""
+    def read_right_side(self, right: Right, unknowns: Sequence[Value]) -> list[Dual]:
+        """Return the right side at these unknowns, with its derivatives by them too."""
         seeds = []
         for k, x in enumerate(unknowns):
             row = [self.zero] * self.width
@@ -197,46 +202,51 @@ class TangentAlgebra(StepAlgebra[Dual]):
         rows = (self.field.gradient(x) for x in self.field.flow_changes(eta))
         nothing = [self.nothing] * self.size
         return [
-            self._dual(value.index, self._chained([evaluator.evaluate(x) for x in row], nothing))
+            self._dual(value.index, self._chain([evaluator.evaluate(x) for x in row], nothing))
             for value, row in zip(values, rows, strict=True)
         ]
 
     def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Dual]:
-        at, moved = self.plain.at(changes, clock), list(map(self._fit, changes))
+        evaluator, duals = self.plain.evaluator_at(changes, clock), list(map(self._fit, changes))
         slopes = [self.field.slopes[k] for k in places]
-        values = [at.evaluate(x) for x in slopes]
-        return [self._at(at, x, index, moved) for x, index in zip(slopes, values, strict=True)]
+        values = [evaluator.evaluate(x) for x in slopes]
+        return [
+            self._evaluate_dual(evaluator, x, index, duals)
+            for x, index in zip(slopes, values, strict=True)
+        ]
 
-    def sheared(
+    def shear(
         self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
     ) -> list[Dual]:
-        at, before = self.plain.at(changes, clock), list(map(self._fit, changes))
-        after, result = self.plain.sheared(changes, size, clock, places), list(before)
+        evaluator, before = self.plain.evaluator_at(changes, clock), list(map(self._fit, changes))
+        after, result = self.plain.shear(changes, size, clock, places), list(before)
         for k, move in zip(places, self.field.shears(size, places), strict=True):
-            row = self._at(at, move, self.zero, before).gradient
-            result[k] = self._dual(after[k].index, self._added(before[k].gradient, row))
+            row = self._evaluate_dual(evaluator, move, self.zero, before).gradient
+            result[k] = self._dual(after[k].index, self._add(before[k].gradient, row))
         return result
 
-    def moved(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Dual:
+    def move(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Dual:
         total, plain = self._fit(change), self.plain
-        index = plain.moved(total, weights, slopes).index
+        index = plain.move(total, weights, slopes).index
         columns = list(zip(*(self._fit(x).gradient for x in slopes), strict=True))
         columns = columns or [()] * self.width
-        moves = (plain.moved(plain.nothing, weights, [*map(plain.value, x)]) for x in columns)
-        return self._dual(index, self._added(total.gradient, [x.index for x in moves]))
+        moves = (plain.move(plain.nothing, weights, [*map(plain.value, x)]) for x in columns)
+        return self._dual(index, self._add(total.gradient, [x.index for x in moves]))
 
-    def between(self, x: Value, y: Value, share: Fraction) -> Dual:
+    def add_share(self, x: Value, y: Value, share: Fraction) -> Dual:
         one, other = self._fit(x), self._fit(y)
         part = self.program.constant(share)
-        moved = [self.program.mul(part, at) for at in other.gradient]
-        index = self.plain.between(one, other, share).index
-        return self._dual(index, self._added(one.gradient, moved))
+        scaled = [self.program.mul(part, entry) for entry in other.gradient]
+        index = self.plain.add_share(one, other, share).index
+        return self._dual(index, self._add(one.gradient, scaled))
 
-    def solved(self, count: int, right: Right) -> list[Dual]:
-        values, program = self.plain.solved(count, right), self.program
-        sides = TangentAlgebra(self.plain, count, self).read(right, values)
+    def solve(self, count: int, right: Right) -> list[Dual]:
+        # Implicit differentiation of Z = R(Z, z) at the solution: no derivative of the iteration is
+        # needed.
+        values, program = self.plain.solve(count, right), self.program
+        sides = TangentAlgebra(self.plain, count, self).read_right_side(right, values)
         matrix = _less_one(program, [side.gradient[self.width :] for side in sides])
-        rows, _ = eliminated(program, matrix, [side.gradient[: self.width] for side in sides])
+        rows, _ = eliminate(program, matrix, [side.gradient[: self.width] for side in sides])
         return [self._dual(x.index, tuple(row)) for x, row in zip(values, rows, strict=True)]
 
     # -- gradients ----------------------------------------------------------------------------
@@ -245,42 +255,48 @@ class TangentAlgebra(StepAlgebra[Dual]):
         return Dual(self.program, index, gradient, self)
 
     def _fit(self, x: Value) -> Dual:
-        """With as many derivatives as there are here; what comes from elsewhere is held."""
+        """Return the value with as many derivatives as there are here; those of values from
+        elsewhere are 0."""
         if isinstance(x, Dual) and x.algebra is self:
             return x
-        known = x.gradient if isinstance(x, Dual) and x.algebra is self.outer else ()
-        return self._dual(self.plain.own(x), (*known, *[self.zero] * (self.width - len(known))))
+        gradient = x.gradient if isinstance(x, Dual) and x.algebra is self.outer else ()
+        return self._dual(
+            self.plain.local_index(x), (*gradient, *[self.zero] * (self.width - len(gradient)))
+        )
 
-    def _at(self, at: Evaluator, x: Poly, index: int, changes: Sequence[Dual]) -> Dual:
-        """An element at z + changes, with its derivatives."""
-        row = [at.evaluate(y) for y in self.field.gradient(x)]
-        return self._dual(index, self._chained(row, changes))
+    def _evaluate_dual(
+        self, evaluator: Evaluator, x: Poly, index: int, changes: Sequence[Dual]
+    ) -> Dual:
+        """Return an element at z + changes, with its derivatives."""
+        row = [evaluator.evaluate(y) for y in self.field.gradient(x)]
+        return self._dual(index, self._chain(row, changes))
 
-    def _chained(self, row: Sequence[int], changes: Sequence[Dual]) -> tuple[int, ...]:
-        """Σ_j row_j ∂(z_j + change_j)."""
+    def _chain(self, row: Sequence[int], changes: Sequence[Dual]) -> tuple[int, ...]:
+        """Return Σ_j row_j ∂(z_j + change_j)."""
         add, mul = self.program.add, self.program.mul
+        # z + change has the derivative 1 + ∂change: the row itself is the part of the 1.
         total = [*row[: self.coordinates], *[self.zero] * (self.width - self.coordinates)]
         for slope, change in zip(row, changes, strict=True):
             total = [add(x, mul(slope, y)) for x, y in zip(total, change.gradient, strict=True)]
         return tuple(total)
 
-    def _added(self, one: Sequence[int], other: Sequence[int]) -> tuple[int, ...]:
+    def _add(self, one: Sequence[int], other: Sequence[int]) -> tuple[int, ...]:
         return tuple(map(self.program.add, one, other))
 
 
 def _less_one(program: Program, rows: Sequence[Sequence[int]]) -> list[list[int]]:
-    """1 − the matrix of these rows."""
+    """Return 1 − the matrix of these rows."""
     matrix = [list(map(program.neg, row)) for row in rows]
     for k, row in enumerate(matrix):
         row[k] = program.add(program.quotient(1, 1), row[k])
     return matrix
 
 
-def eliminated(
+def eliminate(
     program: Program, matrix: Sequence[Sequence[int]], right: Sequence[Sequence[int]]
 ) -> tuple[list[list[int]], list[int]]:
-    """The solutions of linear systems whose matrix is 1 + O(h), one a column of the right side, row
-    by row, and the pivots that are not 1.
+    """Solve linear systems whose matrix is 1 + O(h), one for each column of the right side. Return
+    the solutions row by row, and the pivots that are not 1.
 
     Without pivoting: at h = 0 the diagonal is 1.
     """
@@ -297,11 +313,11 @@ def eliminated(
             factor = mul(rows[i][k], over[k])
             for j in range(k + 1, width):
                 rows[i][j] = add(rows[i][j], neg(mul(factor, rows[k][j])))
-    solved: list[list[int]] = [[] for _ in range(size)]
+    solutions: list[list[int]] = [[] for _ in range(size)]
     for k in reversed(range(size)):
         for column in range(width - size):
             total = rows[k][size + column]
             for j in range(k + 1, size):
-                total = add(total, neg(mul(rows[k][j], solved[j][column])))
-            solved[k].append(mul(total, over[k]))
-    return solved, pivots or [program.constant(Fraction(1))]
+                total = add(total, neg(mul(rows[k][j], solutions[j][column])))
+            solutions[k].append(mul(total, over[k]))
+    return solutions, pivots or [program.constant(Fraction(1))]

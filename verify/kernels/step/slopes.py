@@ -31,7 +31,7 @@ class Operand:
 
 
 def slope_of(program: Program, call: Call, index: int) -> int:
-    """The index of f'(x), where y = f(x) is the value of that index."""
+    """Return the index of f'(x), where y = f(x) is the value of that index."""
 
     def apply(name: str, x: Operand) -> Operand:
         if name == "inverse":
@@ -40,6 +40,7 @@ def slope_of(program: Program, call: Call, index: int) -> int:
             return Operand(program, program.root(x.index, 2))
         return Operand(program, program.call(by_name()[name], x.index))
 
+    # The derivative may use the function's value, which the program already has.
     x, y = Operand(program, call.args[0]), Operand(program, index)
     slope: Operand = call.function.derivative(x, y, apply)
     return slope.index

@@ -1,6 +1,6 @@
 """The greatest |Λ| after any of the steps.
 
-What bounds the error of the last Λ bounds that of each before it: all its sums are to N.
+The bound on the error of the last Λ holds for each before it too: all its sums go up to N.
 """
 
 from verify.observables.observable import Observable

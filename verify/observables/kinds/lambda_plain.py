@@ -1,7 +1,7 @@
 """Λ the plain way, as users compute it: the four entries of J, their determinant, the product.
 
-Its rounding is what is looked at, so that no proof gives it, and it has no certificate: it is held
-against Λ by the closed form.
+It serves to measure rounding, so no proof gives it, and it has no certificate: it is compared with
+Λ by the closed form.
 """
 
 from verify.observables.observable import Loop, Observable, never

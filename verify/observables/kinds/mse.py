@@ -3,11 +3,15 @@
 from verify.observables.observable import Ball, Certificate, Observable
 
 
-def _bound(at: Certificate) -> Ball:
+def _bound(certificate: Certificate) -> Ball:
     # A square differs by at most |x − y| (|x| + |y|), each at most `size`.
-    total = at.total("mse") * at.steps / at.scale / at.scale
-    added = at.adding(total, at.size * at.size)
-    return at.scale * at.scale * (2 * at.size * at.moved / at.steps + added)
+    total = certificate.total("mse") * certificate.steps / certificate.scale / certificate.scale
+    rounding = certificate.adding(total, certificate.size * certificate.size)
+    return (
+        certificate.scale
+        * certificate.scale
+        * (2 * certificate.size * certificate.sum_of_shifts / certificate.steps + rounding)
+    )
 
 
 OBSERVABLE = Observable(

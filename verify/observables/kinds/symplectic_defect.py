@@ -6,7 +6,7 @@ from verify.observables.observable import Loop, Observable
 
 
 def _lines(loop: Loop) -> list[str]:
-    """Entry by entry; all increments are made before."""
+    """Return the statements entry by entry; all increments are computed before."""
     lines: list[str] = []
     for name, increment in loop.value.items():
         if name.startswith("dw_"):

@@ -15,15 +15,17 @@ DASHES = ((), (5, 2), (1.5, 1.5), (6, 2, 1.5, 2), (9, 2), (3, 2), (5, 1.5, 1, 1.
 MOST_STYLES = len(SERIES)
 
 Mark = tuple[float, str]
-"""An x, and what stands beside the line there."""
+"""An abscissa, and the label beside the line there."""
 
-_LABEL_GAP, _LETTER = 0.03, 0.025  # of the axis: room between tick labels, and for a letter
-_LINE = 0.075  # of the axes: the height of one line of text
-_FAINT = {"color": INK, "alpha": 0.15, "linewidth": 0.6}
+# The room between tick labels and that of a letter, as parts of the axis.
+_LABEL_GAP, _LETTER = 0.03, 0.025
+# The height of a line of text, as a part of the axes.
+_LINE = 0.075
+_GRID_STYLE = {"color": INK, "alpha": 0.15, "linewidth": 0.6}
 
 
 def line_style(index: int, count: int) -> dict[str, Any]:
-    """Colour, marker and dash of a line; beyond `MOST_STYLES` lines all look alike, and thin."""
+    """Return colour, marker and dash of a line; more than `MOST_STYLES` lines look alike."""
     if count > MOST_STYLES:
         return {"color": SERIES[0], "linewidth": 0.8, "alpha": 0.5}
     style: dict[str, Any] = {
@@ -35,91 +37,96 @@ def line_style(index: int, count: int) -> dict[str, Any]:
     return style | ({"dashes": DASHES[index]} if DASHES[index] else {})
 
 
-def grid_lines(axes: Any, which: str = "y") -> None:
-    axes.grid(axis=which, **_FAINT)
+def draw_grid(axes: Any, which: str = "y") -> None:
+    """Draw faint grid lines behind the data and shorten the ticks."""
+    axes.grid(axis=which, **_GRID_STYLE)
     axes.set_axisbelow(True)
     axes.tick_params(length=3, width=0.7)
 
 
-def round_numbers(axes: Any) -> None:
-    """Some five round numbers on either axis."""
+def set_round_ticks(axes: Any) -> None:
+    """Set about five round numbers as ticks on either axis."""
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
 
 
-def decades(axis: Any, *, most: int = 7) -> None:
-    """Powers of ten as ticks of an axis that shows logarithms."""
-    axis.set_major_locator(_Decades(most, integer=True, min_n_ticks=2))
+def set_decade_ticks(axis: Any, *, max_ticks: int = 7) -> None:
+    """Set powers of ten as ticks of an axis whose data are logarithms."""
+    axis.set_major_locator(_Decades(max_ticks, integer=True, min_n_ticks=2))
     axis.set_major_formatter(FuncFormatter(_power_of_ten))
 
 
 class _Decades(MaxNLocator):
-    """Whole exponents; 1, 2 and 5 times powers of ten, or 1 … 9, where fewer than two are seen.
+    """A locator of whole exponents; where these are too few, of 1, 2, 5 or 1 … 9 times powers.
 
-    Where these are too few as well, the round numbers between.
+    Where fewer than two of those are visible too, it takes round numbers in between.
     """
 
     def tick_values(self, vmin: float, vmax: float) -> Any:
         low, high = min(vmin, vmax), max(vmin, vmax)
         for mantissas in ((1,), (1, 2, 5), range(1, 10)):
-            whole = range(floor(low), floor(high) + 1)
-            places = [n + log10(m) for n in whole for m in mantissas]
-            seen = [x for x in places if low <= x <= high]
-            if len(seen) > 1:
-                return super().tick_values(vmin, vmax) if len(mantissas) == 1 else seen
+            exponents = range(floor(low), floor(high) + 1)
+            places = [n + log10(m) for n in exponents for m in mantissas]
+            visible = [x for x in places if low <= x <= high]
+            if len(visible) > 1:
+                return super().tick_values(vmin, vmax) if len(mantissas) == 1 else visible
         n = floor(low)
         between = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(10 ** (low - n), 10 ** (high - n))
         return [n + log10(x) for x in between if x > 0]
 
 
 def _power_of_ten(exponent: float, _: object) -> str:
-    """10ⁿ, or a mantissa with it."""
+    """Return 10ⁿ as text, with a mantissa where there is one."""
+    # A tick may be a little below a whole exponent by rounding.
     n = floor(exponent + 1e-9)
     scale = f"10{superscript(n)}"
     mantissa = f"{10 ** (exponent - n):.9g}"
     return scale if mantissa == "1" else f"{mantissa}·{scale}"
 
 
-def whole_numbers(axis: Any) -> None:
-    """Few whole numbers as ticks."""
+def set_whole_number_ticks(axis: Any) -> None:
+    """Set a few whole numbers as ticks."""
     axis.set_major_locator(MaxNLocator(6, integer=True, steps=[1, 2, 5, 10], min_n_ticks=2))
     axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,g}".replace("-", "−")))
 
 
-def step_sizes(axes: Any, sizes: Sequence[str]) -> None:
-    """The step sizes as ticks of a logarithmic x axis, in units of a power of ten."""
+def set_step_size_axis(axes: Any, sizes: Sequence[str]) -> None:
+    """Set the step sizes as ticks of a logarithmic x axis, in units of a power of ten."""
     places = sorted({lg(h): h for h in sizes}.items())
     unit = floor(places[0][0] + 1e-9)
     low, high = places[0][0], places[-1][0]
     span = (high - low) or 1.0
-    kept: list[tuple[float, str]] = []
-    for place, _ in reversed(places):  # the largest is kept in any case
+    labels: list[tuple[float, str]] = []
+    # From right to left: the largest step size always has a label, others only where there is room.
+    for place, _ in reversed(places):
         label = f"{float(10 ** (place - unit)):.3g}"
-        if not kept or kept[-1][0] - place > (_LABEL_GAP + _LETTER * len(label)) * span:
-            kept.append((place, label))
-    axes.xaxis.set_major_locator(FixedLocator([place for place, _ in reversed(kept)]))
-    axes.xaxis.set_major_formatter(FixedFormatter([label for _, label in reversed(kept)]))
+        if not labels or labels[-1][0] - place > (_LABEL_GAP + _LETTER * len(label)) * span:
+            labels.append((place, label))
+    axes.xaxis.set_major_locator(FixedLocator([place for place, _ in reversed(labels)]))
+    axes.xaxis.set_major_formatter(FixedFormatter([label for _, label in reversed(labels)]))
     axes.set_xlim(low - 0.05 * span, high + 0.05 * span)
     scale = "" if unit == 0 else f", in units of 10{superscript(unit)}"
     axes.set_xlabel(f"step size h{scale} (logarithmic)")
 
 
-def time_axis(axes: Any, most: int = 5) -> None:
-    axes.xaxis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10]))
+def set_time_axis(axes: Any, max_ticks: int = 5) -> None:
+    """Set round times as ticks of the x axis."""
+    axes.xaxis.set_major_locator(MaxNLocator(max_ticks, steps=[1, 2, 5, 10]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,g}".replace("-", "−")))
     axes.set_xlabel("time t")
 
 
-def scaled_ticks(axis: Any, low: float, high: float) -> None:
-    """Few ticks, as x·10ⁿ with one exponent."""
+def set_scaled_ticks(axis: Any, low: float, high: float) -> None:
+    """Set a few ticks, written x·10ⁿ with one exponent for all."""
     axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     size = max(abs(low), abs(high))
+    # Numbers between 0.001 and 10,000 are readable without a power of ten.
     power = floor(log10(size)) if size > 0 and isfinite(size) else 0
     if -3 < power < 4:
         power = 0
 
-    def shown(x: float, _: object) -> str:
+    def format_tick(x: float, _: object) -> str:
         mantissa = round(x / 10.0**power, 6)
         if mantissa == 0:
             return "0"
@@ -129,18 +136,19 @@ def scaled_ticks(axis: Any, low: float, high: float) -> None:
             digits = scale if abs(mantissa) == 1 else f"{digits}·{scale}"
         return f"{'−' if mantissa < 0 else ''}{digits}"
 
-    axis.set_major_formatter(FuncFormatter(shown))
+    axis.set_major_formatter(FuncFormatter(format_tick))
 
 
 def mark_places(axes: Any, places: Sequence[Mark], room: float) -> None:
-    """A dashed vertical line at each x, its label on a line of its own above all points.
+    """Draw a dashed vertical line at each x, its label on a row of its own above all points.
 
-    `places`: from left to right, so that no line runs through another's label. `room`: what a label
-    takes of the axes' width.
+    `places`: from left to right, so that no line runs through another's label. `room`: the width of
+    a label as a part of the axes' width.
     """
+    # The labels take the part `above` of the enlarged range: extra/(range + extra) = above.
     low, high = axes.get_ylim()
-    above = _LINE * (len(places) + 0.5)
-    axes.set_ylim(low, high + (high - low) * above / (1 - above))
+    label_share = _LINE * (len(places) + 0.5)
+    axes.set_ylim(low, high + (high - low) * label_share / (1 - label_share))
     left, right = axes.get_xlim()
     for row, (x, label) in enumerate(places):
         top = 1 - _LINE * row

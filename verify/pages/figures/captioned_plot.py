@@ -1,4 +1,4 @@
-"""A picture with its caption, and what captions say in the same words."""
+"""A picture with its caption, and the phrases that captions share."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -17,13 +17,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDTH = re.compile(r'viewBox="0 0 ([0-9.]+) ')
-_HALF, _MOST = 420, 640  # points
-_MOST_SHOWN = 4  # significant digits of a number in a caption
+# Widths in points up to which a picture takes half, or most, of the page.
+_HALF_WIDTH, _MOST_WIDTH = 420, 640
+# Significant digits of a number in a caption.
+_MAX_DIGITS = 4
 
 
 @dataclass(frozen=True)
 class Plot:
-    """An inline SVG with its caption; `alternative` is what stands for the image in words."""
+    """An inline SVG with its caption; `alternative` is the image's text alternative."""
 
     svg: Markup
     lead: str
@@ -32,32 +34,32 @@ class Plot:
 
     @property
     def span(self) -> str:
-        """How much of the page it takes, by its own width in points: half, most, full."""
+        """The part of the page's width that it takes, by its width in points: half, most, full."""
         width = _WIDTH.search(self.svg)
         points = float(width[1]) if width else 0
-        return "half" if points <= _HALF else "most" if points <= _MOST else "full"
+        return "half" if points <= _HALF_WIDTH else "most" if points <= _MOST_WIDTH else "full"
 
 
-def plotted(
+def captioned_plot(
     draw: "Callable[[], Figure]", *, name: str, lead: str, caption: str, label: str = ""
 ) -> Plot:
-    """What `draw` draws, under the lead as a sentence, which is its text alternative too.
+    """Draw the figure and return it with its caption.
 
-    `label`: another text alternative.
-
+    The lead, as a sentence, stands above it and is its text alternative, unless `label` is another.
     `name` prefixes every id in the SVG, so it must be unique on the page.
     """
-    from verify.pages.figures.svg import drawing
+    # matplotlib takes long to import, and is needed only where something is drawn.
+    from verify.pages.figures.svg import render_svg
 
     alternative = label or f"{lead}."
-    return Plot(drawing(draw, name=name, label=alternative), f"{lead}.", caption, alternative)
+    return Plot(render_svg(draw, name=name, label=alternative), f"{lead}.", caption, alternative)
 
 
-def computed(runs: Sequence[RunResult]) -> str:
-    """The arithmetic, the number of steps and the origin of the error bounds, in one sentence."""
+def describe_runs(runs: Sequence[RunResult]) -> str:
+    """Return arithmetic, number of steps and origin of the error bounds in one sentence."""
     steps = sorted({run.steps for run in runs})
     count = between(whole(steps[0]), whole(steps[-1]), " … ")
-    systems = " and ".join(dict.fromkeys(map(arithmetic_of, runs)))
+    systems = " and ".join(dict.fromkeys(map(name_arithmetic, runs)))
     methods = dict.fromkeys(
         f"{run.error_kind}: {run.error_method}" for run in runs if run.status == "finished"
     )
@@ -65,25 +67,25 @@ def computed(runs: Sequence[RunResult]) -> str:
     return f"Computed in {systems} with N = {count} steps{bounds}."
 
 
-def arithmetic_of(found: RunResult | FlowImage) -> str:
-    """Its number system, and with how many digits where it may have more or fewer than 17."""
-    name = found.arithmetic
-    return name if name in ("float64", "") else f"{name} ({found.digits} digits)"
+def name_arithmetic(result: RunResult | FlowImage) -> str:
+    """Return the number system, with its digits unless it is float64."""
+    name = result.arithmetic
+    return name if name in ("float64", "") else f"{name} ({result.digits} digits)"
 
 
-def few_digits(found: Value | None, *, strong: bool = False) -> Markup:
-    """The first of the known digits; where none is known, the bound."""
-    if found is None:
+def known_digits(value: Value | None, *, strong: bool = False) -> Markup:
+    """Return the first of the known digits; where none is known, the bound."""
+    if value is None:
         return Markup("–")
-    if Decimal(found.value) == 0 and found.bound != "0":
-        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(found.bound))
-    shown = Markup("<b>{}</b>") if strong else Markup("{}")
-    return shown.format(few(found.value))
+    if Decimal(value.value) == 0 and value.bound != "0":
+        return Markup("|·|{0}≤{0}{1}").format(NBSP, round_to_few_digits(value.bound))
+    template = Markup("<b>{}</b>") if strong else Markup("{}")
+    return template.format(round_to_few_digits(value.value))
 
 
-def few(text: str) -> str:
-    """The first of the known digits."""
+def round_to_few_digits(text: str) -> str:
+    """Return the number rounded to its first few digits."""
     digits = sum(c.isdigit() for c in text.lower().partition("e")[0])
-    if not is_decimal(text) or digits <= _MOST_SHOWN or Decimal(text) == 0:
+    if not is_decimal(text) or digits <= _MAX_DIGITS or Decimal(text) == 0:
         return number(text)
-    return number(f"{Decimal(text):.{_MOST_SHOWN - 1}e}")
+    return number(f"{Decimal(text):.{_MAX_DIGITS - 1}e}")

@@ -16,33 +16,44 @@ from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
-from verify.pages.figures.axes import grid_lines
-from verify.pages.figures.flow_grid import Curves, Grid, Panel, length
-from verify.pages.figures.label_place import dots, place_of
+from verify.pages.figures.axes import draw_grid
+from verify.pages.figures.flow_grid import Curves, Grid, Panel, perimeter
+from verify.pages.figures.label_place import choose_place, sample_curves
 from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
 from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import whole
-from verify.studies.regions.polyline import thinned
+from verify.studies.regions.polyline import thin
 
-_SEVERAL = 600  # points, the width of two or three panels
+# The width in points of a figure with two or three panels.
+_SEVERAL = 600
 _LEFT, _LETTER, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 8, 24, 40, 12
-_SECOND_LINE = 16  # of a heading, in points
-_LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
-_DETAIL = 0.12  # of a point: what is finer is not drawn
-_LONG, _THINNER = 20, 0.6  # panel widths: a line so long is drawn with thinner strokes
-_ROOM = 0.04  # of the extent, around everything
-_LABEL = 11  # of an image, in points
-_LETTER_OF_LABEL = 0.62  # its width, as a part of the size
-_LINE = 0.7  # points, the region's outline
-_POINT = 9  # points, what was one point before
-_EXACT = 2.2  # points, the line of an exact image under another one
+# The height in points of the second line of a heading.
+_SECOND_LINE = 16
+# The limits of a panel's height divided by its width.
+_LOWEST, _HIGHEST = 0.3, 2.2
+# Details smaller than this part of a point are not drawn.
+_DETAIL = 0.12
+# An outline longer than so many panel widths is drawn with strokes thinner by this factor.
+_LONG, _THINNER = 20, 0.6
+# The margin around everything, as a part of the extent.
+_ROOM = 0.04
+# The size in points of an image's label.
+_LABEL = 11
+# The mean width of a letter, as a part of the size of its font.
+_LETTER_OF_LABEL = 0.62
+# The width in points of the region's outline.
+_LINE = 0.7
+# The size in points of the mark for a region that was a single point before.
+_POINT = 9
+# The width in points of the exact image's line, which shows on both sides of the other one.
+_EXACT = 2.2
 
 # -- drawing --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """Places in points; one scale for all panels."""
+    """The sizes of a panel in points; all panels have one scale."""
 
     total: float
     left: float
@@ -59,12 +70,13 @@ class _Layout:
 
 
 def draw_flow(grid: Grid) -> Figure:
+    """Draw the panels of the grid on equal axes of one scale."""
     layout = _layout(grid)
     columns = grid.in_a_row
     rows = -(-len(grid.panels) // columns)
     high = rows * (layout.top + layout.height) + (rows - 1) * _GAP + _BOTTOM
     figure = sheet(high, layout.total, layout=None)
-    before = _as_seen(grid.before, layout)  # the same in all panels
+    before = _thin_curves(grid.before, layout)  # the same in all panels
     for k, panel in enumerate(grid.panels):
         i, j = divmod(k, columns)
         x = layout.left + j * (layout.width + _GAP)
@@ -74,17 +86,17 @@ def draw_flow(grid: Grid) -> Figure:
         _frame(axes, layout, grid.axes, left=j == 0, bottom=k + columns >= len(grid.panels))
         _draw_panel(axes, panel, before, layout)
         if not grid.counts:
-            _name_all(axes, panel, grid, layout)
-        elif panel.missing:
+            _label_images(axes, panel, grid, layout)
+        elif panel.missing_counts:
             axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
         axes.set_title(_heading(k, grid, int(layout.width / _LETTER)))
     return figure
 
 
-def _heading(index: int, grid: Grid, most: int) -> str:
-    """With its letter, where a panel has all images; else under the count that its group has."""
+def _heading(index: int, grid: Grid, max_length: int) -> str:
+    """Return a panel's title: with its letter, or below the number of steps of its group."""
     panel = grid.panels[index]
-    longest = max(4, most if grid.counts else most - len("(a) "))
+    longest = max(4, max_length if grid.counts else max_length - len("(a) "))
     name = panel.name if len(panel.name) <= longest else f"{panel.name[: longest - 1]}…"
     if grid.counts:
         group, first = divmod(index, len(grid.groups[0]))
@@ -94,16 +106,16 @@ def _heading(index: int, grid: Grid, most: int) -> str:
 
 
 def _missing(panel: Panel) -> str:
-    """Which images a panel of several has not."""
-    if not panel.missing:
+    """Return a note on the numbers of steps for which the panel has no image; else ""."""
+    if not panel.missing_counts:
         return ""
-    first, *others = panel.missing
-    more = f" and {len(others)} more" if others else ""
-    return f"; no image at N = {whole(first)}{more}"
+    first, *others = panel.missing_counts
+    others_text = f" and {len(others)} more" if others else ""
+    return f"; no image at N = {whole(first)}{others_text}"
 
 
 def _layout(grid: Grid) -> _Layout:
-    """Equal axes: a panel is as high as what it shows, within limits."""
+    """Return the layout on equal axes; a panel is as high as its content, within limits."""
     low, high = grid.size
     longest = max(len(_tick(y)) for y in _ticks().tick_values(low[1], high[1]))
     left = _LEFT + _LETTER * longest
@@ -125,12 +137,12 @@ def _frame(axes: Any, layout: _Layout, names: tuple[str, str], *, left: bool, bo
     axes.set_xlim(layout.low[0], layout.high[0])
     axes.set_ylim(layout.low[1], layout.high[1])
     axes.set_aspect("equal")
-    grid_lines(axes, "both")
-    for axis, name, shown in ((axes.xaxis, names[0], bottom), (axes.yaxis, names[1], left)):
+    draw_grid(axes, "both")
+    for axis, name, is_visible in ((axes.xaxis, names[0], bottom), (axes.yaxis, names[1], left)):
         axis.set_major_locator(_ticks())
         axis.set_major_formatter(FuncFormatter(_tick))
-        axis.set_tick_params(label1On=shown)
-        axis.set_label_text(name, visible=shown)
+        axis.set_tick_params(label1On=is_visible)
+        axis.set_label_text(name, visible=is_visible)
 
 
 def _ticks() -> MaxNLocator:
@@ -145,29 +157,31 @@ def _draw_panel(axes: Any, panel: Panel, before: Curves, layout: _Layout) -> Non
     if len(before[0]) == 1:  # of another plane than the region's
         axes.plot(*before[0].T, linestyle="none", marker="+", color=INK, markersize=_POINT)
     else:
-        _shape(axes, before, INK, layout, before=True)
+        _draw_region(axes, before, INK, layout, before=True)
     if panel.exact:
-        path = _path(_as_seen(panel.exact[:1], layout))
+        path = _path(_thin_curves(panel.exact[:1], layout))
         faint = to_rgba(INK, 0.3)
         axes.add_artist(
             PathPatch(path, fill=False, edgecolor=faint, linewidth=_EXACT, clip_on=False)
         )
     for _, curves in panel.images:
-        _shape(axes, _as_seen(curves, layout), SERIES[panel.look % len(SERIES)], layout)
+        _draw_region(
+            axes, _thin_curves(curves, layout), SERIES[panel.colour_index % len(SERIES)], layout
+        )
 
 
-def _as_seen(curves: Curves, layout: _Layout) -> Curves:
-    """Without the points that the picture does not show."""
-    return tuple(thinned(curve, _DETAIL / layout.scale) for curve in curves)
+def _thin_curves(curves: Curves, layout: _Layout) -> Curves:
+    """Return the curves without the points that are too close together to be visible."""
+    return tuple(thin(curve, _DETAIL / layout.scale) for curve in curves)
 
 
-def _shape(
+def _draw_region(
     axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: bool = False
 ) -> None:
-    """The region lightly filled with a thin line, the other outlines as thinner lines."""
+    """Draw the region lightly filled with a thin line, the other outlines as thinner lines."""
     region, *others = curves
     strength = 0.35 if before else 1
-    thin = _THINNER if length(region) > _LONG * (layout.width / layout.scale) else 1
+    thin = _THINNER if perimeter(region) > _LONG * (layout.width / layout.scale) else 1
     axes.add_artist(
         PathPatch(
             _path([region]), facecolor=to_rgba(colour, 0.1 if before else 0.22),
@@ -187,30 +201,32 @@ def _path(curves: Sequence[np.ndarray]) -> Path:
     return Path.make_compound_path(*(Path(np.vstack([c, c[:1]]), closed=True) for c in curves))
 
 
-def _name_all(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
-    """The number of steps beside each image, clear of all that is drawn."""
+def _label_images(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
+    """Write the number of steps beside each image, clear of all that is drawn."""
     low, scale = layout.low, layout.scale
-    images = [(n, dots(curves, low, scale)) for n, curves in panel.images]
-    everything = np.concatenate([dots(grid.before, low, scale), *(own for _, own in images)])
+    images = [(n, sample_curves(curves, low, scale)) for n, curves in panel.images]
+    everything = np.concatenate(
+        [sample_curves(grid.before, low, scale), *(points for _, points in images)]
+    )
     room = Bbox.from_bounds(0, 0, layout.width, layout.height)
-    taken: list[Bbox] = []
-    for steps, own in images:
+    occupied: list[Bbox] = []
+    for steps, points in images:
         text = f"N = {whole(steps)}"
         size = len(text) * _LABEL * _LETTER_OF_LABEL, _LABEL + 2.0
-        taken.append(place_of(size, own, everything, taken, room))
-        box = taken[-1]
-        at = layout.low + np.array([(box.x0 + box.x1) / 2, box.y0 + 1]) / layout.scale
-        axes.text(*at, text, ha="center", va="bottom", fontsize=_LABEL)
+        occupied.append(choose_place(size, points, everything, occupied, room))
+        box = occupied[-1]
+        corner = layout.low + np.array([(box.x0 + box.x1) / 2, box.y0 + 1]) / layout.scale
+        axes.text(*corner, text, ha="center", va="bottom", fontsize=_LABEL)
 
 
 # -- what is seen ---------------------------------------------------------------------------------
 
 
 def line_width(grid: Grid) -> float:
-    """What the width of an outline's line is in units of q and p: nearer things look as one."""
+    """Return the width of an outline's line in units of q and p, below which curves merge."""
     return _LINE / _layout(grid).scale
 
 
-def stretched(before: Curves, image: Curves) -> float:
-    """How many times as long the region's outline has become."""
-    return length(image[0]) / length(before[0])
+def stretch_of_outline(before: Curves, image: Curves) -> float:
+    """Return the length of the region's outline over its length before."""
+    return perimeter(image[0]) / perimeter(before[0])

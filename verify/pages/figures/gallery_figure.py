@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import (
     Mark,
-    decades,
-    grid_lines,
+    draw_grid,
     line_style,
     mark_places,
-    round_numbers,
+    set_decade_ticks,
+    set_round_ticks,
 )
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import canvas
@@ -20,18 +20,23 @@ from verify.pages.text.typography import NBSP, whole
 from verify.scenes.results.exploration import GalleryScene
 
 _HEIGHT = 330
-_MOST_UNLIKE = 4  # a plane so many times as long as it is high has one scale for both axes
-_LEAST_SPAN = 1e-3  # of the greatest |q|, |p|: an orbit's points have six digits
-_ROOM = 0.08  # of the axes, around the orbit
-_WIDE = 1.3  # of the plane's frame: its width by its height
-_ASIDE = 0.5  # of the axes: what a mark's label takes
+# Up to this ratio of the two extents both axes have one scale.
+_MOST_UNLIKE = 4
+# The least extent, as a part of the greatest |q| or |p|: an orbit's points have six digits.
+_LEAST_SPAN = 1e-3
+# The margin around the orbit, as a part of the axes.
+_ROOM = 0.08
+# The width of the plane's frame divided by its height.
+_WIDE = 1.3
+# The width of a mark's label, as a part of the axes.
+_LABEL_ROOM = 0.5
 
 
 # -- the orbit ------------------------------------------------------------------------------------
 
 
 def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
-    """The points (q, p) in turn, q to the right and p upwards; its two ends are marked."""
+    """Draw the orbit's points (q, p), q to the right and p upwards, and mark its two ends."""
     figure, axes = canvas(_HEIGHT)
     q, p = [float(q) for q, _ in points], [float(p) for _, p in points]
     style = {"color": SERIES[0], "linewidth": 0.9, "marker": ".", "markersize": 3.5}
@@ -42,10 +47,10 @@ def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
     low, high = _limits(q, p)
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
-    if _alike(q, p):
+    if _has_one_scale(q, p):
         axes.set_aspect("equal")
-    grid_lines(axes, "both")
-    round_numbers(axes)
+    draw_grid(axes, "both")
+    set_round_ticks(axes)
     axes.set_xlabel("q")
     axes.set_ylabel("p", rotation=0, labelpad=10)
     figure.legend(loc="outside lower center", ncols=2)
@@ -53,18 +58,18 @@ def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
 
 
 def _limits(q: Sequence[float], p: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """The least and the greatest (q, p) with some room, also where nothing moves."""
+    """Return the least and the greatest (q, p) with some room, also where nothing moves."""
     least = _LEAST_SPAN * (max(map(abs, (*q, *p))) or 1.0)
     spans = [(1 + 2 * _ROOM) * max(_span(values), least) for values in (q, p)]
-    if _alike(q, p):  # then one scale, in a frame that is filled
+    if _has_one_scale(q, p):  # then one scale, in a frame that is filled
         spans = [max(spans[0], _WIDE * spans[1]), max(spans[0] / _WIDE, spans[1])]
     middles = [(min(values) + max(values)) / 2 for values in (q, p)]
-    both = list(zip(middles, spans, strict=True))
-    return tuple(m - s / 2 for m, s in both), tuple(m + s / 2 for m, s in both)
+    centred_spans = list(zip(middles, spans, strict=True))
+    return tuple(m - s / 2 for m, s in centred_spans), tuple(m + s / 2 for m, s in centred_spans)
 
 
-def _alike(q: Sequence[float], p: Sequence[float]) -> bool:
-    """Whether one scale for both axes shows the orbit."""
+def _has_one_scale(q: Sequence[float], p: Sequence[float]) -> bool:
+    """Return True if the orbit is legible with one scale for both axes."""
     return max(_span(q), _span(p)) <= _MOST_UNLIKE * min(_span(q), _span(p))
 
 
@@ -76,41 +81,41 @@ def _span(values: Sequence[float]) -> float:
 
 
 def draw_parts(each: GalleryScene) -> Figure:
-    """|truncation| and |rounding| on logarithmic axes; a dashed line where one overtakes."""
+    """Draw |truncation| and |rounding| on logarithmic axes, dashed lines where one overtakes."""
     series = each.separation.plain.series if each.separation.plain else ()
     figure, axes = canvas(_HEIGHT)
-    x = [log10(at.steps) for at in series]
+    x = [log10(point.steps) for point in series]
     kinds = ("truncation", "truncation"), ("total", "rounding, the plain way")
     for index, (part, label) in enumerate(kinds):
-        y = [_place(getattr(at, part)) for at in series]
+        y = [_finite_lg(getattr(point, part)) for point in series]
         if any(map(isfinite, y)):
             axes.plot(x, y, label=label, **line_style(index, len(kinds)))
     axes.margins(x=0.05, y=0.06)
-    if found := list(marks(each)):
-        mark_places(axes, found, _ASIDE)
-    grid_lines(axes)
-    decades(axes.xaxis, most=6)
-    decades(axes.yaxis)
+    if crossings := list(marks(each)):
+        mark_places(axes, crossings, _LABEL_ROOM)
+    draw_grid(axes)
+    set_decade_ticks(axes.xaxis, max_ticks=6)
+    set_decade_ticks(axes.yaxis)
     axes.set_xlabel("steps N (logarithmic)")
     axes.set_title("|part of Λ|")
     figure.legend(loc="outside lower center", ncols=2, handlelength=3.2)
     return figure
 
 
-def _place(size: str) -> float:
-    """What is 0, or of no known digit, breaks the line."""
+def _finite_lg(size: str) -> float:
+    """Return lg of the size; nan, which breaks the line, for 0 or where no digit is known."""
     place = lg(size)
     return place if isfinite(place) else nan
 
 
 def marks(each: GalleryScene) -> Iterator[Mark]:
-    """Where rounding overtakes truncation, and where truncation does so for good.
+    """Yield the steps at which rounding overtakes truncation, and truncation rounding for good.
 
-    Rounding that is the larger from the first checkpoint on has overtaken nothing.
+    Rounding that is the larger one from the first checkpoint on has overtaken nothing.
     """
     series = each.separation.plain.series if each.separation.plain else ()
-    after, over = each.meaningless_after, each.meaningful_from
-    if series and after is not None and after > series[0].steps:
-        yield log10(after), f"rounding overtakes, N{NBSP}={NBSP}{whole(after)}"
-    if over is not None:
-        yield log10(over), f"truncation overtakes, N{NBSP}={NBSP}{whole(over)}"
+    lost_after, resumes_at = each.meaningless_after, each.meaningful_from
+    if series and lost_after is not None and lost_after > series[0].steps:
+        yield log10(lost_after), f"rounding overtakes, N{NBSP}={NBSP}{whole(lost_after)}"
+    if resumes_at is not None:
+        yield log10(resumes_at), f"truncation overtakes, N{NBSP}={NBSP}{whole(resumes_at)}"

@@ -5,7 +5,13 @@ from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
-from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
+from verify.pages.figures.axes import (
+    MOST_STYLES,
+    draw_grid,
+    line_style,
+    set_decade_ticks,
+    set_step_size_axis,
+)
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import WIDE, sheet
@@ -14,12 +20,14 @@ from verify.pages.text.typography import start
 from verify.scenes.results.growth import GrowthLawResult
 
 _HEIGHT = 260
-_GUIDE_GAP = 0.4  # decades between the guide and the points below it
-_LEGEND = 5  # columns
+# Decades between the guide and the points below it.
+_GUIDE_GAP = 0.4
+# The number of columns of the legend.
+_LEGEND = 5
 
 
 def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure:
-    """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
+    """Draw (a) |Λ|, measured points on predicted lines, and (b) |relative difference| over h."""
     figure = sheet(_HEIGHT, WIDE)
     left, right = figure.subplots(1, 2)
     for index, orbit in enumerate(orbits):
@@ -29,10 +37,10 @@ def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure
     _guide(right, [_line(orbit, "difference") for orbit in orbits])
     sizes = [p.step_size for orbit in orbits for p in orbit.predictions]
     for axes in (left, right):
-        grid_lines(axes)
+        draw_grid(axes)
         axes.margins(y=0.08)
-        decades(axes.yaxis, most=6)
-        step_sizes(axes, sizes)
+        set_decade_ticks(axes.yaxis, max_ticks=6)
+        set_step_size_axis(axes, sizes)
     left.set_title("(a) |Λ|: points measured, lines predicted")
     right.set_title("(b) |predicted − measured| / |measured|")
     if len(orbits) <= MOST_STYLES:
@@ -42,13 +50,13 @@ def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure
 
 
 def _line(orbit: GrowthLawResult, quantity: Literal["predicted", "measured", "difference"]) -> Line:
-    """The quantity, of which a digit is known at each step size."""
+    """Return the line of a quantity of which a digit is known at each step size."""
     points = ((p.step_size, lg(getattr(p, quantity).value)) for p in orbit.predictions)
     return Line(start(orbit.law), tuple(points))
 
 
 def _prediction(axes: Any, orbit: GrowthLawResult, style: dict[str, Any]) -> None:
-    """The predicted line without marks, and the measured marks without a line."""
+    """Plot the predicted line without marks, and the measured marks without a line."""
     plot_line(axes, _line(orbit, "predicted"), {**style, "marker": None})
     points = {"color": style["color"], "marker": style.get("marker", "o"), "markersize": 5}
     plot_line(axes, _line(orbit, "measured"), {**points, "linestyle": "none"})
@@ -60,7 +68,7 @@ def _prediction(axes: Any, orbit: GrowthLawResult, style: dict[str, Any]) -> Non
 
 
 def _guide(axes: Any, lines: Sequence[Line]) -> None:
-    """A line of slope 1 above all points, labelled at its left end."""
+    """Draw a line of slope 1 above all points, labelled at its left end."""
     points = [(lg(h), y) for line in lines for h, y in line.points]
     if not points:
         return

@@ -1,61 +1,70 @@
-"""Where a label stands beside what it names: clear of other labels and of all that is drawn."""
+"""Places for labels beside images, clear of other labels and of all that is drawn."""
 
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.transforms import Bbox
 
-_APART = 3  # points between a label and what it names
-_LINES = (0.0, 1.0, 2.0)  # how far it may be shifted away, in heights
-_ALONG = (0.5, 0.2, 0.8)  # where along the image's width its middle may be
+# Points between a label and its image.
+_LABEL_GAP = 3
+# The distances, in heights of the label, by which it may be shifted away.
+_SHIFTS = (0.0, 1.0, 2.0)
+# The positions of the label's middle, as parts of the image's width.
+_SHARES = (0.5, 0.2, 0.8)
 
 
-def place_of(
-    size: tuple[float, float], named: np.ndarray, drawn: np.ndarray, taken: list[Bbox], room: Bbox
+def choose_place(
+    size: tuple[float, float],
+    target: np.ndarray,
+    obstacles: np.ndarray,
+    occupied: list[Bbox],
+    room: Bbox,
 ) -> Bbox:
-    """The label's box, which is no part of `taken` yet; `named` and `drawn` are points (n, 2).
+    """Return the label's box, which is not in `occupied` yet; `target`, `drawn`: points (n, 2).
 
-    The first of the places above, below and beside the image on which least is drawn. One that
-    would leave the room or lie on another label is taken only where there is no other.
+    It is the first of the places above, below and beside the image where least is drawn. A box that
+    leaves the room or overlaps another label is taken only where there is no other.
     """
 
     def cost(box: Bbox) -> tuple[bool, int]:
-        bad = any(map(box.fully_overlaps, taken)) or not within(box, room)
-        return bad, box.count_contains(drawn)
+        # False sorts before True, so that free places in the room come first.
+        bad = any(map(box.fully_overlaps, occupied)) or not lies_in(box, room)
+        return bad, box.count_contains(obstacles)
 
-    return min(_places(size, named, room), key=cost)
+    return min(_places(size, target, room), key=cost)
 
 
-def dots(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -> np.ndarray:
-    """Points close together on closed curves (n, 2), in points from the panel's corner `low`."""
+def sample_curves(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -> np.ndarray:
+    """Return close samples of closed curves (n, 2), in points from the panel's corner `low`."""
+    # The samples are at most two points of the picture apart, so that no label fits between them.
     parts = []
     for curve in curves:
         ends = np.vstack([curve, curve[:1]])
         lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
-        at = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
-        parts.append(np.column_stack([np.interp(at, lengths, ends[:, i]) for i in (0, 1)]))
-    found: np.ndarray = (np.concatenate(parts) - low) * scale
-    return found
+        places = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
+        parts.append(np.column_stack([np.interp(places, lengths, ends[:, i]) for i in (0, 1)]))
+    points: np.ndarray = (np.concatenate(parts) - low) * scale
+    return points
 
 
-def _places(size: tuple[float, float], named: np.ndarray, room: Bbox) -> Iterator[Bbox]:
-    """Towards the nearer edge of the room first."""
+def _places(size: tuple[float, float], target: np.ndarray, room: Bbox) -> Iterator[Bbox]:
+    """Yield the boxes to try, those towards the nearer edge of the room first."""
     width, height = size
-    (left, lower), (right, upper) = named.min(axis=0), named.max(axis=0)
-    over = upper + _APART
-    under = lower - _APART - height
-    above = (lower + upper) / 2 >= (room.y0 + room.y1) / 2
-    for line in _LINES:
-        rows = over + line * height, under - line * height
-        for y in rows if above else rows[::-1]:
-            for part in _ALONG:
+    (left, lower), (right, upper) = target.min(axis=0), target.max(axis=0)
+    upper_row = upper + _LABEL_GAP
+    lower_row = lower - _LABEL_GAP - height
+    is_in_upper_half = (lower + upper) / 2 >= (room.y0 + room.y1) / 2
+    for line in _SHIFTS:
+        rows = upper_row + line * height, lower_row - line * height
+        for y in rows if is_in_upper_half else rows[::-1]:
+            for part in _SHARES:
                 yield Bbox.from_bounds(left + part * (right - left) - width / 2, y, *size)
         for y in ((lower + upper - height) / 2 + k * (upper - lower) / 4 for k in (0, 1, -1)):
-            yield Bbox.from_bounds(right + _APART + line * height, y, *size)
-            yield Bbox.from_bounds(left - _APART - width - line * height, y, *size)
+            yield Bbox.from_bounds(right + _LABEL_GAP + line * height, y, *size)
+            yield Bbox.from_bounds(left - _LABEL_GAP - width - line * height, y, *size)
 
 
-def within(box: Bbox, room: Bbox) -> bool:
-    """Whether the box lies in the room, or at its edge."""
-    across = room.x0 <= box.x0 and box.x1 <= room.x1
-    return bool(across and room.y0 <= box.y0 and box.y1 <= room.y1)
+def lies_in(box: Bbox, room: Bbox) -> bool:
+    """Return True if the box lies in the room, or at its edge."""
+    fits_across = room.x0 <= box.x0 and box.x1 <= room.x1
+    return bool(fits_across and room.y0 <= box.y0 and box.y1 <= room.y1)

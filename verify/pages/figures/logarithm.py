@@ -6,7 +6,7 @@ from math import inf
 
 
 def lg(text: str) -> float:
-    """lg |value| of a decimal or a quotient, however large or small; −∞ for 0."""
+    """Return lg |value| of a decimal or a quotient of any size; −∞ for 0."""
     if "/" in text:
         value = Fraction(text)
         return lg(str(abs(value.numerator))) - lg(str(value.denominator))

@@ -1,4 +1,4 @@
-"""Orbits as points, once in each period or where they pass a surface, a panel a map, as SVG."""
+"""Orbits as points, once in each period or on a surface, with a panel for each map, as SVG."""
 
 from collections.abc import Sequence
 from math import remainder, tau
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from verify.pages.figures.panels import name_states, panels_beside
+from verify.pages.figures.panels import make_panels, name_states
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.orbit_sections import (
     MapSections,
@@ -17,18 +17,23 @@ from verify.scenes.results.orbit_sections import (
 )
 
 _HEIGHT, _IN_A_ROW = 330, 3
-_MOST_DRAWN = 6000  # points of a figure
+# The number of points of a figure, beyond which the file becomes large.
+_MOST_DRAWN = 6000
 _FAINT, _ROOM = 0.35, 0.05
-_FEW = 0.02  # of the points on either side, which may lie far out: of orbits that escape
-_WIDER = 0.5  # of the extent of the others, on either side
+# The part of the points on either side that may lie far out, as those of escaping orbits do.
+_FEW = 0.02
+# Points farther out than this part of the others' extent, on either side, are not drawn.
+_WIDER = 0.5
 Orbit = tuple[np.ndarray, int]
-"""Its points (n, 2), and how many of the first are known."""
+"""The orbit's points (n, 2), and how many of the first are confirmed."""
 
 
-def drawn_looks(sections: Sequence[MapSections] | Sequence[SchemeSections], starts: int = 0) -> int:
-    """How many of the first looks at an orbit are drawn, of all orbits alike.
+def count_drawn_looks(
+    sections: Sequence[MapSections] | Sequence[SchemeSections], starts: int = 0
+) -> int:
+    """Return how many of the first looks at each orbit are drawn.
 
-    `starts`: so many of an orbit's points are where it starts, and no looks.
+    `starts`: so many of an orbit's first points are initial states, not looks.
     """
     orbits = sum(len(each.orbits) for each in sections)
     points = (len(orbit.points) for each in sections for orbit in each.orbits)
@@ -39,41 +44,44 @@ def _first(points: Sequence[tuple[str, str]], count: int) -> np.ndarray:
     return np.array(points[:count], dtype=np.float64).reshape(-1, 2)
 
 
-def drawn(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
-    """Of each map each orbit's first points (n, 2), and how many of all lie too far out to be
-    drawn, as those of orbits that escape do: they have nan in their place.
+def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
+    """Return each orbit's first points (n, 2) by map, and the number of points too far out.
+
+    Points of orbits that escape would hide the others: they are replaced by nan.
     """
-    shown = drawn_looks(result.sections)
-    points = [[_first(o.points, shown) for o in each.orbits] for each in result.sections]
-    every = np.concatenate([x for each in points for x in each])
-    if not len(every):
+    count = count_drawn_looks(result.sections)
+    points = [[_first(o.points, count) for o in each.orbits] for each in result.sections]
+    all_points = np.concatenate([x for each in points for x in each])
+    if not len(all_points):
         return points, 0
-    low, high = np.quantile(every, (_FEW, 1 - _FEW), axis=0)
+    low, high = np.quantile(all_points, (_FEW, 1 - _FEW), axis=0)
     room = _WIDER * (high - low)
     outside = 0
     for orbit in (x for each in points for x in each):
-        far = ((orbit < low - room) | (orbit > high + room)).any(axis=1)
-        outside += int(far.sum())
-        orbit[far] = np.nan
+        # The quantiles are robust against a few escaping orbits, unlike the extremes.
+        is_outside = ((orbit < low - room) | (orbit > high + room)).any(axis=1)
+        outside += int(is_outside.sum())
+        orbit[is_outside] = np.nan
     return points, outside
 
 
 def draw_passes(result: PoincareResult) -> Figure:
-    """Each orbit in a colour, grey where it is not known; the same axes for all maps."""
+    """Draw each orbit in a colour, its unconfirmed part grey, with the same axes for all maps."""
     panels = {
         each.map: [(x, orbit.known) for x, orbit in zip(points, each.orbits, strict=True)]
-        for each, points in zip(result.sections, drawn(result)[0], strict=True)
+        for each, points in zip(result.sections, select_points(result)[0], strict=True)
     }
     return _draw(panels, result.draw, in_a_row=_IN_A_ROW, size=3.0)
 
 
 def draw_periods(result: StroboscopicResult) -> Figure:
-    """Each orbit in a colour; what more digits do not confirm is grey. An angle is in (−π, π]."""
-    count = drawn_looks(result.sections, 1) + 1
+    """Draw each orbit in a colour, its unconfirmed part grey; an angle is in (−π, π]."""
+    count = count_drawn_looks(result.sections, 1) + 1
     panels = {}
     for each in result.sections:
         orbits = [(_first(o.points, count), o.known + 1) for o in each.orbits]
         for points, _ in orbits if result.q_is_angle else ():
+            # The IEEE remainder lies in [−π, π], symmetric about 0 as the figure is.
             points[:, 0] = [remainder(q, tau) for q in points[:, 0]]
         panels[each.scheme] = orbits
     return _draw(panels, ("q", "p"), in_a_row=len(panels), size=2.2)
@@ -82,11 +90,11 @@ def draw_periods(result: StroboscopicResult) -> Figure:
 def _draw(
     maps: dict[str, list[Orbit]], names: tuple[str, str], *, in_a_row: int, size: float
 ) -> Figure:
-    figure, panels = panels_beside(len(maps), in_a_row=in_a_row, height=_HEIGHT)
+    figure, panels = make_panels(len(maps), in_a_row=in_a_row, height=_HEIGHT)
     for axes, orbits in zip(panels.flat, maps.values(), strict=False):
-        for index, (points, known) in enumerate(orbits):
+        for index, (points, count) in enumerate(orbits):
             style: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": size}
-            axes.plot(*points[known:].T, color=INK, alpha=_FAINT, **style)
-            axes.plot(*points[:known].T, color=SERIES[index % len(SERIES)], **style)
+            axes.plot(*points[count:].T, color=INK, alpha=_FAINT, **style)
+            axes.plot(*points[:count].T, color=SERIES[index % len(SERIES)], **style)
     name_states(panels, list(maps), names, _ROOM)
     return figure

@@ -1,22 +1,25 @@
-"""Verdicts in the plane of step size and stiffness, one scheme a panel, as inline SVG."""
+"""Verdicts in the plane of step size and stiffness, with a panel for each scheme, as SVG."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
 
-from verify.pages.figures.axes import decades, grid_lines
+from verify.pages.figures.axes import draw_grid, set_decade_ticks
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.panels import name_marks, panels_beside
+from verify.pages.figures.panels import make_panels, name_marks
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import Kind, StabilityMapResult
 
 _COLUMNS = 3
-_PANEL = 165  # points high
-_SMALLER = 0.45  # marks, where several panels stand in a row
-_ROOM = 0.04  # of an axis, beyond its first and last point
+# The height of a panel in points.
+_PANEL = 165
+# The factor of the marks' areas where several panels stand in a row.
+_SMALLER = 0.45
+# The margin beyond the first and last point, as a part of the axis.
+_ROOM = 0.04
 
-# What a kind looks like; shapes differ as well as colours.
+# The marks of the kinds; they differ in shape as well, so that no one depends on colours.
 _MARKS: dict[Kind, dict[str, Any]] = {
     "stable": {"marker": ".", "color": SERIES[0], "s": 40},
     "drifts": {"marker": "o", "color": SERIES[2], "s": 20, "facecolors": "none"},
@@ -31,15 +34,15 @@ _MARKS: dict[Kind, dict[str, Any]] = {
 
 
 def draw_planes(maps: Sequence[StabilityMapResult]) -> Figure:
-    """A panel for each scheme, each cell by its verdict's mark; the line is linear theory's step.
+    """Draw a panel for each scheme, with each cell's verdict and the limit of linear theory.
 
-    All maps are over the same steps and values; they share their axes and one legend.
+    All maps have the same step sizes and values, and share their axes and one legend.
     """
     columns = min(len(maps), _COLUMNS)
-    figure, panels = panels_beside(len(maps), in_a_row=columns, height=_PANEL, beside=60)
+    figure, panels = make_panels(len(maps), in_a_row=columns, height=_PANEL, legend_height=60)
     size = 1 if columns == 1 else _SMALLER
-    for axes, over in zip(panels.flat, maps, strict=False):
-        _panel(axes, over, size)
+    for axes, stability_map in zip(panels.flat, maps, strict=False):
+        _panel(axes, stability_map, size)
     for axes in panels[:, 0]:
         axes.set_ylabel(f"{maps[0].parameter} (logarithmic)")
     for j in range(columns):
@@ -50,29 +53,31 @@ def draw_planes(maps: Sequence[StabilityMapResult]) -> Figure:
     return figure
 
 
-def _panel(axes: Any, over: StabilityMapResult, size: float) -> None:
-    xs, ys = [lg(h) for h in over.step_sizes], [lg(v) for v in over.values]
+def _panel(axes: Any, stability_map: StabilityMapResult, size: float) -> None:
+    xs, ys = [lg(h) for h in stability_map.step_sizes], [lg(v) for v in stability_map.values]
     for kind, mark in _MARKS.items():
         cells = [
             (xs[j], ys[i])
-            for i, row in enumerate(over.cells)
+            for i, row in enumerate(stability_map.cells)
             for j, cell in enumerate(row)
             if cell.kind == kind
         ]
         if cells:
             look = {**mark, "s": mark["s"] * size}
             axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **look)
-    limits = [(lg(h), y) for h, y in zip(over.linear, ys, strict=True) if h and float(h) > 0]
+    limits = [
+        (lg(h), y) for h, y in zip(stability_map.linear, ys, strict=True) if h and float(h) > 0
+    ]
     if limits:
         ends = zip(*limits, strict=True)
         axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
     _frame(axes, xs, ys)
-    axes.set_title(over.scheme)
+    axes.set_title(stability_map.scheme)
 
 
 def _frame(axes: Any, xs: Sequence[float], ys: Sequence[float]) -> None:
     for axis, places, limit in ((axes.xaxis, xs, axes.set_xlim), (axes.yaxis, ys, axes.set_ylim)):
         room = _ROOM * (max(places) - min(places) or 1)
         limit(min(places) - room, max(places) + room)
-        decades(axis, most=6)
-    grid_lines(axes)
+        set_decade_ticks(axis, max_ticks=6)
+    draw_grid(axes)

@@ -1,10 +1,10 @@
-"""A matplotlib figure → SVG that stands inside a page: fluid, themed by CSS, with ids of its own.
+"""Conversion of a matplotlib figure to SVG inside a page: fluid, themed by CSS, with unique ids.
 
-matplotlib colours are written as fixed marks that become CSS here: the ink is `currentColor`, the
-series colours are custom properties with the light theme's colour as their fallback.
+The figures are drawn in fixed colours that are replaced by CSS here: the ink by `currentColor`, the
+series colours by custom properties with the light theme's colour as their fallback.
 
-matplotlib's own settings do not go so far: `svg.id` names the root alone, all other ids (`axes_1`)
-are the same in each figure; a style for `*` and paths of six decimals stay whatever is set.
+matplotlib's settings do not suffice: `svg.id` names the root alone, and all other ids (`axes_1`)
+are the same in each figure; a style for `*` and paths of six decimals cannot be switched off.
 """
 
 import hashlib
@@ -30,11 +30,21 @@ SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a
 
 _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
-_PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
+# Decimals of a coordinate: a tenth of a point is less than a pixel.
+_PLACES = 1
 _UNITS: int = 10**_PLACES
-_OWN = ("x", "y", "href")  # of a mark
+# The attributes that differ between equal marks; a group has all others.
+_PLACE_ATTRIBUTES = ("x", "y", "href")
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
-_UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
+_FONT_PROPERTIES = {
+    "font",
+    "font-family",
+    "font-style",
+    "font-variant",
+    "font-weight",
+    "font-stretch",
+}
+# The settings do not depend on the user's matplotlibrc, so that figures are the same everywhere.
 _RC: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "areaproof",
@@ -64,21 +74,21 @@ _RC: Any = {
 
 
 @contextmanager
-def styled(**changes: object) -> Iterator[None]:
-    """matplotlib under this page's settings, and as it was before afterwards."""
+def page_style(**changes: object) -> Iterator[None]:
+    """Run a block under the page's matplotlib settings, which are restored afterwards."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(_RC | changes)
         yield
 
 
-def drawing(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
-    """The figure that `draw` makes, as an inline SVG image.
+def render_svg(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
+    """Return the figure that `draw` makes as an inline SVG image.
 
     `name` prefixes every id, so it must be unique on the page; `label` is the text alternative.
-    matplotlib's settings are as before afterwards.
+    matplotlib's settings are restored afterwards.
     """
-    with styled():
+    with page_style():
         stream = io.StringIO()
         figure = draw()
         for text in figure.findobj(Text):
@@ -90,16 +100,16 @@ def drawing(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Places what is in the figure. Left to it, `savefig` first draws the whole figure for that."""
+    """Compute the layout here, since `savefig` would draw the whole figure once more for it."""
     engine = figure.get_layout_engine()
     if engine is not None:
-        FigureCanvasSVG(figure)  # by whose letters it is measured
+        FigureCanvasSVG(figure)  # its renderer measures the texts
         engine.execute(figure)
         figure.set_layout_engine(None)
 
 
 def _printable(text: str) -> str:
-    """Without control characters, which no XML may hold; a number's own blanks stay."""
+    """Replace control characters, which XML does not allow; a number's own blanks stay."""
     return "".join(
         c if c.isprintable() or c in ("\n", NBSP) else "\N{REPLACEMENT CHARACTER}" for c in text
     )
@@ -109,14 +119,15 @@ def _inline(root: Any, name: str, label: str) -> Markup:
     _drop(root)
     for attribute in ("width", "height", "version"):
         root.attrib.pop(attribute)
-    used: set[str] = set()
+    used_ids: set[str] = set()
+    # Ids are prefixed by a short hash, since a figure may have thousands of marks.
     name = f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"  # short: of thousands of marks
     for element in root.iter():
         element.tag = element.tag.removeprefix(f"{{{_SVG}}}")
-        element.text, element.tail = _stripped(element.text), _stripped(element.tail)
-        _tidy(element, name, used)
+        element.text, element.tail = _blank_to_none(element.text), _blank_to_none(element.tail)
+        _tidy(element, name, used_ids)
     for element in root.iter():
-        if element.get("id", "") not in used:
+        if element.get("id", "") not in used_ids:
             element.attrib.pop("id", None)
     _unwrap(root)
     _group_marks(root)
@@ -130,7 +141,7 @@ def _inline(root: Any, name: str, label: str) -> Markup:
 
 
 def _drop(root: Any) -> None:
-    """Remove metadata, global styles (they would reach the whole page) and invisible paths."""
+    """Remove metadata, global styles (which would affect the whole page) and invisible paths."""
     for parent in list(root.iter()):
         for child in list(parent):
             tag = child.tag.removeprefix(f"{{{_SVG}}}")
@@ -140,7 +151,8 @@ def _drop(root: Any) -> None:
 
 
 def _unwrap(root: Any) -> None:
-    """Put the content of groups that say nothing in their place, from the leaves upwards."""
+    """Replace groups without attributes by their content, from the leaves upwards."""
+    # From the leaves upwards, since a group may be empty only after its children are unwrapped.
     for parent in reversed(list(root.iter())):
         for index, child in reversed(list(enumerate(parent))):
             if (child.tag == "g" and not child.attrib) or (child.tag == "defs" and not len(child)):
@@ -148,52 +160,54 @@ def _unwrap(root: Any) -> None:
 
 
 def _group_marks(root: Any) -> None:
-    """What equal marks in a row have in common is said once, by a group around them."""
+    """Group consecutive equal marks, so that their common attributes are written once."""
     for parent in list(root.iter()):
-        found: list[Any] = []
+        children: list[Any] = []
         for look, alike in groupby(list(parent), key=_look):
             marks = list(alike)
             if look is not None and len(marks) > 1:
                 group = ElementTree.Element("g", dict(look))
                 for mark in marks:
-                    mark.attrib = {k: mark.attrib[k] for k in _OWN if k in mark.attrib}
+                    mark.attrib = {k: mark.attrib[k] for k in _PLACE_ATTRIBUTES if k in mark.attrib}
                 group.extend(marks)
                 marks = [group]
-            found += marks
-        parent[:] = found
+            children += marks
+        parent[:] = children
 
 
 def _look(element: Any) -> tuple[tuple[str, str], ...] | None:
-    """All of a mark but where it stands; None of what is none."""
+    """Return the attributes of a mark except its place; None where the element is no mark."""
     if element.tag != "use":
         return None
-    return tuple(sorted((k, v) for k, v in element.attrib.items() if k not in _OWN))
+    return tuple(sorted((k, v) for k, v in element.attrib.items() if k not in _PLACE_ATTRIBUTES))
 
 
-def _stripped(text: str | None) -> str | None:
+def _blank_to_none(text: str | None) -> str | None:
     return text if text and text.strip() else None
 
 
-def _tidy(element: Any, name: str, used: set[str]) -> None:
-    """Own ids, short coordinates, themed colours, the page's fonts."""
+def _tidy(element: Any, name: str, used_ids: set[str]) -> None:
+    """Give the element a unique id, short coordinates, themed colours and the page's fonts."""
     attributes = element.attrib
     if "id" in attributes:
         attributes["id"] = f"{name}-{attributes['id']}"
     if _HREF in attributes:
         target = f"{name}-{attributes.pop(_HREF).removeprefix('#')}"
         attributes["href"] = f"#{target}"
-        used.add(target)
+        used_ids.add(target)
     if "clip-path" in attributes:
         target = f"{name}-{attributes['clip-path'][len('url(#') : -1]}"
         attributes["clip-path"] = f"url(#{target})"
-        used.add(target)
+        used_ids.add(target)
     if "d" in attributes:
         attributes["d"] = _short_path(attributes["d"])
     for key in ("x", "y", "width", "height"):
         if key in attributes:
-            attributes[key] = _rounded(attributes[key])
+            attributes[key] = _round_decimal(attributes[key])
     if "transform" in attributes:
-        attributes["transform"] = _NUMBER.sub(lambda m: _rounded(m[0]), attributes["transform"])
+        attributes["transform"] = _NUMBER.sub(
+            lambda m: _round_decimal(m[0]), attributes["transform"]
+        )
         if attributes["transform"].startswith("rotate(0 "):
             del attributes["transform"]
     if "style" in attributes:
@@ -203,18 +217,19 @@ def _tidy(element: Any, name: str, used: set[str]) -> None:
 def _set_style(element: Any) -> None:
     pairs = (part.partition(":") for part in element.attrib.pop("style").split(";"))
     style = {key.strip(): text.strip() for key, _, text in pairs}
-    kept = {k: _themed(v) for k, v in style.items() if k not in _UNWANTED}
+    properties = {k: _apply_theme(v) for k, v in style.items() if k not in _FONT_PROPERTIES}
+    # The join of such thin strokes cannot be seen, and would be repeated for every mark.
     if element.tag in ("path", "use"):
-        kept.pop("stroke-linejoin", None)
-    for key, text in kept.items():
+        properties.pop("stroke-linejoin", None)
+    for key, text in properties.items():
         if "var(" not in text:
             element.set(key, text)
-    themed = "; ".join(f"{k}: {v}" for k, v in kept.items() if "var(" in v)
-    if themed:
-        element.set("style", themed)
+    css = "; ".join(f"{k}: {v}" for k, v in properties.items() if "var(" in v)
+    if css:
+        element.set("style", css)
 
 
-def _themed(text: str) -> str:
+def _apply_theme(text: str) -> str:
     if text == INK:
         return "currentColor"
     if text in SERIES:
@@ -222,56 +237,57 @@ def _themed(text: str) -> str:
     return text.removesuffix("px") if re.fullmatch(r"[\d.]+px", text) else text
 
 
-def _rounded(text: str) -> str:
-    shown = f"{float(text):.{_PLACES}f}".rstrip("0").rstrip(".")
-    return "0" if shown == "-0" else shown
+def _round_decimal(text: str) -> str:
+    digits = f"{float(text):.{_PLACES}f}".rstrip("0").rstrip(".")
+    return "0" if digits == "-0" else digits
 
 
 def _short_path(path: str) -> str:
-    """The path with rounded coordinates, without steps of no length, straight steps relative.
+    """Return the path with rounded coordinates, relative straight steps, and no empty steps.
 
-    What is rounded are the places, not the steps between them, so that nothing adds up.
+    The places are rounded, not the steps between them, so that no errors accumulate.
     """
     out: list[str] = []
     x = y = 0
-    begun = [0, 0]  # where `z` leads back to
+    start = [0, 0]  # where `z` leads back to
     for command, rest in re.findall(r"([MLCQz])([^MLCQz]*)", path):
+        # Rounded places are subtracted, not rounded differences: the errors then do not add up.
         numbers = [_units(n) for n in _NUMBER.findall(rest)]
         if command == "L":
             out.append(_straight(numbers[0] - x, numbers[1] - y))
         else:
-            out.append(command + _joined(numbers))
-        x, y = numbers[-2:] or begun
+            out.append(command + _join_numbers(numbers))
+        x, y = numbers[-2:] or start
         if command == "M":
-            begun = [x, y]
+            start = [x, y]
     return "".join(out)
 
 
 def _units(text: str) -> int:
-    """A coordinate in units of the last decimal that is kept."""
+    """Return a coordinate in units of the last decimal that is written."""
     return round(float(text) * _UNITS)
 
 
 def _straight(right: int, down: int) -> str:
     if not right:
         return f"v{_decimal(down)}" if down else ""
-    return f"l{_joined([right, down])}" if down else f"h{_decimal(right)}"
+    return f"l{_join_numbers([right, down])}" if down else f"h{_decimal(right)}"
 
 
-def _joined(numbers: Sequence[int]) -> str:
-    """A minus sign sets numbers apart as well as a space."""
+def _join_numbers(numbers: Sequence[int]) -> str:
+    """Join numbers by spaces, except before a minus sign, which separates as well."""
     return " ".join(_decimal(n) for n in numbers).replace(" -", "-")
 
 
 def _decimal(units: int) -> str:
-    whole, part = divmod(abs(units), _UNITS)
+    integer_part, part = divmod(abs(units), _UNITS)
     digits = f".{part:0{_PLACES}d}".rstrip("0").rstrip(".")
-    shown = f"{whole or ''}{digits}" or "0"
-    return f"-{shown}" if units < 0 else shown
+    text = f"{integer_part or ''}{digits}" or "0"
+    return f"-{text}" if units < 0 else text
 
 
 def document(figures: Sequence[Markup]) -> str:
-    """Inline figures below one another as one SVG document, on white."""
+    """Return inline figures below one another as one SVG document, on white."""
     boxes = [ElementTree.fromstring(str(svg)) for svg in figures]  # noqa: S314 - our own
     sizes = [[float(x) for x in box.get("viewBox", "0 0 0 0").split()[2:]] for box in boxes]
     width, height = max((w for w, _ in sizes), default=1.0), sum(h for _, h in sizes)

@@ -1,12 +1,10 @@
-"""Text and the page's markup → GitHub flavoured Markdown in which what others wrote stays text.
+"""Conversion of text and the page's markup to lines of Markdown in which foreign text stays text.
 
 Inside a line GitHub allows a few HTML elements, which, unlike asterisks and backticks, mean the
 same in a table, beside any letter and around any text.
 
-MathML, as `verify.pages.text.mathml` sets it within a line → elements that a <summary> may hold.
-
-A repository page sets no formula there. Indices and powers are set as such, a fraction with a
-solidus, a root with its sign.
+A repository page sets no formula in a <summary>: there MathML, as `verify.pages.text.mathml` sets
+it within a line, becomes indices, powers, fractions with a solidus and roots with a sign.
 """
 
 import re
@@ -19,7 +17,7 @@ from verify.pages.markdown.mathml_to_tex import tex
 
 
 def html_of_math(node: Node) -> Node:
-    """The formula with no element but `sub` and `sup`."""
+    """Return the formula with no elements but `sub` and `sup`."""
     inner = [html_of_math(c) for c in node.elements()]
     match node.tag, inner:
         case (("mi" | "mn" | "mtext"), _):
@@ -33,61 +31,76 @@ def html_of_math(node: Node) -> Node:
         case "msubsup", [base, lower, upper]:
             return Node("", {}, [base, Node("sub", {}, [lower]), Node("sup", {}, [upper])])
         case "mfrac", [above, below]:
-            return Node("", {}, [*_closed(above), "/", *_closed(below)])
+            return Node(
+                "", {}, [*_bracket_unless_simple(above), "/", *_bracket_unless_simple(below)]
+            )
         case "msqrt", _:
-            return Node("", {}, ["√", *_closed(Node("", {}, [*inner]))])
+            return Node("", {}, ["√", *_bracket_unless_simple(Node("", {}, [*inner]))])
         case "mroot", [base, degree]:
-            return Node("", {}, [Node("sup", {}, [degree]), "√", *_closed(base)])
+            return Node("", {}, [Node("sup", {}, [degree]), "√", *_bracket_unless_simple(base)])
     return Node("", {}, [*inner])
 
 
-_SIGNS = {"\u2061": " ", "\u2062": " "}  # what is applied or multiplied
+# Invisible signs become spaces: function application and multiplication.
+_SIGNS = {"\u2061": " ", "\u2062": " "}
 
 
-def _closed(node: Node) -> list[Node | str]:
-    """In brackets where it is more than a name or a number."""
+def _bracket_unless_simple(node: Node) -> list[Node | str]:
+    """Return the node in brackets, unless it is a name or a number."""
     return [node] if node.text.isalnum() else ["(", node, ")"]
 
 
-_MARKS = re.compile(r"[\\`*_\[\]|~#]")
-_AT_THE_START = re.compile(
+_SPECIAL_CHARACTERS = re.compile(r"[\\`*_\[\]|~#]")
+# At the start of a line these would make a list, an underline or a table's alignment.
+_LINE_START = re.compile(
     r"[-+=:]|[0-9]+(?=[.)](?:\s|$))"
 )  # a list, an underline, a table's alignment
 _ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
-_KEPT = {"sub": "sub", "sup": "sup", "b": "b", "strong": "b", "em": "i", "i": "i", "code": "code"}
-_ASIDES = {"bound", "beside"}  # what the page sets smaller beside or below a number
+_HTML_TAGS = {
+    "sub": "sub",
+    "sup": "sup",
+    "b": "b",
+    "strong": "b",
+    "em": "i",
+    "i": "i",
+    "code": "code",
+}
+# Classes that the page sets smaller, beside or below a number; here they are in brackets.
+_ASIDES = {"bound", "beside"}
+# Only links within the report are kept, so that foreign text cannot link anywhere.
 _SAFE_LINK = re.compile(r"#[A-Za-z0-9_.-]+|results\.json")
 
 
 class Markdown(str):
-    """Text that is Markdown already."""
+    """A text that is Markdown already."""
 
     __slots__ = ()
 
 
-def markdown(found: object) -> Markdown:
-    """Anything as Markdown inside a line: Markdown as it is, markup set anew, all else as text."""
-    if isinstance(found, Markdown):
-        return found
-    if hasattr(found, "__html__"):
-        return line([tree(found.__html__())])
-    return escaped("" if found is None else str(found))
+def markdown(content: object) -> Markdown:
+    """Return Markdown for inside a line: Markdown unchanged, markup converted, all else as text."""
+    if isinstance(content, Markdown):
+        return content
+    if hasattr(content, "__html__"):
+        return line([tree(content.__html__())])
+    return escape_markdown("" if content is None else str(content))
 
 
-def escaped(text: str) -> Markdown:
-    """The text in one line, with no character that means anything to Markdown or to HTML."""
+def escape_markdown(text: str) -> Markdown:
+    """Return the text in one line, with all marks of Markdown and HTML escaped."""
+    # A private character stands for no-break spaces, which \s would split at.
     line = " ".join(re.split(r"[\s\x00-\x1f]+", text.replace("\u00a0", "\ue000"))).strip()
-    return Markdown(_started(_quoted(line).replace("\ue000", "\u00a0")))
+    return Markdown(_escape_line_start(_escape_marks(line).replace("\ue000", "\u00a0")))
 
 
-def line(found: Iterable[Node | str], *, started: bool = True) -> Markdown:
-    """Pieces of markup in one line; one that is not `started` begins with its own marks."""
-    text = re.sub(" {2,}", " ", "".join(map(_inline, found)).strip(" "))
-    return Markdown(_started(text) if started else text)
+def line(pieces: Iterable[Node | str], *, escapes_start: bool = True) -> Markdown:
+    """Return pieces of markup in one line; without `escapes_start` its first marks stay marks."""
+    text = re.sub(" {2,}", " ", "".join(map(_inline, pieces)).strip(" "))
+    return Markdown(_escape_line_start(text) if escapes_start else text)
 
 
-def in_html(node: Node) -> Markdown:
-    """What stands in it as HTML, for a <summary>, in which Markdown's marks mean nothing."""
+def render_html(node: Node) -> Markdown:
+    """Return the node's content as HTML, for a <summary>, where Markdown's marks mean nothing."""
     return Markdown(re.sub(" {2,}", " ", _html(node)).strip())
 
 
@@ -101,20 +114,20 @@ def _html(node: Node | str) -> str:
         inner += " "
     if "who" in node.classes:
         inner = f"({inner})"
-    kept = "b" if "badge" in node.classes else _KEPT.get(node.tag)
-    return f"<{kept}>{inner}</{kept}>" if kept else inner
+    tag = "b" if "badge" in node.classes else _HTML_TAGS.get(node.tag)
+    return f"<{tag}>{inner}</{tag}>" if tag else inner
 
 
-def _started(line: str) -> str:
-    """A line that starts no list and underlines no heading."""
-    start = _AT_THE_START.match(line)
+def _escape_line_start(line: str) -> str:
+    """Escape the start of a line that would begin a list or underline a heading."""
+    start = _LINE_START.match(line)
     if start is None:
         return line
     return f"{start[0]}\\{line[start.end() :]}" if start[0].isdigit() else f"\\{line}"
 
 
-def _quoted(text: str) -> str:
-    text = _MARKS.sub(r"\\\g<0>", text.translate(_ENTITIES))
+def _escape_marks(text: str) -> str:
+    text = _SPECIAL_CHARACTERS.sub(r"\\\g<0>", text.translate(_ENTITIES))
     # GitHub would read the rest as a formula, or make a link of it.
     text = text.replace("$", "<span>$</span>").replace("://", "&#58;//")
     return re.sub(r"(?i)\bwww\.", lambda m: f"{m[0][:-1]}&#46;", text)
@@ -125,17 +138,17 @@ def _quoted(text: str) -> str:
 
 def _inline(node: Node | str) -> str:
     if isinstance(node, str):
-        return _quoted(re.sub(r"[ \t\r\n]+", " ", node))
+        return _escape_marks(re.sub(r"[ \t\r\n]+", " ", node))
     if node.tag == "math":
         return _formula(node)
     if node.tag == "br":
         return "<br>"
     if node.attributes.get("class") == "digits":
-        return _quoted(node.text)  # the groups are the style sheet's
+        return _escape_marks(node.text)  # the groups are the style sheet's
     inner = "".join(_inline(child) for child in node.children)
-    kept = "b" if "badge" in node.classes else _KEPT.get(node.tag)
-    if kept:
-        return f"<{kept}>{inner}</{kept}>"
+    tag = "b" if "badge" in node.classes else _HTML_TAGS.get(node.tag)
+    if tag:
+        return f"<{tag}>{inner}</{tag}>"
     if node.tag == "a" and _SAFE_LINK.fullmatch(node.attributes.get("href", "")):
         return f"[{inner}]({node.attributes['href']})"
     if node.attributes.get("aria-hidden"):
@@ -146,7 +159,7 @@ def _inline(node: Node | str) -> str:
 
 
 def _formula(node: Node) -> str:
-    """Between ``$` `` and `` `$``, where Markdown's own marks mean nothing; a display by itself."""
+    """Return a formula between ``$` `` and `` `$``, a display as a block of its own."""
     if node.attributes.get("display") == "block":
         return f"\n\n```math\n{tex(node).strip()}\n```\n\n"
     return f"$`{tex(node).strip()}`$"
@@ -156,8 +169,10 @@ def _formula(node: Node) -> str:
 
 
 def table(heads: Sequence[object], rows: Iterable[Sequence[object]], words: str = "") -> Markdown:
-    """A table whose columns are numbers, aligned right; `words`: a letter for each column, where
-    they are not: l (left) or r (right)."""
+    """Return a table whose columns are aligned right, as numbers are.
+
+    `words`: a letter for each of the first columns, l (left) or r (right), where they differ.
+    """
     places = words.ljust(len(heads), "r")
     rule = "|".join(":---" if place == "l" else "---:" for place in places[: len(heads)])
     lines = [

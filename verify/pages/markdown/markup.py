@@ -1,4 +1,4 @@
-"""The page's own markup as a small tree, so that another format can set it anew."""
+"""The page's own markup as a small tree, from which another format can be made."""
 
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
@@ -10,7 +10,7 @@ _VOID = {"br", "img"}
 
 @dataclass(frozen=True)
 class Node:
-    """An element: its tag, its attributes, and what stands in it, texts and elements in turn."""
+    """An element: its tag, its attributes and its children, which are texts and elements."""
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
@@ -18,22 +18,22 @@ class Node:
 
     @property
     def classes(self) -> list[str]:
-        """Its classes."""
+        """The classes of the element."""
         return self.attributes.get("class", "").split()
 
     def elements(self, *tags: str) -> list["Node"]:
-        """The elements right in it; of these tags, where any is named."""
-        found = [child for child in self.children if isinstance(child, Node)]
-        return [each for each in found if not tags or each.tag in tags]
+        """Return the child elements, with `tags` only those of these tags."""
+        child_elements = [child for child in self.children if isinstance(child, Node)]
+        return [each for each in child_elements if not tags or each.tag in tags]
 
     @property
     def text(self) -> str:
-        """All text in it."""
+        """The text in the element and in its descendants."""
         return "".join(c if isinstance(c, str) else c.text for c in self.children)
 
 
 def tree(markup: Markup) -> Node:
-    """The markup under a node without a tag; an end tag that closes nothing is passed over."""
+    """Return the markup under a node without a tag; end tags that close nothing are ignored."""
     reader = _Reader()
     reader.feed(str(markup))
     reader.close()
@@ -55,6 +55,7 @@ class _Reader(HTMLParser):
         self.open[-1].children.append(Node(tag, {key: text or "" for key, text in attrs}))
 
     def handle_endtag(self, tag: str) -> None:
+        # Only the innermost open element may be closed; other end tags are ignored.
         if len(self.open) > 1 and self.open[-1].tag == tag:
             self.open.pop()
 

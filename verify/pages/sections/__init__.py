@@ -1,1 +1,1 @@
-"""What each section of a report shows: sentences, tables and pictures, all from the data."""
+"""The sections of a report: sentences, tables and pictures, all from the data."""

@@ -1,4 +1,4 @@
-"""Things in groups, each group under what its members have in common."""
+"""Grouping by a key that the members of a group have in common."""
 
 from collections.abc import Callable, Iterable
 from typing import TypeVar
@@ -7,9 +7,9 @@ Key = TypeVar("Key")
 Member = TypeVar("Member")
 
 
-def by_key(found: Iterable[Member], key: Callable[[Member], Key]) -> dict[Key, list[Member]]:
-    """The groups in the order in which their first members stand; these keep theirs."""
+def by_key(members: Iterable[Member], key: Callable[[Member], Key]) -> dict[Key, list[Member]]:
+    """Return the groups by key, in the order of their first members; members keep their order."""
     groups: dict[Key, list[Member]] = {}
-    for each in found:
+    for each in members:
         groups.setdefault(key(each), []).append(each)
     return groups

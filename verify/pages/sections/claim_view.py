@@ -1,4 +1,4 @@
-"""A claim as the page shows it: its anchor, its table's printed row where it has one, its group."""
+"""A claim as the page shows it: its anchor, its group, and the printed row of its table."""
 
 import re
 from collections import Counter
@@ -32,15 +32,16 @@ COLOURS = {
     Outcome.REFUTED: Verdict.REFUTED,
     Outcome.UNDECIDED: Verdict.UNDECIDED,
 }
-_PRINTED = "printed"  # how the printed row of a table claim's details begins
+# The printed row in the details of a table's claim begins with this word.
+_PRINTED_ROW_START = "printed"
 
 
 @dataclass(frozen=True)
 class ClaimView:
     """A claim with its place on the page; `plot`: its table's picture, where it is a table.
 
-    `of`: the statement that it is a reading of, where statements are counted; `again`: whether
-    another reading of it stands before this one.
+    `statement`: the statement that it is a reading of, where statements are counted;
+    `is_later_reading`: True if another reading of that statement stands before this one.
     """
 
     result: ClaimResult
@@ -48,34 +49,34 @@ class ClaimView:
     scene_anchor: str
     scene_title: str
     plot: Plot | None = None
-    of: StatementResult | None = None
-    again: bool = False
+    statement: StatementResult | None = None
+    is_later_reading: bool = False
 
     @property
     def outcome(self) -> str:
-        """What holds of the statement, with the first of its several readings."""
-        if self.of is None or self.again or len(self.of.readings) == 1:
+        """The statement's outcome, for the first of several readings; else ""."""
+        if self.statement is None or self.is_later_reading or len(self.statement.readings) == 1:
             return ""
-        return f"{len(self.of.readings)} readings: {_OUTCOMES[self.of.outcome]}"
+        return f"{len(self.statement.readings)} readings: {_OUTCOMES[self.statement.outcome]}"
 
     @property
-    def told(self) -> str:
-        """By which tile of the first screen it is counted: a verdict in small letters."""
-        return (COLOURS[self.of.outcome] if self.of else self.result.verdict).lower()
+    def tile_word(self) -> str:
+        """The verdict, in small letters, of the tile on the first screen that counts the claim."""
+        return (COLOURS[self.statement.outcome] if self.statement else self.result.verdict).lower()
 
     @property
     def standing(self) -> str:
-        """How it stands to what is printed, where it is no fair reading."""
+        """The reading's departure from the printed text; "" for a fair reading."""
         return _STANDINGS[self.result.standing]
 
     @property
-    def who(self) -> str:
-        """Who checked its proof, in a word each."""
+    def checkers(self) -> str:
+        """The checkers of its proof, in a word each."""
         return ", ".join(dict.fromkeys(re.split("[:,]", by)[0] for by in self.result.checked_by))
 
     @property
     def name(self) -> str:
-        """What the page calls it."""
+        """The claim's name on the page."""
         return self.result.source or self.result.id
 
     @property
@@ -85,7 +86,7 @@ class ClaimView:
             len(details) > 2
             and len(details[0]) > 1
             and all(len(row) == len(details[0]) for row in details)
-            and details[1][0].startswith(_PRINTED)
+            and details[1][0].startswith(_PRINTED_ROW_START)
             and all(head.startswith("h = ") for head in details[0][1:])
         )
 
@@ -94,17 +95,17 @@ class ClaimView:
         return [head.removeprefix("h = ") for head in self.result.details[0][1:]]
 
     @property
-    def printed(self) -> tuple[str, ...]:
+    def printed_row(self) -> tuple[str, ...]:
         return self.result.details[1][1:]
 
     @property
-    def computed(self) -> tuple[tuple[str, ...], ...]:
+    def computed_rows(self) -> tuple[tuple[str, ...], ...]:
         return self.result.details[2:]
 
     @property
     def by_step_size(self) -> list[tuple[str, tuple[str, ...]]]:
-        """Each step size with what is printed for it and, in the order of `computed`, computed."""
-        columns = zip(self.printed, *(row[1:] for row in self.computed), strict=True)
+        """Each step size with its printed value and the computed ones, as in `computed_rows`."""
+        columns = zip(self.printed_row, *(row[1:] for row in self.computed_rows), strict=True)
         return list(zip(self.step_sizes, columns, strict=True))
 
 
@@ -127,6 +128,7 @@ class Anchors:
     def take(self, kind: str, name: str) -> str:
         slug = re.sub(r"[^A-Za-z0-9_.-]+", "-", name).strip("-") or "unnamed"
         anchor, count = f"{kind}-{slug}", 1
+        # Different names can have the same slug.
         while anchor in self._taken:
             count += 1
             anchor = f"{kind}-{slug}-{count}"
@@ -138,20 +140,24 @@ class Anchors:
 
 
 def groups(claims: Sequence[ClaimView], anchors: Anchors) -> list[ClaimGroup]:
-    """The claims by section, sections in the order of their numbers, those without one last."""
+    """Return the claims by section, in the order of section numbers, those without one last."""
     by_section = by_key(claims, lambda claim: claim.result.section)
-    found = []
+    claim_groups = []
     for section in sorted(by_section, key=_place):
-        own = by_section[section]
+        section_claims = by_section[section]
         title = section or ("Other claims" if len(by_section) > 1 else "")
-        counted = Counter(c.result.verdict for c in own)
-        counts = tuple((v, counted[v]) for v in Verdict if counted[v])
-        found.append(ClaimGroup(title, anchors.take("section", title or "all"), tuple(own), counts))
-    return found
+        verdict_counts = Counter(c.result.verdict for c in section_claims)
+        counts = tuple((v, verdict_counts[v]) for v in Verdict if verdict_counts[v])
+        claim_groups.append(
+            ClaimGroup(
+                title, anchors.take("section", title or "all"), tuple(section_claims), counts
+            )
+        )
+    return claim_groups
 
 
 def _place(section: str) -> tuple[int, list[int]]:
-    """Sorts 4.2 before 4.10, then sections without a number, then what names none."""
+    """Return a key that sorts 4.2 before 4.10, then sections without a number, then none."""
     if match := _NUMBERED.match(section):
         return 0, [int(n) for n in match[0].split(".")]
     return (1 if section else 2), []

@@ -1,4 +1,4 @@
-"""What regions carried by maps show, in sentences: on all of a scene, and on each of them."""
+"""Sentences on regions carried by maps: on all regions of a scene, and on each of them."""
 
 from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, Decimal
@@ -6,10 +6,11 @@ from fractions import Fraction
 
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.flow_words import Words, words
-from verify.pages.text.typography import IS, NBSP, listed, map_name, number, step, whole
+from verify.pages.text.typography import IS, NBSP, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
-_SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture; the sentence says it
+# The part of an area below which a change cannot be seen in a picture; a sentence says so.
+_VISIBLE_SHARE = Fraction(1, 1000)
 
 # -- sentences on all of a scene ------------------------------------------------------------------
 
@@ -17,94 +18,102 @@ FlowFinding = tuple[FlowResult, FlowImage]
 
 
 def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
+    """Yield the sentences on all regions of a scene."""
     images = [(flow, image) for flow in flows for image in flow.images]
     changing = [each for each in images if each[1].area_preserving is not True]
-    known = [each for each in changing if each[1].area_change is not None]
-    said = words(flows)
-    if known:
-        yield _largest(known, said)
-        yield _probe(known)
-        yield from _means(known, said)
-    yield from _preserved([each for each in images if each[1].area_preserving], said)
-    yield from _distances([each for each in images if each[1].distance is not None])
+    measured_images = [each for each in changing if each[1].area_change is not None]
+    vocabulary = words(flows)
+    if measured_images:
+        yield _describe_largest_change(measured_images, vocabulary)
+        yield _describe_probe_error(measured_images)
+        yield from _compare_with_means(measured_images, vocabulary)
+    yield from _describe_preserving_maps(
+        [each for each in images if each[1].area_preserving], vocabulary
+    )
+    yield from _describe_distances([each for each in images if each[1].distance is not None])
     problems = [each for each in images if each[1].problem]
     if problems:
         count = "image has" if len(problems) == 1 else "images have"
         yield (
-            f"{whole(len(problems))} {count} no known change of {said.measured}; the table says "
-            "why."
+            f"{whole(len(problems))} {count} no known change of {vocabulary.invariant}; the table "
+            "says why."
         )
 
 
-def _largest(known: Sequence[FlowFinding], said: Words) -> str:
-    flow, image = max(known, key=lambda each: _size(each[1].area_change))
+def _describe_largest_change(images: Sequence[FlowFinding], vocabulary: Words) -> str:
+    flow, image = max(images, key=lambda each: _size(each[1].area_change))
     return (
-        f"The largest relative change of {said.measured} is that by {image.map} with "
-        f"{_at(flow, image)}: {_change(image)}."
+        f"The largest relative change of {vocabulary.invariant} is that by {image.map} with "
+        f"{_step_and_count(flow, image)}: {_format_change(image)}."
     )
 
 
-def _probe(known: Sequence[FlowFinding]) -> str:
-    """How far below the change the probe's error is, in the worst case."""
+def _describe_probe_error(images: Sequence[FlowFinding]) -> str:
+    """Return a sentence on the least ratio of a change to the probe's own error."""
     ratios = [
         _size(image.area_change) / Fraction(image.probe_error)
-        for _, image in known
+        for _, image in images
         if image.probe_error and Fraction(image.probe_error)
     ]
     if not ratios:
         return "The probe’s own error is 0."
-    least = whole(_floor_of(min(ratios)))
+    least_ratio = whole(_floor_of(min(ratios)))
     if len(ratios) == 1:
-        return f"The probe’s own error is {least} times smaller."
-    return f"The probe’s own error is at least {least} times smaller than the change it measures."
+        return f"The probe’s own error is {least_ratio} times smaller."
+    return (
+        f"The probe’s own error is at least {least_ratio} times smaller than the change it "
+        "measures."
+    )
 
 
 def _floor_of(ratio: Fraction) -> int:
-    """Two digits, rounded downwards."""
+    """Return the ratio rounded down to two digits, so that "at least" holds."""
     count = int(ratio)
     unit = int("1" + "0" * max(0, len(str(count)) - 2))
     return count // unit * unit
 
 
-def _means(known: Sequence[FlowFinding], said: Words) -> Iterator[str]:
-    compared = [image for _, image in known if image.agree is not None]
+def _compare_with_means(images: Sequence[FlowFinding], vocabulary: Words) -> Iterator[str]:
+    compared = [image for _, image in images if image.agree is not None]
     if not compared:
         return
-    apart = sum(not image.agree for image in compared)
+    differing = sum(not image.agree for image in compared)
     all_of = "In the one image" if len(compared) == 1 else f"In all {whole(len(compared))} images"
-    if apart:
+    if differing:
         yield (
-            f"The mean of {said.mean} over the region, computed without {said.without}, differs "
-            f"from it in {whole(apart)} of {whole(len(compared))} images: one of the two is wrong "
-            "there."
+            f"The mean of {vocabulary.defect} over the region, computed without "
+            f"{vocabulary.not_used}, differs from it in {whole(differing)} of "
+            f"{whole(len(compared))} images: one of the two is wrong there."
         )
     else:
         yield (
-            f"{all_of} the mean of {said.mean} over the region, computed without {said.without}, "
-            f"is the same within the errors, as it must be by {said.equal_by}."
+            f"{all_of} the mean of {vocabulary.defect} over the region, computed without "
+            f"{vocabulary.not_used}, is the same within the errors, as it must be by "
+            f"{vocabulary.equal_by}."
         )
 
 
-def _preserved(images: Sequence[FlowFinding], words: Words) -> Iterator[str]:
+def _describe_preserving_maps(images: Sequence[FlowFinding], vocabulary: Words) -> Iterator[str]:
     schemes = list(dict.fromkeys(i.map for _, i in images if i.map != EXACT_FLOW))
     exact = any(image.map == EXACT_FLOW for _, image in images)
-    whose = [f"{words.proved} is proved for {listed(schemes)}"] if schemes else []
+    reasons = [f"{vocabulary.identity} is proved for {join_and(schemes)}"] if schemes else []
     if exact:
-        whose.append(words.kept)
-    measured = [image for _, image in images if image.area_change is not None]
-    if not whose or not measured:
+        reasons.append(vocabulary.kept_by_flow)
+    measured_images = [image for _, image in images if image.area_change is not None]
+    if not reasons or not measured_images:
         return
-    said = " and ".join(whose)
-    above = [i for i in measured if _size(i.area_change) > Fraction(i.probe_error or 0)]
-    most = max(measured, key=lambda image: Fraction(image.probe_error or 0))
-    if above:
+    claim = " and ".join(reasons)
+    # A change larger than the probe's error contradicts the proof, so that the probe must be wrong.
+    exceeding = [i for i in measured_images if _size(i.area_change) > Fraction(i.probe_error or 0)]
+    most = max(measured_images, key=lambda image: Fraction(image.probe_error or 0))
+    if exceeding:
         yield (
-            f"{_capital(said)}, but for {whole(len(above))} of these images the probe measures a "
-            "change that is larger than its error: the probe is wrong there."
+            f"{_capital(claim)}, but for {whole(len(exceeding))} of these images the probe "
+            "measures a change that is larger than its error: the probe is wrong there."
         )
         return
     yield (
-        f"{_capital(said)}; what the probe measures there is below its own error, at most "
+        f"{_capital(claim)}; what the probe measures there is below its own error, at most "
         f"{number(most.probe_error or '0')}."
     )
 
@@ -113,78 +122,87 @@ def _capital(text: str) -> str:
     return text if text.startswith("det") else text[:1].upper() + text[1:]
 
 
-def _distances(images: Sequence[FlowFinding]) -> Iterator[str]:
-    """For each scheme, how far its outlines are from the exact ones at most."""
+def _describe_distances(images: Sequence[FlowFinding]) -> Iterator[str]:
+    """Yield the greatest distance of each scheme's outlines from the exact ones."""
     parts = []
-    for name, own in by_key(images, lambda each: each[1].map).items():
-        flow, image = max(own, key=lambda each: _size(each[1].distance))
-        parts.append(f"{name} {_away(image)} ({_at(flow, image)})")
+    for name, scheme_images in by_key(images, lambda each: each[1].map).items():
+        flow, image = max(scheme_images, key=lambda each: _size(each[1].distance))
+        parts.append(f"{name} {_format_distance(image)} ({_step_and_count(flow, image)})")
     if parts:
-        yield f"The outlines’ distance from those by the exact flow: {listed(parts)}."
+        yield f"The outlines’ distance from those by the exact flow: {join_and(parts)}."
 
 
 # -- sentences on one region ----------------------------------------------------------------------
 
 
 def finding(flow: FlowResult) -> Iterator[str]:
-    """The change of area of each scheme after the most steps; what is proved; distances.
+    """Yield the change of area by each scheme after the most steps, proofs, and distances.
 
-    Where the last image failed, the last that is known is told too.
+    Where the last image failed, the last one with a measured change is reported too.
     """
     ascending = sorted(flow.images, key=lambda image: image.steps)
     for name, images in by_key(ascending, lambda image: image.map).items():
-        known = [image for image in images if image.area_change is not None]
+        measured_images = [image for image in images if image.area_change is not None]
         if name != EXACT_FLOW:
-            yield from (_finding_of(flow, each) for each in known[-1:] if each is not images[-1])
-            yield _finding_of(flow, images[-1])
-    yield from _by_planes(flow)
+            yield from (
+                _describe_image(flow, each)
+                for each in measured_images[-1:]
+                if each is not images[-1]
+            )
+            yield _describe_image(flow, images[-1])
+    yield from _describe_projections(flow)
 
 
-def _finding_of(flow: FlowResult, image: FlowImage) -> str:
-    start = f"{image.map} with {_at(flow, image)}"
-    said = words([flow])
+def _describe_image(flow: FlowResult, image: FlowImage) -> str:
+    start = f"{image.map} with {_step_and_count(flow, image)}"
+    vocabulary = words([flow])
     if image.area_change is None:
         why = image.problem or "none was measured"
-        return f"{start}: no change of {said.measured} is known ({why})."
+        return f"{start}: no change of {vocabulary.invariant} is known ({why})."
     away = ""
     if image.distance is not None:
-        away = f" Its outlines are {_away(image)} away from the exact ones."
+        away = f" Its outlines are {_format_distance(image)} away from the exact ones."
     if image.area_preserving:
-        change = f"(measured: {_change(image)})"
-        return f"{start} keeps {_measured(flow)} by proof {change}.{away}"
+        change = f"(measured: {_format_change(image)})"
+        return f"{start} keeps {_name_invariant(flow)} by proof {change}.{away}"
+    # The bound on the true change: the measured one and its error.
     most = _size(image.area_change) + _size(image.probe_error)
-    unseen = ", less than the thousandth that a picture can show" if most < _SEEN else ""
-    text = f"{start} changes {_measured(flow)} by {_change(image)} of it{unseen}."
+    unseen = ", less than the thousandth that a picture can show" if most < _VISIBLE_SHARE else ""
+    text = f"{start} changes {_name_invariant(flow)} by {_format_change(image)} of it{unseen}."
     doubt = ""
     if image.agree is False:
         doubt = (
-            f" The mean of {said.mean} over it, which must be the same, is "
-            f"{_pair(*mean_of(image))}: one of the two is wrong."
+            f" The mean of {vocabulary.defect} over it, which must be the same, is "
+            f"{_with_error(*mean_of(image))}: one of the two is wrong."
         )
     return f"{text}{doubt}{away}"
 
 
 def mean_of(image: FlowImage) -> tuple[str | None, str | None]:
-    """The mean of Λ, or of W in n degrees of freedom, and its error."""
+    """Return the mean of Λ, or of W in n degrees of freedom, and its error."""
     if image.mean_defect is not None:
         return image.mean_defect, image.mean_defect_error
     return image.mean_lambda, image.mean_lambda_error
 
 
-def _measured(flow: FlowResult) -> str:
-    said = words([flow]).measured
-    return f"{said} around {region_of(flow)}" if flow.plane else f"the {said} of {region_of(flow)}"
+def _name_invariant(flow: FlowResult) -> str:
+    invariant = words([flow]).invariant
+    return (
+        f"{invariant} around {region_of(flow)}"
+        if flow.plane
+        else f"the {invariant} of {region_of(flow)}"
+    )
 
 
-def _by_planes(flow: FlowResult) -> Iterator[str]:
-    """What of ∮ p·dq lies in which plane at last, by the first map that has an image."""
+def _describe_projections(flow: FlowResult) -> Iterator[str]:
+    """Yield the parts of ∮ p·dq in each plane at the end, by the first map with an image."""
     images = [image for image in flow.images if image.outlines and image.outlines[0].projections]
     if not images:
         return
     last = max((i for i in images if i.map == images[0].map), key=lambda image: image.steps)
-    seen = last.outlines[0].projections
-    planes = listed([f"(q{x.plane}, p{x.plane})" for x in seen])
-    areas = listed([f"{float(x.area):.4g}".replace("-", "−") for x in seen])
+    projections = last.outlines[0].projections
+    planes = join_and([f"(q{x.plane}, p{x.plane})" for x in projections])
+    areas = join_and([f"{float(x.area):.4g}".replace("-", "−") for x in projections])
     yield (
         f"After N{IS}{whole(last.steps)} steps by {map_name(last.map)} the projections to "
         f"{planes} enclose {areas} of what the outline enclosed in (q{flow.plane}, p{flow.plane}) "
@@ -193,7 +211,7 @@ def _by_planes(flow: FlowResult) -> Iterator[str]:
 
 
 def region_of(flow: FlowResult) -> str:
-    """The region whose area it is: the first outline's."""
+    """Return the name of the region whose area is measured, that of the first outline."""
     name = flow.before[0].name if flow.before else flow.shape
     return f"the {flow.shape}" if name == flow.shape else f"the {flow.shape}’s {name}"
 
@@ -205,30 +223,30 @@ def _size(text: str | None) -> Fraction:
     return abs(Fraction(text or 0))
 
 
-def _at(flow: FlowResult, image: FlowImage) -> str:
+def _step_and_count(flow: FlowResult, image: FlowImage) -> str:
     return f"h{IS}{step(flow.step_size)}, N{IS}{whole(image.steps)}"
 
 
-def _change(image: FlowImage) -> str:
-    return _pair(image.area_change, image.probe_error)
+def _format_change(image: FlowImage) -> str:
+    return _with_error(image.area_change, image.probe_error)
 
 
-def _away(image: FlowImage) -> str:
-    """A distance with its error; where that is as large, only what the two bound together."""
-    found, error = _size(image.distance), _size(image.distance_error)
-    if error < found:
-        return f"up to {_pair(image.distance, image.distance_error)}"
-    return f"at most {number(_rounded_up(found + error))}"
+def _format_distance(image: FlowImage) -> str:
+    """Return a distance with its error; where that is as large, the bound that both give."""
+    distance, error = _size(image.distance), _size(image.distance_error)
+    if error < distance:
+        return f"up to {_with_error(image.distance, image.distance_error)}"
+    return f"at most {number(_round_up(distance + error))}"
 
 
-def _rounded_up(value: Fraction) -> str:
-    """A bound with two digits."""
+def _round_up(value: Fraction) -> str:
+    """Return a bound rounded up to two digits."""
     exact = Decimal(value.numerator) / Decimal(value.denominator)
     return f"{exact.quantize(Decimal((0, (1,), exact.adjusted() - 1)), ROUND_CEILING):.1e}"
 
 
-def _pair(value: str | None, error: str | None) -> str:
-    """value ± error."""
+def _with_error(value: str | None, error: str | None) -> str:
+    """Return value ± error as text."""
     if value is None:
         return "–"
     return number(value) if error is None else f"{number(value)}{NBSP}±{NBSP}{number(error)}"

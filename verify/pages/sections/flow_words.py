@@ -1,6 +1,6 @@
-"""What the area of a region is called, and what its change is held against, by degrees of freedom.
+"""The words for a region's invariant and for the defect that its change is compared with.
 
-In the plane it is an area and Λ; in n degrees of freedom ∮ p·dq, ω's area, and the defect W.
+In the plane these are the area and Λ; in n degrees of freedom ∮ p·dq, ω's area, and W.
 """
 
 from collections.abc import Sequence
@@ -13,28 +13,32 @@ from verify.scenes.results.regions import FlowResult
 
 @dataclass(frozen=True)
 class Words:
-    """`measured`: what changes; `mean`: of what over the region; `without`: what that does not look
-    at; `equal_by`: why the two are the same; `kept` and `proved`: why it is kept by the exact flow,
-    and what is proved of schemes; `heads`: of a table's columns; `about` such a table."""
+    """The words for one number of degrees of freedom.
 
-    measured: str
-    mean: str
-    without: str
+    `invariant`: the measured quantity; `defect`: whose mean over the region equals its change;
+    `not_used`: what the mean is computed without; `equal_by`: why the two are equal;
+    `kept_by_flow`: why the exact flow preserves it; `identity`: the identity proved of a scheme;
+    `heads`: the heads of a table's columns; `about`: the explanation of such a table.
+    """
+
+    invariant: str
+    defect: str
+    not_used: str
     equal_by: str
-    kept: str
-    proved: str
+    kept_by_flow: str
+    identity: str
     heads: tuple[str, ...]
     about: str
     terms: dict[str, Markup]
 
 
 _PLANE = Words(
-    measured="area",
-    mean="Λ",
-    without="any area",
+    invariant="area",
+    defect="Λ",
+    not_used="any area",
     equal_by="the change of variables",
-    kept="the exact flow preserves area by Liouville’s theorem",
-    proved="det J ≡ 1",
+    kept_by_flow="the exact flow preserves area by Liouville’s theorem",
+    identity="det J ≡ 1",
     heads=("N", "t", "change of area", "mean of Λ", "distance", "arithmetic"),
     about=(
         "Changes of area and the mean of Λ are relative to the area before. A distance is that of "
@@ -55,12 +59,12 @@ _PLANE = Words(
     },
 )
 _SEVERAL = Words(
-    measured="∮ p·dq",
-    mean="W",
-    without="any curve",
+    invariant="∮ p·dq",
+    defect="W",
+    not_used="any curve",
     equal_by="Stokes’ theorem",
-    kept="the exact flow keeps ∮ p·dq by Poincaré’s theorem",
-    proved="S ≡ 0",
+    kept_by_flow="the exact flow keeps ∮ p·dq by Poincaré’s theorem",
+    identity="S ≡ 0",
     heads=("N", "t", "change of ∮ p·dq", "mean of W", "by planes", "arithmetic"),
     about=(
         "The change of ∮ p·dq along the outline and the mean of W over the region are relative to "
@@ -85,5 +89,5 @@ _SEVERAL = Words(
 
 
 def words(flows: Sequence[FlowResult]) -> Words:
-    """Those for regions of one H."""
+    """Return the words for regions of one H."""
     return _PLANE if all(flow.plane is None for flow in flows) else _SEVERAL

@@ -1,4 +1,4 @@
-"""Orbits by several maps in one picture, as the page shows them: what sections of them share."""
+"""Orbits by several maps in one picture: the parts that the sections on orbits share."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
 
 @dataclass(frozen=True)
 class OrbitsView:
-    """One of the scene's sections; `source`: what of a paper it repeats."""
+    """One of the scene's sections; `source`: the part of a paper that it repeats."""
 
     anchor: str
     title: str
@@ -25,24 +25,24 @@ class OrbitsView:
 
 
 def pictures(views: Sequence[OrbitsView], rank: int) -> Iterator[Picture]:
-    """The picture of each, for the first screen."""
+    """Yield the picture of each view, for the first screen."""
     for each in views:
         yield Picture((rank,), each.plot, Place(each.anchor, each.title))
 
 
 def title_from(source: str, title: str) -> str:
-    """With what of a paper it repeats, where it does."""
+    """Return the title, preceded by the part of a paper that is repeated, if any."""
     return f"{source}: {title}" if source else title
 
 
-def first_known(orbits: Orbits, lost: Orbits, looks: str) -> str:
-    """How many of the orbits are known for a part of the time, and for how long at least."""
+def describe_partly_known(orbits: Orbits, lost: Orbits, looks: str) -> str:
+    """Return how many orbits are known for a part of the time only, and for how long at least."""
     first = min(orbit.known for orbit in lost)
     many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
     part = "is known for a part" if len(lost) == 1 else "are known for a part"
     return f"{many} {part} of the time alone, at least for {whole(first)} {looks}"
 
 
-def left(orbit: PoincareOrbit | StroboscopicOrbit) -> str:
-    """That it left every range, where it did."""
+def describe_escape(orbit: PoincareOrbit | StroboscopicOrbit) -> str:
+    """Return a note that the orbit left every range; "" where it did not."""
     return "it leaves every range" if orbit.left else ""

@@ -1,4 +1,4 @@
-"""A section of a report: one object, in one file that is found, with all that is asked of it.
+"""A section of a report: one object, in a file of a catalogue, with everything it can show.
 
 A file `NAME.py` in `page/`, `scene/` or `scheme/` defines `SECTION`; what it shows is set by the
 template `LEVEL/NAME.html`, as the page and as Markdown. Adding a section is adding these two, and
@@ -22,7 +22,7 @@ Counts = tuple[tuple[Verdict, int], ...]
 
 @dataclass(frozen=True)
 class Place:
-    """Where something stands on the page, and what it is called."""
+    """A place on the page: its anchor and its name."""
 
     anchor: str
     name: str
@@ -32,7 +32,7 @@ class Place:
 class Entry:
     """A place in the contents: verdicts counted in it, and the places within.
 
-    `is_numbered`: these are told by their numbers alone, in a line.
+    `is_numbered`: these are listed by their numbers alone, in a line.
     """
 
     anchor: str
@@ -44,8 +44,10 @@ class Entry:
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture for the first screen, which takes that with the least `rank`; `place`: where more
-    is said, if that is not the section's own place."""
+    """A picture for the first screen, which takes the one with the least `rank`.
+
+    `place`: where more is said, if that is not the section's own place.
+    """
 
     rank: tuple[int, ...]
     plot: Plot
@@ -54,7 +56,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Tile:
-    """`weight`: its share of the bar below the tiles, 0 where counts are not what is told."""
+    """A tile; `weight`: its share of the bar below the tiles, 0 where the tiles are no counts."""
 
     verdict: Verdict
     sign: str
@@ -70,11 +72,11 @@ def _nothing(*_: object) -> tuple[()]:
 
 @dataclass(frozen=True)
 class Section:
-    """What a section is asked for; `view` alone it must have, the rest may have nothing to say.
+    """A section by its functions, of which `view` alone is required.
 
-    `view` is given what its level is of (`Given` on the page; scene and anchor; scene, proof and
-    anchor), and returns what the template shows: None, or nothing in it, where that is nothing. All
-    other functions are given the view.
+    `view` takes the subject of its level (`PageContents` on the page; scene and anchor; scene,
+    proof and anchor) and returns the object that the template shows, or None or an empty one where
+    there is nothing to show. All other functions take the view.
     """
 
     order: int  # among the sections of its level
@@ -83,21 +85,21 @@ class Section:
     anchor: str = ""  # where the page's contents and links lead, with that of its scene
     entries: Callable[[Any], Iterable[Entry]] = _nothing  # within its own; or in its place
     is_numbered: bool = False  # its entries are numbers
-    inner: Callable[[Any], Iterable["Shown"]] = _nothing  # the sections within it
+    inner: Callable[[Any], Iterable["VisibleSection"]] = _nothing  # the sections within it
     pictures: Callable[[Any], Iterable[Picture]] = _nothing
     keeps: Callable[[Any], Iterable[tuple[Plot, Place]]] = _nothing  # plots that stand only here
     # Of all views of the section in a report.
     terms: Callable[[Sequence[Any]], Mapping[str, Markup]] = lambda _: {}
     # For a paper's figure that `shows` this: the plots of that label, each with a finding or "".
     shows: str = ""
-    drawn: Callable[[Any, str], Iterable[tuple[Plot | None, str]]] = _nothing
+    matching_plots: Callable[[Any, str], Iterable[tuple[Plot | None, str]]] = _nothing
     # What the first screen says of a report without claims and proofs: a sentence and tiles.
     speaks: Callable[[Report], tuple[str, Sequence[Tile]] | None] = lambda _: None
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A section that has something to show; `place`: that of what it is a section of."""
+class VisibleSection:
+    """A section that has something to show; `place`: that of its page, scene or scheme."""
 
     section: Section
     template: str
@@ -106,23 +108,27 @@ class Shown:
 
     @property
     def anchor(self) -> str:
-        """Where links to it lead; "" where it has no place of its own."""
-        own, of = self.section.anchor, self.place.anchor
-        return f"{own}-of-{of}" if own and of else own
+        """The anchor of the section; "" where it has no place of its own."""
+        section_anchor, place_anchor = self.section.anchor, self.place.anchor
+        return (
+            f"{section_anchor}-of-{place_anchor}"
+            if section_anchor and place_anchor
+            else section_anchor
+        )
 
     @property
     def stem(self) -> str:
-        """The name of its file, with hyphens: a class of its own in the style sheet."""
+        """The name of its file, with hyphens, which is its class in the style sheet."""
         return self.template.partition("/")[2].removesuffix(".html").replace("_", "-")
 
     @property
     def name(self) -> str:
-        """What a link to it is called."""
+        """The text of links to the section."""
         return f"{self.section.title}, {self.place.name}" if self.place.name else self.section.title
 
     @property
     def entries(self) -> tuple[Entry, ...]:
-        """Its entry in the contents, with those within; those alone where it has no title."""
+        """Its entry in the contents with the inner ones; these alone where it has no title."""
         inner = tuple(self.section.entries(self.view))
         if not (self.section.title and self.anchor):
             return inner
@@ -131,38 +137,41 @@ class Shown:
 
     @property
     def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, Place]]:
-        """Its pictures for the first screen, each with its rank and where more is said of it."""
-        own = Place(self.anchor, self.place.name) if self.anchor else self.place
+        """Its pictures for the first screen, each with its rank and the place that says more."""
+        place = Place(self.anchor, self.place.name) if self.anchor else self.place
         for each in self.section.pictures(self.view):
-            yield each.rank, each.plot, each.place or own
+            yield each.rank, each.plot, each.place or place
 
 
 def sections(files: Catalogue) -> list[tuple[str, Section]]:
-    """The sections in these files by the names of their templates, in their order."""
-    found = [
+    """Return the sections in these files with the names of their templates, in their order."""
+    templates = [
         (f"{files.folder(name)}/{name.replace('-', '_')}.html", files.module(name).SECTION)
         for name in files.names
     ]
-    return sorted(found, key=lambda each: each[1].order)
+    return sorted(templates, key=lambda each: each[1].order)
 
 
-def shown(files: Catalogue, place: Place, *given: object) -> tuple[Shown, ...]:
-    """The sections in these files that have something to show of what is given."""
-    views = ((s, template, s.view(*given)) for template, s in sections(files))
-    return tuple(Shown(s, template, view, place) for s, template, view in views if view)
+def select_sections(files: Catalogue, place: Place, *subject: object) -> tuple[VisibleSection, ...]:
+    """Return the sections in these files that have something to show of the subject."""
+    views = ((s, template, s.view(*subject)) for template, s in sections(files))
+    return tuple(VisibleSection(s, template, view, place) for s, template, view in views if view)
 
 
-def walk(found: Iterable[Shown]) -> Iterator[Shown]:
-    """Each section, and after it those within it."""
-    for each in found:
+def walk(visible: Iterable[VisibleSection]) -> Iterator[VisibleSection]:
+    """Yield each section, and after it those within it."""
+    for each in visible:
         yield each
         yield from walk(each.section.inner(each.view))
 
 
-def terms(found: Iterable[Shown]) -> dict[str, Markup]:
-    """The terms that these sections and those within them need, with what each means."""
+def terms(visible: Iterable[VisibleSection]) -> dict[str, Markup]:
+    """Return the terms that these sections and those within them use, with their meanings."""
     return {
         term: meaning
-        for own in by_key(walk(found), lambda each: each.template).values()
-        for term, meaning in own[0].section.terms([each.view for each in own]).items()
+        # A section may be visible in several scenes; its terms are explained once.
+        for same_template in by_key(walk(visible), lambda each: each.template).values()
+        for term, meaning in same_template[0]
+        .section.terms([each.view for each in same_template])
+        .items()
     }

@@ -1,1 +1,1 @@
-"""Text as a page sets it: numbers, formulas as MathML, words that all formats share."""
+"""Typesetting of text on a page: numbers, formulas as MathML, words that all formats share."""

@@ -1,10 +1,10 @@
-"""A formula on a line of its own, in the notation of prose → MathML Core, by a small reader.
+"""Conversion of a displayed formula, in the notation of prose, to MathML Core by a small reader.
 
     |Λ| ≤ (1 + ε)^N − 1 ≤ e^(Nε) − 1        Σ_{n=0}^{η} h^n/n! X^n z        "where" D ≠ 0
 
-Letters side by side are a product, but for the words in `_WORDS`. The sides of a `/` reach to the
-next space, or are in brackets, which are not shown, as those of what `_` and `^` bind. A long
-formula is set in several rows. What is not recognised is set as it is.
+Letters side by side are a product, except the words in `_WORDS`. The sides of a `/` reach to the
+next space, or are in brackets, which are not shown, nor are those after `_` and `^`. A long formula
+is set in several rows. Anything that is not recognised is set unchanged.
 """
 
 import re
@@ -15,26 +15,29 @@ from verify.functions import by_name
 from verify.pages.text.pieces import (
     Kind,
     Piece,
-    bound,
-    in_rows,
-    one,
+    as_element,
+    attach_scripts,
+    pop_operand,
     side_by_side,
-    taken_from,
-    unbracketed,
+    split_rows,
+    strip_brackets,
 )
 
 _WORDS = {
     "det", "div", "tr", "adj", "Hess", "log", "max", "min", "lim", "MSE", "area", "const", "end",
     *(f.shown for f in by_name().values()),
 }  # fmt: skip
-_BELOW = {"Σ", "Π", "max", "min", "lim"}  # what has its index below it
+# Operators whose index is set below them.
+_INDEXED_BELOW = {"Σ", "Π", "max", "min", "lim"}
 _LARGE = {"Σ": "∑", "Π": "∏", "∫": "∫", "∂": "∂", "∇": "∇"}
 _RELATIONS = set("=≠<>≤≥≡→↦∈≈⇒⇔")
 _OPERATORS = set("+−-·×∘∧,;:…±∪∩") | _RELATIONS
 _BRACKETS = {"(": ")", "[": "]", "⟨": "⟩"}
-_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺ⁿᵀᵏ", "0123456789−+nTk")
-_LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉ₖₙₜ", "0123456789knt")
-_SUPERSCRIPT, _SUBSCRIPT = ("".join(map(chr, table)) for table in (_RAISED, _LOWERED))
+_SUPERSCRIPT_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺ⁿᵀᵏ", "0123456789−+nTk")
+_SUBSCRIPT_DIGITS = str.maketrans("₀₁₂₃₄₅₆₇₈₉ₖₙₜ", "0123456789knt")
+_SUPERSCRIPT, _SUBSCRIPT = (
+    "".join(map(chr, table)) for table in (_SUPERSCRIPT_DIGITS, _SUBSCRIPT_DIGITS)
+)
 _TOKEN = re.compile(
     rf'"(?P<text>[^"]*)"|(?P<number>[0-9]+(?:\.[0-9]+)?)|(?P<word>[A-Za-z]+)[\u0300-\u036f]?'
     rf"|(?P<raised>[{_SUPERSCRIPT}]+)|(?P<lowered>[{_SUBSCRIPT}]+)|(?P<sign>.)",
@@ -43,10 +46,10 @@ _TOKEN = re.compile(
 _SCRIPT = re.compile(r"[−-]?(?:[0-9]+|[A-Za-z]+|[\u0370-\u03ff])")
 
 
-def displayed(text: str, end: str = "") -> Markup:
-    """The formula as a block of its own, with the stop or comma that ends it."""
+def display_formula(text: str, end: str = "") -> Markup:
+    """Return the formula as a block of its own, with the stop or comma that ends it."""
     reader = _Reader(" ".join(text.split()))
-    rows = in_rows(reader.items(""))
+    rows = split_rows(reader.read_items(""))
     if end:
         rows[-1].append(Piece(f"<mtext>{escape(end)}</mtext>"))
     if len(rows) == 1:
@@ -60,94 +63,101 @@ def displayed(text: str, end: str = "") -> Markup:
 class _Reader:
     def __init__(self, text: str) -> None:
         self.text = text
-        self.at = 0
-        self.small = 0  # scripts around
+        self.position = 0
+        self.script_depth = 0  # how many scripts the text is in
 
-    def items(self, end: str) -> list[Piece]:
-        """What stands up to the sign `end`, which is passed over."""
-        found: list[Piece] = []
-        while self.at < len(self.text):
-            apart = self._space()
-            if self.at >= len(self.text) or self._ends(end):
+    def read_items(self, end: str) -> list[Piece]:
+        """Read the pieces up to the sign `end`, and skip that sign."""
+        pieces: list[Piece] = []
+        while self.position < len(self.text):
+            is_apart = self._skip_spaces()
+            if self.position >= len(self.text) or self._is_end(end):
                 break
-            if self._next() == "/" and found:
-                self.at += 1
-                above = taken_from(found)
-                found.append(self._fraction(above, self._product(end)))
+            if self._peek() == "/" and pieces:
+                self.position += 1
+                numerator = pop_operand(pieces)
+                pieces.append(self._set_fraction(numerator, self._read_product(end)))
                 continue
-            item = self._scripted(self._atom())
-            item.apart = apart
-            found.append(item)
-        self.at += bool(end)
-        return found
+            item = self._read_scripts(self._read_atom())
+            item.is_apart = is_apart
+            pieces.append(item)
+        self.position += bool(end)
+        return pieces
 
-    def _next(self) -> str:
-        return self.text[self.at : self.at + 1]
+    def _peek(self) -> str:
+        return self.text[self.position : self.position + 1]
 
-    def _space(self) -> bool:
-        begun = self.at
-        while self._next() == " ":
-            self.at += 1
-        return self.at > begun
+    def _skip_spaces(self) -> bool:
+        start = self.position
+        while self._peek() == " ":
+            self.position += 1
+        return self.position > start
 
-    def _ends(self, end: str) -> bool:
-        if end in ("|", "‖") and self._next() == end:
-            before, after = self.text[self.at - 1], self.text[self.at + 1 : self.at + 2]
+    def _is_end(self, end: str) -> bool:
+        # An opening bar and a closing bar are the same sign: it closes after a symbol, or before a
+        # space, a comma or a closing bracket.
+        if end in ("|", "‖") and self._peek() == end:
+            before, after = (
+                self.text[self.position - 1],
+                self.text[self.position + 1 : self.position + 2],
+            )
             return before not in " (," or after in ("", " ", ")", ",")
-        return bool(end) and self._next() == end
+        return bool(end) and self._peek() == end
 
     # -- what stands alone ------------------------------------------------------------------------
 
-    def _atom(self) -> Piece:
-        sign = self._next()
+    def _read_atom(self) -> Piece:
+        sign = self._peek()
         if sign in _BRACKETS or sign in ("|", "‖", "{"):
-            return self._group(sign)
+            return self._read_group(sign)
         if sign == "√":
-            self.at += 1
-            under = self._atom()
-            return Piece(f"<msqrt>{under.inside or under.markup}</msqrt>")
-        match = _TOKEN.match(self.text, self.at)
+            self.position += 1
+            radicand = self._read_atom()
+            return Piece(f"<msqrt>{radicand.inside or radicand.markup}</msqrt>")
+        match = _TOKEN.match(self.text, self.position)
         if match is None:  # at the end
             return Piece("")
-        self.at = match.end()
-        if (said := match["text"]) is not None:
-            return Piece(f"<mtext>\u00a0{escape(said)}\u00a0</mtext>", "text")
+        self.position = match.end()
+        if (words := match["text"]) is not None:
+            return Piece(f"<mtext>\u00a0{escape(words)}\u00a0</mtext>", "text")
         if match["number"]:
             return Piece(f"<mn>{match[0]}</mn>")
         if match["word"]:
-            return self._word(match)
+            return self._read_word(match)
         if sign in _OPERATORS:
-            shown = "−" if sign == "-" else sign
+            printed_sign = "−" if sign == "-" else sign
             kind: Kind = "relation" if sign in _RELATIONS else "operator"
-            return Piece(f"<mo>{escape(shown)}</mo>", kind, sign=shown in "+−")
+            return Piece(f"<mo>{escape(printed_sign)}</mo>", kind, is_sign=printed_sign in "+−")
         if sign in _LARGE:
-            return Piece(f"<mo>{_LARGE[sign]}</mo>", "word", below=sign in _BELOW)
-        accent = self._accent()
+            return Piece(f"<mo>{_LARGE[sign]}</mo>", "word", has_index_below=sign in _INDEXED_BELOW)
+        accent = self._read_accent()
         upright = ' mathvariant="normal"' if sign in "ΔΦΨΛΩ∞" else ""
         return Piece(f"<mi{upright}>{escape(sign + accent)}</mi>")
 
-    def _accent(self) -> str:
-        accent = re.compile("[\u0300-\u036f]*").match(self.text, self.at)
-        self.at += len(accent[0]) if accent else 0
+    def _read_accent(self) -> str:
+        accent = re.compile("[\u0300-\u036f]*").match(self.text, self.position)
+        self.position += len(accent[0]) if accent else 0
         return accent[0] if accent else ""
 
-    def _word(self, match: re.Match[str]) -> Piece:
-        """A word of `_WORDS`; of another the first letter alone, with its accent."""
+    def _read_word(self, match: re.Match[str]) -> Piece:
+        """Read a word of `_WORDS`; of any other word the first letter alone, with its accent."""
         word = match["word"]
         if word in _WORDS:
-            self.at = match.start() + len(word)
+            self.position = match.start() + len(word)
             markup = f'<mi mathvariant="normal">{word}</mi>'
-            return Piece(markup, "word", below=word in _BELOW)
-        self.at = match.start() + 1
-        return Piece(f"<mi>{word[0]}{self._accent()}</mi>")
+            return Piece(markup, "word", has_index_below=word in _INDEXED_BELOW)
+        self.position = match.start() + 1
+        return Piece(f"<mi>{word[0]}{self._read_accent()}</mi>")
 
-    def _group(self, sign: str) -> Piece:
-        self.at += 1
+    def _read_group(self, sign: str) -> Piece:
+        self.position += 1
         close = {**_BRACKETS, "{": "}"}.get(sign, sign)
-        items = self.items(close)
+        items = self.read_items(close)
         inside = side_by_side(items)
-        alone = len(items) == 1 and items[0].markup.startswith("<mfrac>")
-        if sign == "{" or (alone and self._next() not in "^_!'′"):
+        is_fraction = len(items) == 1 and items[0].markup.startswith("<mfrac>")
+        # Brackets that hold nothing but a fraction are not needed, unless a script is bound to
+        # them.
+        if sign == "{" or (is_fraction and self._peek() not in "^_!'′"):
             return Piece(inside, inside=inside)
         fence = '<mo stretchy="false" form="{}">{}</mo>'
         tall = "<mfrac>" in inside or "<munder" in inside
@@ -158,71 +168,74 @@ class _Reader:
 
     # -- what is bound to it ----------------------------------------------------------------------
 
-    def _scripted(self, item: Piece) -> Piece:
+    def _read_scripts(self, item: Piece) -> Piece:
         lower = upper = after = ""
-        while self.at < len(self.text):
-            sign = self._next()
+        while self.position < len(self.text):
+            sign = self._peek()
             if sign == "_" and not lower:
-                lower = self._script()
+                lower = self._read_script()
             elif sign == "^" and not upper:
-                upper = self._script()
+                upper = self._read_script()
             elif sign in _SUPERSCRIPT and not upper:
-                upper = self._run(_SUPERSCRIPT, _RAISED)
+                upper = self._read_run(_SUPERSCRIPT, _SUPERSCRIPT_DIGITS)
             elif sign in _SUBSCRIPT and not lower:
-                lower = self._run(_SUBSCRIPT, _LOWERED)
+                lower = self._read_run(_SUBSCRIPT, _SUBSCRIPT_DIGITS)
             elif sign in "'′":
                 after += '<mtext class="prime">′</mtext>'
-                self.at += 1
+                self.position += 1
             elif sign == "!":
                 after += '<mo form="postfix">!</mo>'
-                self.at += 1
+                self.position += 1
             else:
                 break
         if not (lower or upper or after):
             return item
-        return Piece(bound(item.markup + after, lower, upper, below=item.below), item.kind)
+        return Piece(
+            attach_scripts(item.markup + after, lower, upper, below=item.has_index_below), item.kind
+        )
 
-    def _run(self, signs: str, table: dict[int, int]) -> str:
-        begun = self.at
-        while self._next() and self._next() in signs:
-            self.at += 1
-        return self._inner(self.text[begun : self.at].translate(table))
+    def _read_run(self, signs: str, table: dict[int, int]) -> str:
+        start = self.position
+        while self._peek() and self._peek() in signs:
+            self.position += 1
+        return self._set_inner(self.text[start : self.position].translate(table))
 
-    def _script(self) -> str:
-        """What `_` or `^` binds: a group without its brackets, a number, a word, a letter."""
-        self.at += 1
-        if self._next() in ("(", "{"):
-            self.small += 1
-            group = self._group(self._next())
-            self.small -= 1
+    def _read_script(self) -> str:
+        """Read the script after `_` or `^`: a group without brackets, a number, word or letter."""
+        self.position += 1
+        if self._peek() in ("(", "{"):
+            self.script_depth += 1
+            group = self._read_group(self._peek())
+            self.script_depth -= 1
             return group.inside or ""
-        match = _SCRIPT.match(self.text, self.at)
+        match = _SCRIPT.match(self.text, self.position)
         if match is None:
-            return self._atom().markup
-        self.at = match.end()
-        return self._inner(match[0])
+            return self._read_atom().markup
+        self.position = match.end()
+        return self._set_inner(match[0])
 
-    def _inner(self, text: str) -> str:
+    def _set_inner(self, text: str) -> str:
         reader = _Reader(text)
-        reader.small = self.small + 1
-        return side_by_side(reader.items(""))
+        reader.script_depth = self.script_depth + 1
+        return side_by_side(reader.read_items(""))
 
-    def _product(self, end: str) -> list[Piece]:
-        """What stands there without a space between: n!, (η + 1)!, dt."""
-        self._space()
-        found = [self._scripted(self._atom())]
-        while self._next() not in ("", " ", "/", "|", "‖") and not self._ends(end):
-            if self._next() in _OPERATORS:
+    def _read_product(self, end: str) -> list[Piece]:
+        """Read the factors up to the next space, such as n!, (η + 1)!, dt."""
+        self._skip_spaces()
+        pieces = [self._read_scripts(self._read_atom())]
+        while self._peek() not in ("", " ", "/", "|", "‖") and not self._is_end(end):
+            if self._peek() in _OPERATORS:
                 break
-            found.append(self._scripted(self._atom()))
-        return found
+            pieces.append(self._read_scripts(self._read_atom()))
+        return pieces
 
-    def _fraction(self, above: list[Piece], below: list[Piece]) -> Piece:
-        apart = above[0].apart
-        if self.small:  # too small for one above the other
+    def _set_fraction(self, numerator: list[Piece], denominator: list[Piece]) -> Piece:
+        is_apart = numerator[0].is_apart
+        if self.script_depth:  # too small for one above the other
             slash = '<mo lspace="0" rspace="0">/</mo>'
             return Piece(
-                f"<mrow>{side_by_side(above)}{slash}{side_by_side(below)}</mrow>", apart=apart
+                f"<mrow>{side_by_side(numerator)}{slash}{side_by_side(denominator)}</mrow>",
+                is_apart=is_apart,
             )
-        parts = "".join(one(unbracketed(each)) for each in (above, below))
-        return Piece(f"<mfrac>{parts}</mfrac>", apart=apart)
+        parts = "".join(as_element(strip_brackets(each)) for each in (numerator, denominator))
+        return Piece(f"<mfrac>{parts}</mfrac>", is_apart=is_apart)

@@ -1,4 +1,4 @@
-"""MathML within a line: fractions whose letters would be too small are set in one row.
+"""MathML within a line, with fractions in one row, as stacked letters would be too small.
 
 `h³/2 · p` becomes ½h³p, where the fraction has a character of its own, else (h³/24) p; a quotient
 becomes p/(2q).
@@ -19,43 +19,50 @@ _CHARACTERS = {
 _TIMES = "\u2062"
 
 
-def in_line(content: str) -> str:
-    """The same markup without stacked fractions."""
+def flatten_fractions(content: str) -> str:
+    """Return the markup without stacked fractions."""
     if "<mfrac>" not in content:
         return content
     root = ElementTree.fromstring(content)  # noqa: S314 - `mathml`'s own output
-    return ElementTree.tostring(_flat(root, alone=True), encoding="unicode")
+    return ElementTree.tostring(_flatten(root, alone=True), encoding="unicode")
 
 
-def _flat(node: Element, *, alone: bool) -> Element:
-    """`alone`: whether nothing is multiplied with it."""
+def _flatten(node: Element, *, alone: bool) -> Element:
+    """Return the node without stacked fractions; `alone`: it is not a factor of a product."""
     children = list(node)
     product = node.tag == "mrow" and any(_is_times(child) for child in children)
     inner = [
-        _flat(child, alone=not product and node.tag not in ("msup", "msubsup"))
+        _flatten(child, alone=not product and node.tag not in ("msup", "msubsup"))
         for child in children
     ]
     if node.tag == "mfrac":
-        return _in_a_row(*inner, alone=alone)
-    made = Element(node.tag, node.attrib)
-    made.text = node.text
-    made.extend(inner)
-    return made
+        return _set_in_a_row(*inner, alone=alone)
+    copy = Element(node.tag, node.attrib)
+    copy.text = node.text
+    copy.extend(inner)
+    return copy
 
 
-def _in_a_row(above: Element, below: Element, *, alone: bool) -> Element:
-    factors = list(above) if above.tag == "mrow" else [above]
+def _set_in_a_row(numerator: Element, denominator: Element, *, alone: bool) -> Element:
+    factors = list(numerator) if numerator.tag == "mrow" else [numerator]
     head = factors[0]
-    if below.tag == "mn" and all(map(_is_factor, factors)):
+    if denominator.tag == "mn" and all(map(_is_factor, factors)):
         top = int(head.text or 1) if head.tag == "mn" else 1
-        sign = _CHARACTERS.get(Fraction(top, int(below.text or 1)))
+        # A fraction with a character of its own, such as ½, needs neither slash nor brackets.
+        sign = _CHARACTERS.get(Fraction(top, int(denominator.text or 1)))
         if sign:
-            rest = factors[1:] if head.tag == "mn" else [_made("mo", _TIMES), *factors]
-            return _row([_made("mn", sign), *rest])
-    top_alone = above.tag != "mrow" or all(map(_is_factor, factors))
-    slash = _made("mo", "/", lspace="0", rspace="0")
-    row = _row([_bracketed(above, not top_alone), slash, _bracketed(below, below.tag == "mrow")])
-    return _bracketed(row, not alone)
+            others = factors[1:] if head.tag == "mn" else [_element("mo", _TIMES), *factors]
+            return _row([_element("mn", sign), *others])
+    top_alone = numerator.tag != "mrow" or all(map(_is_factor, factors))
+    slash = _element("mo", "/", lspace="0", rspace="0")
+    row = _row(
+        [
+            _add_brackets(numerator, not top_alone),
+            slash,
+            _add_brackets(denominator, denominator.tag == "mrow"),
+        ]
+    )
+    return _add_brackets(row, not alone)
 
 
 def _is_factor(node: Element) -> bool:
@@ -66,19 +73,21 @@ def _is_times(node: Element) -> bool:
     return node.tag == "mo" and node.text == _TIMES
 
 
-def _bracketed(node: Element, needed: bool) -> Element:
-    if not needed:
+def _add_brackets(node: Element, is_needed: bool) -> Element:
+    if not is_needed:
         return node
-    return _row([_made("mo", "(", stretchy="false"), node, _made("mo", ")", stretchy="false")])
+    return _row(
+        [_element("mo", "(", stretchy="false"), node, _element("mo", ")", stretchy="false")]
+    )
 
 
 def _row(nodes: list[Element]) -> Element:
-    made = Element("mrow")
-    made.extend(nodes)
-    return made
+    row = Element("mrow")
+    row.extend(nodes)
+    return row
 
 
-def _made(tag: str, text: str, **attributes: str) -> Element:
-    made = Element(tag, attributes)
-    made.text = text
-    return made
+def _element(tag: str, text: str, **attributes: str) -> Element:
+    element = Element(tag, attributes)
+    element.text = text
+    return element

@@ -1,8 +1,8 @@
-"""Formula text → MathML Core, by a small printer.
+"""Conversion of a formula's text to MathML Core by a small printer.
 
-The text is read by the whitelist parser and never evaluated. What that parser refuses (a formula
-longer than its limit, say) is shown as it is written. In which order sums and products go is said
-in `verify.pages.text.terms`.
+The text is read by the whitelist parser and never evaluated. A text that the parser refuses (such
+as a formula longer than its limit) is shown as it is written. The order of terms and factors is
+defined in `verify.pages.text.terms`.
 
 sympy's own printers, to MathML and to LaTeX, order sums and factors by sympy's rules (3δq² + 1,
 δh³), put every argument in growing brackets, and the first writes a minus as a hyphen.
@@ -20,15 +20,19 @@ from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
 from verify.functions import by_name
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
-from verify.pages.text.inline_math import in_line
+from verify.pages.text.inline_math import flatten_fractions
 from verify.pages.text.terms import Term, factor_key, terms_of
 
 Expr: TypeAlias = sympy.Expr
 
-LONGEST_SHOWN = 600  # characters of a formula that is shown as text
-_STACKED_FROM = 4  # terms from which a sum is set one term a line, where it is
-_LONGEST_LINE = 40  # signs and names longer than that
+# Characters of a formula that is shown as plain text; the rest is cut off.
+LONGEST_SHOWN = 600
+# A sum of at least so many terms is set with one term a line, if it is long enough.
+_MIN_STACKED = 4
+# Signs and names of a sum that fits on one line.
+_MAX_LINE = 40
 
+# sympy's names; `lamda` is written so since `lambda` is a keyword of Python.
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
     "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
@@ -38,9 +42,11 @@ GREEK = {
 }  # fmt: skip
 _TAGS = re.compile("<[^>]*>")
 _TIMES = "<mo>\u2062</mo>"
-_TIMES_THIN = '<mo lspace="0.17em" rspace="0">\u2062</mo>'  # before a function's name
+# A thin space stands before a function's name, as in p sin q.
+_TIMES_THIN = '<mo lspace="0.17em" rspace="0">\u2062</mo>'
 _APPLY = '<mo lspace="0" rspace="0">\u2061</mo>'
-_APPLY_THIN = '<mo lspace="0" rspace="0.17em">\u2061</mo>'  # where no parenthesis follows
+# A thin space stands after a function's name where no parenthesis follows, as in sin q.
+_APPLY_THIN = '<mo lspace="0" rspace="0.17em">\u2061</mo>'
 _OPEN, _CLOSE = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
 _SLASH = '<mo lspace="0" rspace="0">/</mo>'
 
@@ -49,24 +55,25 @@ _SLASH = '<mo lspace="0" rspace="0">/</mo>'
 
 
 def formula(text: str) -> Markup:
-    """The formula as inline markup."""
+    """Return the formula as inline markup."""
     expression = read(text)
-    return plain(text) if expression is None else _math(in_line(_sum(expression)))
+    return plain(text) if expression is None else _math(flatten_fractions(_sum(expression)))
 
 
 def equation(left: str, text: str) -> Markup:
-    """`left` = formula as a display; `left` is markup, see `NAMED`; a long sum is stacked."""
+    """Return `left` = formula as a display; `left` is markup (`NAMED`); a long sum is stacked."""
     expression = read(text)
     if expression is None:
         return _math(f"{left}<mo>=</mo>") + plain(text)
     terms = terms_of(expression)
     line = _sum(expression)
-    if len(terms) < _STACKED_FROM or len(_TAGS.sub("", line)) <= _LONGEST_LINE:
+    if len(terms) < _MIN_STACKED or len(_TAGS.sub("", line)) <= _MAX_LINE:
         return _math(f"{left}<mo>=</mo>{line}", display=True)
     rows = []
     for index, term in enumerate(terms):
         sign = _sign(term, first=index == 0)
-        if index:  # a line that goes on from the one above, not one that starts with a sign
+        # Without this, MathML would set the sign of a continued line as a prefix, without space.
+        if index:
             sign = sign.replace("<mo>", '<mo form="infix">')
         start = f"{left}<mo>=</mo>" if index == 0 else ""
         body = f"<mrow>{sign}{_product(term)}</mrow>"
@@ -77,7 +84,7 @@ def equation(left: str, text: str) -> Markup:
 
 
 def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
-    """`left` = matrix of formulas as a display; None where an entry cannot be read."""
+    """Return `left` = matrix of formulas as a display; None where an entry cannot be read."""
     expressions = [[read(entry) for entry in row] for row in rows]
     if any(entry is None for row in expressions for entry in row):
         return None
@@ -105,29 +112,29 @@ NAMED = {
 
 
 def name(text: str) -> Markup:
-    """A parameter's name as inline markup."""
+    """Return a parameter's name as inline markup."""
     return _math(identifier(text))
 
 
 def order_equation(leading: str, order: int) -> Markup | None:
-    """ΔJ = leading · h^order + O(h^(order+1)) as a display."""
+    """Return ΔJ = leading · h^order + O(h^(order+1)) as a display, or None if it is unreadable."""
     expression = read(leading)
     if expression is None:
         return None
     h = sympy.Symbol("h", real=True)
     body = _sum(h**order * expression)
-    rest = f"<mi>O</mi>{_OPEN}{_power(h ** (order + 1))}{_CLOSE}"
-    return _math(f"{NAMED['ΔJ']}<mo>=</mo><mrow>{body}<mo>+</mo>{rest}</mrow>", display=True)
+    remainder = f"<mi>O</mi>{_OPEN}{_power(h ** (order + 1))}{_CLOSE}"
+    return _math(f"{NAMED['ΔJ']}<mo>=</mo><mrow>{body}<mo>+</mo>{remainder}</mrow>", display=True)
 
 
 def free_names(text: str) -> tuple[str, ...]:
-    """The names in a formula other than p, q, h and functions, in order of first appearance."""
-    known = {"p", "q", "h", "pi", *FUNCTIONS}
-    return tuple(n for n in dict.fromkeys(_identifiers(text)) if n not in known)
+    """Return the names in a formula other than p, q, h and functions, in order of appearance."""
+    reserved = {"p", "q", "h", "pi", *FUNCTIONS}
+    return tuple(n for n in dict.fromkeys(_identifiers(text)) if n not in reserved)
 
 
 def hamiltonian(text: str) -> Markup:
-    """H(p, q) = …, or H(p, q, t) = … of a formula with t."""
+    """Return H(p, q) = …, or H(p, q, t) = … for a formula with t, as a display."""
     names = free_names(text)
     left = "H(p, q, t)" if "t" in names else "H(p, q)"
     plane = coordinates_of({*names, *_identifiers(text)}) == PLANE
@@ -135,7 +142,7 @@ def hamiltonian(text: str) -> Markup:
 
 
 def read(text: str) -> Expr | None:
-    """The expression, or None where the whitelist parser refuses the text."""
+    """Return the expression, or None where the whitelist parser refuses the text."""
     try:
         return parse(text, {n for n in _identifiers(text) if n not in FUNCTIONS})
     except InputError:
@@ -143,11 +150,11 @@ def read(text: str) -> Expr | None:
 
 
 def plain(text: str) -> Markup:
-    """A formula as the text it is, cut where it is too long for any reader."""
+    """Return a formula as plain text, cut where it is too long for any reader."""
     if len(text) > LONGEST_SHOWN:
-        kept = text[:LONGEST_SHOWN]
+        beginning = text[:LONGEST_SHOWN]
         return Markup("<code>{}</code>… ({:,} characters; all of them in results.json)").format(
-            kept, len(text)
+            beginning, len(text)
         )
     return Markup("<code>{}</code>").format(text)
 
@@ -176,7 +183,7 @@ def _sum(expression: Expr) -> str:
 
 
 def _sign(term: Term, *, first: bool) -> str:
-    if term.negative:
+    if term.is_negative:
         return "<mo>−</mo>"
     return "" if first else "<mo>+</mo>"
 
@@ -185,26 +192,26 @@ def _sign(term: Term, *, first: bool) -> str:
 
 
 def _product(term: Term) -> str:
-    """The term without its sign."""
+    """Return the term without its sign."""
     size = abs(term.coefficient)
     factors = sorted(term.factors, key=factor_key)
     if term.divisors:
-        below = _joined(size.q, sorted(term.divisors, key=factor_key))
-        return f"<mfrac>{_joined(size.p, factors)}{below}</mfrac>"
+        denominator = _join_factors(size.q, sorted(term.divisors, key=factor_key))
+        return f"<mfrac>{_join_factors(size.p, factors)}{denominator}</mfrac>"
     if size.q == 1:
-        return _joined(size.p, factors)
+        return _join_factors(size.p, factors)
     # Over a bare number stand the powers of h, else those of all symbols: (h³/2) p sin q, δq⁴/4.
-    over = [f for f in factors if str(f.as_base_exp()[0]) == "h"]
-    over = over or [f for f in factors if f.as_base_exp()[0].is_Symbol]
-    rest = [f for f in factors if f not in over]
-    fraction = f"<mfrac>{_joined(size.p, over)}<mn>{size.q}</mn></mfrac>"
-    return _joined(1, rest, before=fraction)
+    numerator = [f for f in factors if str(f.as_base_exp()[0]) == "h"]
+    numerator = numerator or [f for f in factors if f.as_base_exp()[0].is_Symbol]
+    others = [f for f in factors if f not in numerator]
+    fraction = f"<mfrac>{_join_factors(size.p, numerator)}<mn>{size.q}</mn></mfrac>"
+    return _join_factors(1, others, before=fraction)
 
 
-def _joined(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
-    """number · factors in a row, the number left out where it is 1 and something follows."""
+def _join_factors(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
+    """Return number · factors in a row, without the number where it is 1 and something follows."""
     factors = list(factors)
-    alone = number == 1 and len(factors) == 1 and not before
+    is_alone = number == 1 and len(factors) == 1 and not before
     parts = [before] if before else []
     if number != 1 or not (factors or before):
         parts.append(f"<mn>{number}</mn>")
@@ -212,13 +219,13 @@ def _joined(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
         base, _ = factor.as_base_exp()
         if parts:
             parts.append(_TIMES_THIN if base.is_Function and base is not sympy.E else _TIMES)
-        parts.append(_factor(factor, alone=alone))
+        parts.append(_factor(factor, alone=is_alone))
     return parts[0] if len(parts) == 1 else _row("".join(parts))
 
 
 def _factor(factor: Expr, *, alone: bool) -> str:
     if factor.is_Add:
-        return _sum(factor) if alone else _bracketed(factor)
+        return _sum(factor) if alone else _in_brackets(factor)
     return _power(factor)
 
 
@@ -259,7 +266,7 @@ def _atom(base: Expr) -> str:
         return _call(base, "")
     if base.is_Integer and base >= 0:
         return f"<mn>{base}</mn>"
-    return _bracketed(base)
+    return _in_brackets(base)
 
 
 def _call(function: Expr, power: str) -> str:
@@ -269,11 +276,11 @@ def _call(function: Expr, power: str) -> str:
     (argument,) = function.args
     if argument.is_Symbol or argument is sympy.pi or (argument.is_Integer and argument >= 0):
         return _row(f"{head}{_APPLY_THIN}{_atom(argument)}")
-    return _row(f"{head}{_APPLY}{_bracketed(argument)}")
+    return _row(f"{head}{_APPLY}{_in_brackets(argument)}")
 
 
-def _bracketed(expression: Expr) -> str:
-    """In brackets; they grow only where a fraction or a root needs it, not for an exponent."""
+def _in_brackets(expression: Expr) -> str:
+    """Return the expression in brackets, which grow for fractions and roots, not for exponents."""
     inside = _sum(expression)
     if any(tall in inside for tall in ("<mfrac>", "<msqrt>", "<mroot>")):
         return f"<mrow><mo>(</mo>{inside}<mo>)</mo></mrow>"
@@ -281,27 +288,31 @@ def _bracketed(expression: Expr) -> str:
 
 
 def identifier(text: str, power: str = "") -> str:
-    """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript.
+    """Return a name as markup: Greek letters for their names, trailing digits as a subscript.
 
     `power`: markup that stands above the subscript.
     """
-    stem, below = _parts(text)
+    stem, index_text = _parts(text)
     letter = _word(GREEK.get(stem, stem))
-    if not below:
+    if not index_text:
         return f"<msup>{letter}{power}</msup>" if power else letter
-    index = f"<mn>{below}</mn>" if below.isdigit() else _word(GREEK.get(below, below))
+    index = (
+        f"<mn>{index_text}</mn>"
+        if index_text.isdigit()
+        else _word(GREEK.get(index_text, index_text))
+    )
     if power:
         return f"<msubsup>{letter}{index}{power}</msubsup>"
     return f"<msub>{letter}{index}</msub>"
 
 
 def _word(text: str) -> str:
-    """A letter slants, a word stands upright; see the style sheet."""
+    """Return a name as markup; a letter is slanted, a word upright (see the style sheet)."""
     upright = ' mathvariant="normal"' if len(text) > 1 else ""
     return f"<mi{upright}>{escape(text)}</mi>"
 
 
 def _parts(text: str) -> tuple[str, str]:
-    """A name's letter and its index: omega0 → omega, 0; k_max → k, max."""
+    """Return a name's letter and its index: omega0 → omega, 0; k_max → k, max."""
     match = re.fullmatch(r"([A-Za-z]+)_?([0-9]+)|([A-Za-z]+)_([A-Za-z0-9]+)", text)
     return (match[1] or match[3], match[2] or match[4]) if match else (text, "")

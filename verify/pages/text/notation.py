@@ -1,7 +1,6 @@
-"""A formula alone, as people write it in prose: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`,
-or an interval, `[0.5 +/- 2e-13]`.
+"""The notation of formulas in prose: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`, or `[0.5 +/- 2e-13]`.
 
-What is not recognised is escaped as it is.
+Anything that is not recognised is escaped unchanged.
 """
 
 import re
@@ -15,7 +14,7 @@ Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]
 
 
 def notation(text: str) -> Markup:
-    """The formula with its indices and powers set as such, and minus signs for hyphens.
+    """Return the formula with its indices and powers set as such, and minus signs for hyphens.
 
     >>> str(notation("f = (-H_q, H_p)"))
     'f = (−H<sub>q</sub>, H<sub>p</sub>)'
@@ -28,24 +27,24 @@ def notation(text: str) -> Markup:
     >>> str(notation("10^-6.3010"))
     '10<sup>−6.3010</sup>'
     """
-    return applied(text, (INDEX, INTERVAL, POWER, RAISED, MINUS))
+    return apply_rules(text, (INDEX, INTERVAL, POWER, RAISED, MINUS))
 
 
-def applied(text: str, rules: Sequence[Rule]) -> Markup:
-    """The text with the rules applied, each to what the ones before it left."""
+def apply_rules(text: str, rules: Sequence[Rule]) -> Markup:
+    """Return the text with the rules applied, each to the parts that earlier rules left."""
     if not rules:
         return escape(text)
     (pattern, setting), *others = rules
     parts, rest = [], 0
     for match in pattern.finditer(text):
-        parts += [applied(text[rest : match.start()], others), setting(match)]
+        parts += [apply_rules(text[rest : match.start()], others), setting(match)]
         rest = match.end()
-    return Markup("").join([*parts, applied(text[rest:], others)])
+    return Markup("").join([*parts, apply_rules(text[rest:], others)])
 
 
-def _lowered(match: re.Match[str]) -> Markup:
-    above = Markup("<sup>{}</sup>").format(match[2]) if match[2] else ""
-    return Markup("{}{}<sub>{}</sub>").format(match[1], above, notation(_unbracketed(match[3])))
+def _subscript(match: re.Match[str]) -> Markup:
+    upper = Markup("<sup>{}</sup>").format(match[2]) if match[2] else ""
+    return Markup("{}{}<sub>{}</sub>").format(match[1], upper, notation(_strip_brackets(match[3])))
 
 
 def _interval(match: re.Match[str]) -> Markup:
@@ -59,11 +58,11 @@ def _power(match: re.Match[str]) -> Markup:
     return Markup("{}{}").format(match[1], superscript(int(match[2])))
 
 
-def _raised(match: re.Match[str]) -> Markup:
-    return Markup("<sup>{}</sup>").format(notation(_unbracketed(match[1])))
+def _superscript(match: re.Match[str]) -> Markup:
+    return Markup("<sup>{}</sup>").format(notation(_strip_brackets(match[1])))
 
 
-def _unbracketed(text: str) -> str:
+def _strip_brackets(text: str) -> str:
     return text[1:-1] if text[0] in "({" else text
 
 
@@ -74,10 +73,13 @@ INDEX: Rule = (
         r"(?:\^([a-z]))?_"
         r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
     ),
-    _lowered,
+    _subscript,
 )
 INTERVAL: Rule = (re.compile(rf"\[(-?{NUMBER}) \+/- ({NUMBER})\]"), _interval)
 # Names such as stormer-verlet have hyphens, between letters.
 MINUS: Rule = (re.compile(r"(?<![A-Za-z])-|-(?![A-Za-z])"), lambda _: Markup("−"))
 POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b(?!\.[0-9])"), _power)
-RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+(?:\.[0-9]+)?)"), _raised)
+RAISED: Rule = (
+    re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+(?:\.[0-9]+)?)"),
+    _superscript,
+)

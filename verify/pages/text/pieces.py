@@ -1,4 +1,4 @@
-"""Pieces of a displayed formula: side by side, with their indices, and in rows if it is long."""
+"""Pieces of a displayed formula, set side by side with their indices, in rows if it is long."""
 
 import re
 from dataclasses import dataclass
@@ -7,25 +7,28 @@ from typing import Literal
 Kind = Literal["operand", "word", "text", "operator", "relation"]
 _THIN = '<mspace width="0.17em"></mspace>'
 _TAG = re.compile("<[^>]*>")
-_LONG = 36  # characters of a formula that has room in one line of a phone
+# A formula of so many characters fits on one line of a phone.
+_MAX_CHARACTERS = 36
 
 
 @dataclass
 class Piece:
-    """A piece of a formula; `inside`: of a group what stands in its brackets; `apart`: whether a
-    space stands before it; `below`: whether its index belongs there; `sign`: whether it is + or −,
-    with which a row may begin."""
+    """A piece of a formula.
+
+    `inside`: for a group, its markup without brackets; `is_apart`: a space stands before it;
+    `has_index_below`: its index is set below it; `is_sign`: it is + or −, which may begin a row.
+    """
 
     markup: str
     kind: Kind = "operand"
     inside: str | None = None
-    apart: bool = False
-    below: bool = False
-    sign: bool = False
+    is_apart: bool = False
+    has_index_below: bool = False
+    is_sign: bool = False
 
 
-def bound(base: str, lower: str, upper: str, *, below: bool) -> str:
-    """The base with its indices, where there are any."""
+def attach_scripts(base: str, lower: str, upper: str, *, below: bool) -> str:
+    """Return the base with its lower and upper scripts, where there are any."""
     if not (lower or upper):
         return base
     tag = {(True, True): "subsup", (True, False): "sub", (False, True): "sup"}[
@@ -33,57 +36,63 @@ def bound(base: str, lower: str, upper: str, *, below: bool) -> str:
     ]
     if below:
         tag = tag.replace("sub", "under").replace("sup", "over")
-    inner = "".join(one(part) for part in (base, lower, upper) if part)
+    inner = "".join(as_element(part) for part in (base, lower, upper) if part)
     return f"<m{tag}>{inner}</m{tag}>"
 
 
-def taken_from(items: list[Piece]) -> list[Piece]:
-    """The last of them, and what stands before it without a space, as dH before `/dt`."""
-    taken = [items.pop()]
-    while items and not taken[0].apart and items[-1].kind in ("operand", "word"):
-        taken.insert(0, items.pop())
-    return taken
+def pop_operand(items: list[Piece]) -> list[Piece]:
+    """Remove and return the last pieces without a space between them, such as dH before `/dt`."""
+    operand = [items.pop()]
+    while items and not operand[0].is_apart and items[-1].kind in ("operand", "word"):
+        operand.insert(0, items.pop())
+    return operand
 
 
-def unbracketed(items: list[Piece]) -> str:
-    """In a row, without the brackets that hold all of it."""
+def strip_brackets(items: list[Piece]) -> str:
+    """Return the pieces in a row, without brackets around all of them."""
     inside = items[0].inside if len(items) == 1 else None
     return side_by_side(items) if inside is None else inside
 
 
-def one(markup: str) -> str:
-    """As one element."""
+def as_element(markup: str) -> str:
+    """Return the markup as one element."""
     return f"<mrow>{markup}</mrow>"
 
 
 def side_by_side(items: list[Piece]) -> str:
-    """The pieces in a row: signs at its start, or after others, belong to what follows."""
-    made: list[str] = []
+    """Return the pieces in a row; a sign at its start, or after another, belongs to the next."""
+    markups: list[str] = []
     before: Piece | None = None
     for item in items:
         markup = item.markup
+        # A sign without a left operand is a prefix: MathML would put space on both sides of it.
         if item.kind == "operator" and (before is None or before.kind in ("operator", "relation")):
             markup = markup.replace("<mo>", '<mo form="prefix">', 1)
         elif _needs_space(before, item):
-            made.append(_THIN)
-        made.append(markup)
+            markups.append(_THIN)
+        markups.append(markup)
         before = item
-    return "".join(made)
+    return "".join(markups)
 
 
 def _needs_space(before: Piece | None, item: Piece) -> bool:
-    """Between factors that are written apart, and about words."""
+    """Return True between factors that are written apart, and around words."""
     if before is None or {before.kind, item.kind} & {"text", "operator", "relation"}:
         return False
-    return item.apart or (item.kind == "word" and before.kind == "operand")
+    return item.is_apart or (item.kind == "word" and before.kind == "operand")
 
 
-def in_rows(items: list[Piece]) -> list[list[Piece]]:
-    """In one row; what is too long for that is cut before each relation but the first, then before
-    each term, and then before the first relation."""
+def split_rows(items: list[Piece]) -> list[list[Piece]]:
+    """Split a formula that is too long for one row.
+
+    It is cut before each relation but the first, then, where a row is still too long, before each
+    term, and then before the first relation.
+    """
     rows = [items]
     for places in (_later_relations, _terms, _relations):
-        rows = [part for row in rows for part in (_cut(row, places(row)) if _long(row) else [row])]
+        rows = [
+            part for row in rows for part in (_cut(row, places(row)) if _is_long(row) else [row])
+        ]
     return rows
 
 
@@ -97,13 +106,13 @@ def _later_relations(row: list[Piece]) -> list[int]:
 
 def _terms(row: list[Piece]) -> list[int]:
     before = [None, *(item.kind for item in row)]
-    return [k for k, item in enumerate(row) if item.sign and before[k] in ("operand", "word")]
+    return [k for k, item in enumerate(row) if item.is_sign and before[k] in ("operand", "word")]
 
 
-def _cut(items: list[Piece], at: list[int]) -> list[list[Piece]]:
-    return [items[a:b] for a, b in zip([0, *at], [*at, len(items)], strict=True)]
+def _cut(items: list[Piece], places: list[int]) -> list[list[Piece]]:
+    return [items[a:b] for a, b in zip([0, *places], [*places, len(items)], strict=True)]
 
 
-def _long(items: list[Piece]) -> bool:
-    """Whether about so many characters stand side by side."""
-    return len(_TAG.sub("", "".join(item.markup for item in items))) > _LONG
+def _is_long(items: list[Piece]) -> bool:
+    """Return True if the pieces have more characters than fit in a row."""
+    return len(_TAG.sub("", "".join(item.markup for item in items))) > _MAX_CHARACTERS

@@ -1,4 +1,4 @@
-"""The sign that each verdict has beside its colour, and what it means."""
+"""The sign of each verdict, beside its colour, and its meaning."""
 
 from verify.verdict import Verdict
 

@@ -1,7 +1,7 @@
-"""An expression as terms in reading order: what a formula's printer needs to know of algebra.
+"""Terms of an expression in reading order, for the printer of formulas.
 
-Sums go by ascending powers of h, then by degree in p and q; a factor of h leads its product, sums
-and functions close it: −(h²/2) p (1 + 3q²).
+Sums are ordered by ascending powers of h, then by degree in p and q; a factor of h leads its
+product, sums and functions close it: −(h²/2) p (1 + 3q²).
 """
 
 from dataclasses import dataclass
@@ -23,23 +23,24 @@ class Term:
     divisors: tuple[Expr, ...] = ()
 
     @property
-    def negative(self) -> bool:
+    def is_negative(self) -> bool:
         return bool(self.coefficient < 0)
 
 
 def terms_of(expression: Expr) -> list[Term]:
-    """The sum's terms in reading order."""
+    """Return the sum's terms in reading order."""
     keyed = sorted(((_sort_key(t), t) for t in sympy.Add.make_args(expression)), key=lambda x: x[0])
     terms = [(key[0], _term(t)) for key, t in keyed]
     lowest = [term for power, term in terms if power == terms[0][0]]
-    if lowest[0].negative:  # −1 + q² reads better as q² − 1
-        lowest.sort(key=lambda term: term.negative)
+    if lowest[0].is_negative:  # −1 + q² reads better as q² − 1
+        lowest.sort(key=lambda term: term.is_negative)
     return [*lowest, *(term for _, term in terms[len(lowest) :])]
 
 
 def _sort_key(term: Expr) -> tuple[object, ...]:
     powers = {str(b): e for b, e in _powers(term) if b.is_Symbol}
     others = [b for b, _ in _powers(term) if not b.is_Symbol and not b.is_number]
+    # Ascending powers of h come first, since h is small; then ascending degree in p and q.
     degree = sum(powers.get(name, 0) for name in _INNER)
     inner = tuple(-powers.get(name, 0) for name in _INNER)
     return powers.get("h", 0), bool(others), degree, inner, str(term)
@@ -50,7 +51,7 @@ def _powers(term: Expr) -> list[tuple[Expr, Expr]]:
 
 
 def _term(expression: Expr) -> Term:
-    """The term with the rational content, and the sign, of its sums drawn to the front."""
+    """Return the term, with the rational content and the sign of its sums in the coefficient."""
     coefficient, factors, divisors = sympy.S.One, [], []
     for factor in sympy.Mul.make_args(expression):
         base, exponent = factor.as_base_exp()
@@ -70,7 +71,7 @@ def _term(expression: Expr) -> Term:
 
 
 def _primitive(base: Expr, exponent: Expr) -> tuple[Expr, Expr]:
-    """A sum's rational content, with the sign where all its terms are negative, and the rest."""
+    """Return a sum's rational content, negative where all its terms are, and the other factor."""
     if not base.is_Add or not exponent.is_Integer:
         return sympy.S.One, base
     content, rest = base.primitive()

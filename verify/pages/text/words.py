@@ -1,11 +1,11 @@
-"""Terms that several sections explain in the same words, and how judged runs are counted."""
+"""Terms that several sections explain in the same words, and counts of judged runs."""
 
 from collections.abc import Mapping
 
 from markupsafe import Markup
 
 from verify import arithmetic as number_systems
-from verify.pages.text.typography import listed, whole
+from verify.pages.text.typography import join_and, whole
 from verify.scenes.results.stability import KINDS, Kind
 
 ALWAYS = {
@@ -66,7 +66,7 @@ RAN = {
 
 # -- counts of judged runs in a sentence ----------------------------------------------------------
 
-_COUNTED: dict[Kind, str] = {
+_ADJECTIVES: dict[Kind, str] = {
     "stable": "stable",
     "drifts": "drifting",
     "unstable: scheme": "unstable by the scheme",
@@ -79,6 +79,8 @@ _COUNTED: dict[Kind, str] = {
 }
 
 
-def counts_of(counted: Mapping[Kind, int]) -> str:
-    """How many of each kind there are: a kind's name is a verb or has a colon, and reads badly."""
-    return listed(f"{whole(counted[kind])} {_COUNTED[kind]}" for kind in KINDS if counted.get(kind))
+def counts_of(counts: Mapping[Kind, int]) -> str:
+    """Return the counts of the kinds by adjectives, as the names of kinds do not fit a sentence."""
+    return join_and(
+        f"{whole(counts[kind])} {_ADJECTIVES[kind]}" for kind in KINDS if counts.get(kind)
+    )

@@ -1,1 +1,1 @@
-"""Identities that several arguments rest on, each with what spoils it."""
+"""Identities on which several arguments rest; a parameter of each spoils it, as a control."""

@@ -1,4 +1,4 @@
-"""One exact fact that an argument rests on: polynomials that vanish, formulas that are the same."""
+"""The exact facts on which arguments rest: polynomials that vanish, and equal formulas."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,27 +16,30 @@ BALLS = "enclosures"
 
 @dataclass(frozen=True)
 class Check:
-    """One exact fact that an argument rests on; `shown` is its value in a few words, `how` it is
-    known.
+    """One exact fact on which an argument rests.
 
-    Both texts are written as `read_prose` takes them, with formulas quoted.
+    `what` states it, `value` is the result in a few words, and `how` the method of the check; these
+    texts are in the syntax of `read_prose`, with formulas quoted.
     """
 
     what: str
     holds: bool
-    shown: str
+    value: str
     how: str = ALGEBRA
 
 
 def vanishes(what: str, *elements: Any) -> Check:
-    """The check that polynomials in normal form are zero."""
+    """Check that polynomials in normal form are zero."""
     wrong = [x for x in elements if x != 0]
     return Check(what, not wrong, f"{len(wrong[0])} terms are left" if wrong else "0")
 
 
-def same(what: str, gaps: Sequence[sympy.Expr], names: Sequence[str], shown: str = "0") -> Check:
-    """The check that all differences, formulas in these names, are zero in one exact ring; `shown`:
-    what is told then."""
+def same(what: str, gaps: Sequence[sympy.Expr], names: Sequence[str], value: str = "0") -> Check:
+    """Check that all differences, formulas in these names, are zero in one exact ring.
+
+    `value`: what the check shows if they are.
+    """
+    # One ring for all formulas: `ring.decide` may then use relations between their functions.
     ring, elements = embed(gaps, names)
     wrong = [gap for gap, x in zip(gaps, elements, strict=True) if ring.decide(x).zero is not True]
-    return Check(what, not wrong, f"`{to_text(wrong[0])}`" if wrong else shown)
+    return Check(what, not wrong, f"`{to_text(wrong[0])}`" if wrong else value)

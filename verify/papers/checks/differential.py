@@ -1,8 +1,8 @@
-"""Polynomials over the rationals in variables whose derivatives are given: identities for every H.
+"""Differential polynomials over the rationals, for identities that hold for every H.
 
 The partial derivatives of a generic H are independent variables H_ij = ∂^(i+j)H/∂pⁱ∂qʲ, with
 ∂H_ij/∂p = H_(i+1)j and ∂H_ij/∂q = H_i(j+1). An identity that holds for them as polynomials holds
-for every smooth H. Other families, such as H = F(u) for a generic F of a given u, have variables
+for every smooth H. Other families, such as H = F(u) for a generic F of a fixed u, have variables
 for the derivatives of F.
 """
 
@@ -41,116 +41,121 @@ class Differential:
         return self.context.constant(0)
 
     def set_gradient(self, name: str, **partials: Poly) -> None:
-        """The partial derivatives of the variable `name`: ∂name/∂key for each key."""
+        """Set the partial derivatives of the variable `name`: ∂name/∂key for each key."""
         self._gradients[name] = partials
 
     def set_coordinates(self, first: str = "p", second: str = "q") -> None:
-        """These two variables are what partial derivatives are taken by."""
+        """Declare the two independent variables of the partial derivatives."""
         one = self.context.constant(1)
         self.set_gradient(first, **{first: one, second: self.zero})
         self.set_gradient(second, **{first: self.zero, second: one})
 
     def relate(self, *relations: Poly) -> None:
-        """Each relation = 0."""
+        """Add the relations that each of these polynomials is 0."""
         self._relations += relations
 
     def reduce(self, x: Poly) -> Poly:
-        """The normal form of x modulo the relations."""
+        """Return the normal form of x modulo the relations."""
+        # Dividing by each relation once suffices, as their leading terms are coprime.
         for relation in self._relations:
             x = divmod(x, relation)[1]
         return x
 
     def diff(self, x: Poly, by: str) -> Poly:
-        """∂x/∂by in normal form. KeyError where a variable in x has no such derivative known."""
+        """Return ∂x/∂by in normal form. KeyError if a variable of x has no such derivative."""
         total, degrees = self.zero, x.degrees()
         for index, name in enumerate(self.names):
+            # A variable without a gradient is a constant, and contributes nothing.
             if degrees[index] > 0 and name in self._gradients:
                 total += x.derivative(index) * self._gradients[name][by]
         return self.reduce(total)
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
+        """Return the Jacobian determinant ∂(x, y)/∂(p, q)."""
         diff = self.diff
         return self.reduce(diff(x, "p") * diff(y, "q") - diff(x, "q") * diff(y, "p"))
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
-        """x by powers of a constant: {power: coefficient}, the coefficients non-zero."""
-        at = self.names.index(name)
+        """Expand x in powers of a constant: {power: coefficient}, the coefficients non-zero."""
+        index = self.names.index(name)
         parts: dict[int, Poly] = {}
         for monomial, coefficient in terms_of(x):
-            rest = (*monomial[:at], 0, *monomial[at + 1 :])
+            # The exponent of the constant is removed from the monomial, and becomes the key.
+            rest = (*monomial[:index], 0, *monomial[index + 1 :])
             term = self.context.from_dict({rest: coefficient})
-            power = int(monomial[at])
+            power = int(monomial[index])
             parts[power] = parts[power] + term if power in parts else term
         return parts
 
 
 def free_variables(names: str) -> list[Poly]:
-    """Variables, named with blanks between, none of which depends on another."""
+    """Return independent variables with these names, separated by blanks."""
     ring = Differential(names.split())
     return [ring[name] for name in ring.names]
 
 
 @dataclass(frozen=True)
 class Flow:
-    """X = H_p ∂_q − H_q ∂_p over such a ring: p' = −H_q, q' = H_p (Eq. 1)."""
+    """The field X = H_p ∂_q − H_q ∂_p over such a ring: p' = −H_q, q' = H_p (Eq. 1)."""
 
     ring: Differential
     h_p: Poly
     h_q: Poly
 
     def derive(self, y: Poly) -> Poly:
-        """X y."""
+        """Return X y."""
         diff = self.ring.diff
         return self.ring.reduce(self.h_p * diff(y, "q") - self.h_q * diff(y, "p"))
 
-    def lie_derivatives(self, name: str, most: int) -> list[Poly]:
-        """[y, X y, …, X^most y] of y = p or q."""
+    def lie_derivatives(self, name: str, highest: int) -> list[Poly]:
+        """Return [y, X y, …, X^highest y] of y = p or q."""
         result = [self.ring[name]]
-        for _ in range(most):
+        for _ in range(highest):
             result.append(self.derive(result[-1]))
         return result
 
     @property
     def hessian(self) -> tuple[Poly, Poly, Poly]:
-        """H_pp, H_pq, H_qq."""
+        """The entries H_pp, H_pq, H_qq."""
         diff = self.ring.diff
         return diff(self.h_p, "p"), diff(self.h_p, "q"), diff(self.h_q, "q")
 
     @property
     def hessian_determinant(self) -> Poly:
-        """H_pp H_qq − H_pq²."""
+        """The determinant H_pp H_qq − H_pq²."""
         pp, pq, qq = self.hessian
         return self.ring.reduce(pp * qq - pq * pq)
 
     def delta_j(self, p_next: Poly, q_next: Poly) -> dict[int, Poly]:
-        """ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
+        """Return ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
         return self.ring.powers(self.ring.bracket(p_next, q_next) - 1, "h")
 
-    def delta_j_gaps(self, eta: int, **told: Poly) -> list[Poly]:
-        """The coefficients of h, h², … in ΔJ of lieη, less what is `told` of them: h3=…"""
-        found = self.delta_j(*self.lie(eta))
-        powers = range(1, max([*found, 2 * eta]) + 1)
+    def delta_j_gaps(self, eta: int, **expected: Poly) -> list[Poly]:
+        """Return the coefficients of h, h², … in ΔJ of lieη minus the `expected` ones (h3=…)."""
+        computed = self.delta_j(*self.lie(eta))
+        # Powers beyond the expected ones must vanish too, so that the range covers both.
+        powers = range(1, max([*computed, 2 * eta]) + 1)
         zero = self.ring.zero
-        return [found.get(n, zero) - told.get(f"h{n}", zero) for n in powers]
+        return [computed.get(n, zero) - expected.get(f"h{n}", zero) for n in powers]
 
     def lie(self, eta: int) -> tuple[Poly, Poly]:
-        """p', q' of the scheme lieη (Eq. 2)."""
+        """Return p', q' of the scheme lieη (Eq. 2)."""
         h = self.ring["h"]
         both = []
         for name in ("p", "q"):
             total, factor = self.ring.zero, self.ring.context.constant(1)
             for n, term in enumerate(self.lie_derivatives(name, eta)):
+                # hⁿ/n!, built up factor by factor.
                 factor = factor * h / n if n else factor
                 total += factor * term
             both.append(total)
         return both[0], both[1]
 
 
-def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
-    """The flow of a generic H, whose partial derivatives up to `order` are variables."""
+def flow_of_every_hamiltonian(order: int, extra_names: Sequence[str] = ()) -> Flow:
+    """Return the flow of a generic H, whose partial derivatives up to `order` are variables."""
     pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
-    ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
+    ring = Differential(["h", *extra_names, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
     ring.set_coordinates()
     for i, j in pairs:
         if i + j < order:
@@ -160,15 +165,17 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     return Flow(ring, ring["H1_0"], ring["H0_1"])
 
 
-def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
-    """The flow of H = F(u) + rest for a generic F: u and rest are polynomials in p, q, constants.
+def flow_of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
+    """Return the flow of H = F(u) + rest for a generic F, with polynomials u and rest.
 
-    The derivatives of F at u up to `order` are the variables F1, F2, …
+    u and rest may contain p, q and the constants. The derivatives of F at u up to `order` are the
+    variables F1, F2, …
     """
     ring = Differential(["h", *constants, "p", "q", *(f"F{k}" for k in range(1, order + 1))])
     ring.set_coordinates()
     inner, outer = (_polynomial(ring, text) for text in (u, rest))
     u_p, u_q = ring.diff(inner, "p"), ring.diff(inner, "q")
+    # The chain rule: ∂F_k/∂p = F_(k+1) ∂u/∂p.
     for k in range(1, order):
         ring.set_gradient(f"F{k}", p=ring[f"F{k + 1}"] * u_p, q=ring[f"F{k + 1}"] * u_q)
     ring.set_gradient(f"F{order}")

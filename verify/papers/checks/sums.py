@@ -12,32 +12,38 @@ Of = Callable[[Poly], Poly]
 
 
 def geometric(offset: int = 0) -> Check:
-    """G_k = (r^k − 1)/(r − 1) obeys G_(k+1) = r G_k + 1 and G_0 = 0; `offset` is added to it."""
+    """Check G_(k+1) = r G_k + 1 and G_0 = 0 for G_k = (r^k − 1)/(r − 1).
+
+    `offset` is added to G_k, as a control.
+    """
     r, w = free_variables("r w")  # w = r^k
 
-    def scaled(power: Poly) -> Poly:
-        """(r − 1) G."""
+    def times_denominator(power: Poly) -> Poly:
+        """Return (r − 1) G for r^k = power."""
         return power - 1 + offset * (r - 1)
 
     return vanishes(
         "`G_{k+1}` − r `G_k` − 1 and `G_0` for `G_k` = (`r^k` − 1)/(r − 1), times r − 1",
-        scaled(r * w) - r * scaled(w) - (r - 1),
-        scaled(w**0),
+        times_denominator(r * w) - r * times_denominator(w) - (r - 1),
+        times_denominator(w**0),
     )
 
 
 def bound_of_eq_11(extra: int = 1) -> Check:
-    """h^(n+1) (E + (E − 1)/(hL)) = h^n ((E − 1)/L + h E); `extra`: how often the last counts."""
+    """Check h^(n+1) (E + (E − 1)/(hL)) = h^n ((E − 1)/L + h E); `extra`: factor of the last E."""
     h, rate, e, w = free_variables("h L E w")  # w = h^n
-    left = w * (h * rate * e + e - 1)  # times L
+    left_side = w * (h * rate * e + e - 1)  # times L
     return vanishes(
         "`h^(n+1)` (E + (E − 1)/(hL)) − `h^n` ((E − 1)/L + hE), times L, with E = `e^(LT)`",
-        left - w * (e - 1 + extra * rate * h * e),
+        left_side - w * (e - 1 + extra * rate * h * e),
     )
 
 
 def squares_of_times(factor: int = 1) -> Check:
-    """Σ (kh)², h = 1/N, is (N − 1)(2N − 1)/(6N), above N/8 by (5N − 2)(N − 2)/(24N)."""
+    """Check Σ (kh)² = (N − 1)(2N − 1)/(6N), h = 1/N, which exceeds N/8 by (5N − 2)(N − 2)/(24N).
+
+    `factor`: of the summands, 1 as it should be.
+    """
     (n,) = free_variables("N")
     above = 4 * (n - 1) * (2 * n - 1) - 3 * n * n - (5 * n - 2) * (n - 2)  # times 24 N
     return vanishes(
@@ -48,23 +54,24 @@ def squares_of_times(factor: int = 1) -> Check:
 
 
 def mean_of_fourth_powers(fifth: int = 5) -> Check:
-    """(1/N) Σ (kh)⁴, h = 1/N, tends to 1/5, or to 1/`fifth`: Σ k⁴ = N⁵/5 + …."""
+    """Check that (1/N) Σ (kh)⁴, h = 1/N, tends to 1/5, or to 1/`fifth`: Σ k⁴ = N⁵/5 + …."""
 
     def total(k: Poly) -> Poly:
         return (k - 1) * k * (2 * k - 1) * (3 * k * k - 3 * k - 1) / 30
 
     (n,) = free_variables("N")
     rest = total(n) - n**5 / fifth
-    found = vanishes(
+    check = vanishes(
         "Σ k⁴ − (N − 1)N(2N − 1)(3N² − 3N − 1)/30, which is N⁵/5 and lower powers of N",
         *_sum_gaps(lambda k: k**4, total),
     )
+    # Only the leading power of N counts for the limit of the mean.
     lower = rest.total_degree() < 5
-    return Check(found.what, found.holds and lower, found.shown if lower else "N⁵ is left")
+    return Check(check.what, check.holds and lower, check.value if lower else "N⁵ is left")
 
 
 def compensated_changes(double: int = 2) -> Check:
-    """Σ h(1/2 − kh), h = 1/N, is h/2; `double` stands for the first 2."""
+    """Check Σ h(1/2 − kh) = h/2, h = 1/N; `double` stands for the first 2."""
     (n,) = free_variables("N")
     total = n * n / double - n * (n - 1) / 2  # times N²; Σ k is checked beside it
     return vanishes(
@@ -75,6 +82,9 @@ def compensated_changes(double: int = 2) -> Check:
 
 
 def _sum_gaps(term: Of, total: Of) -> list[Poly]:
-    """What is 0 where the total is the sum of the terms before it."""
+    """Return polynomials that vanish if `total` is the sum of the terms before it.
+
+    They are F(N + 1) − F(N) − f(N) and F(0).
+    """
     (n,) = free_variables("N")
     return [total(n + 1) - total(n) - term(n), total(0 * n)]

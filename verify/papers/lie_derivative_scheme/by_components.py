@@ -10,7 +10,7 @@ from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, Step, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
-from verify.papers.exact_maps import run_of
+from verify.papers.exact_maps import run_symbolically
 from verify.papers.lie_derivative_scheme.examples import enclosures, errors, factor
 from verify.runs.task import RunTask
 from verify.schemes.methods.taylor.lie import lie_map
@@ -25,7 +25,7 @@ _LEVEL = Q - P**3
 
 
 def eq_9_kept() -> Argument:
-    """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
+    """Refute Eq. 9 in a norm with z̃_k on its right, which is 0 at k = 1 where its left is not."""
     return refutation(
         "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
         "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
@@ -42,21 +42,22 @@ def eq_9_kept() -> Argument:
                 *map(_after_two, _ETAS),
             ),
         ],
-        given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
+        setting="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
         remark="For every scheme and every H it is so wherever the first step has a local error "
         "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
     )
 
 
 def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
-    """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
+    """Check that the left side of Eq. 9 at k = 1 is not 0, for the oscillator."""
     with enclosures():
-        left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
-        shown, apart = left.mid().str(4, radius=False), bool(left > 0)
+        # R ≠ 0 multiplies every difference, and the local error is errors(…)[1].
+        left_side = abs(factor(eta, h) * errors(eta, h, 1)[-1])
+        size_text, is_positive = left_side.mid().str(4, radius=False), bool(left_side > 0)
     return Check(
         f"oscillator from (q, p) = (1, 0), lie{eta}, h = {text(h)}: |`z̃_2` − `z_2`| > 0",
-        apart,
-        f"`{shown}`",
+        is_positive,
+        f"`{size_text}`",
         BALLS,
     )
 
@@ -65,12 +66,12 @@ def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
 
 
 def eq_10_components(formula: str = LEVELS) -> Argument:
-    """Eq. 10 for p alone, e_k in place of e_n: its right side is 0 at k = 1, its left is not."""
+    """Refute Eq. 10 for p alone, e_k for e_n: at k = 1 its right side is 0, its left is not."""
     return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), `e^p_1` = 0 and every `C^p_k` = 0, "
         "so that Eq. 10 says `e^p_2` ≤ 0 whatever `L_p` is; but `e^p_2` = h⁴",
         [
-            *_steps_of(formula),
+            *_steps_for(formula),
             step(
                 "So `e^p_1` = 0 and ``e^p_2 = h(v_1 − 1) = h^4``, while the right sides of Eq. 10 "
                 "at k = 1, (1 + h`L_p`) `e^p_1` + `C^p_2` h³ and `e^(hL_p)` `e^p_1` + `C^p_2` h³, "
@@ -78,28 +79,28 @@ def eq_10_components(formula: str = LEVELS) -> Argument:
                 _second_step(formula),
             ),
         ],
-        given=_SETTING,
+        setting=_SETTING,
         remark="The p-component has no local error here, and the error in q goes over into it.",
     )
 
 
 def eq_11(formula: str = LEVELS) -> Argument:
-    """Eq. 11 for p alone: its right side is 0, and e^p is h²/2 at t = 1."""
+    """Refute Eq. 11 for p alone: its right side is 0, and e^p is about h²/2 at t = 1."""
     return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), the exact solution is p = t, q = t³, "
         "`e^p_1` = 0 and every `C^p_m` = 0, so that Eq. 11 says `e^p_k` = 0 whatever `L_p` and "
         "`C̃_p` are; but at t = 1 `e^p` ≥ h²(1 − h)/2",
         [
-            *_steps_of(formula),
+            *_steps_for(formula),
             step(
                 "So `v_k` ≥ 1 + kh³, and ``p_N − Nh = h Σ_{k<N} (v_k − 1) ≥ h^4 N(N − 1)/2``, "
                 "which at Nh = 1 is h²(1 − h)/2.",
-                _added_up(),
-                tried=[_at_1(formula, n) for n in _STEPS],
+                _check_sum(),
+                tried=[_check_at_1(formula, n) for n in _STEPS],
             ),
             step("The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`."),
         ],
-        given=_SETTING,
+        setting=_SETTING,
         remark="It makes no difference whether e is |`p̄_k` − `p_k`| or, as Eq. 7 has it, |`p̃_k` − "
         "`p_k`|: `p̃_k` = `p̄_k`, as `C^p_k` = 0. What holds is Eq. 11 for both components in one "
         "norm, given Eq. 10.",
@@ -112,18 +113,19 @@ _SETTING = (
 )
 
 
-def _steps_of(formula: str) -> list[Step]:
-    """What one step of lie2 does: p goes up by hv without a local error, and v by h³v³."""
+def _steps_for(formula: str) -> list[Step]:
+    """Show that a step of lie2 adds hv to p, without a local error, and h³v³ to v."""
     hamiltonian = Hamiltonian.parse(formula)
     scheme, v = lie_map(hamiltonian, 2), 1 - _LEVEL
     h_p, h_q = (sympy.diff(hamiltonian.expression, z) for z in (P, Q))
+    # v is a first integral, so that X v = 0, Xp = v and Xⁿp = 0 for n ≥ 2.
     field = same(
         f"H = `{formula}`: `H_q` + v, `H_p` − 3p²v and X v, v = 1 − q + p³",
         [h_q + v, h_p - 3 * P**2 * v, h_p * sympy.diff(v, Q) - h_q * sympy.diff(v, P)],
         ("p", "q"),
     )
     v_next = v.subs({P: scheme.p_next, Q: scheme.q_next}, simultaneous=True)
-    stepped = same(
+    after_step = same(
         f"H = `{formula}`, lie2: p' − p − hv, and v' − v − h³v³",
         [scheme.p_next - P - H_STEP * v, sympy.expand(v_next - v - H_STEP**3 * v**3)],
         ("p", "q", "h"),
@@ -135,31 +137,33 @@ def _steps_of(formula: str) -> list[Step]:
             "that all `C^p_m` = 0, and `p_1` = h = `p̄_1`, `e^p_1` = 0. In a step of lie2 "
             "``p' = p + hv, v' = v + h^3 v^3``.",
             field,
-            stepped,
+            after_step,
         ),
     ]
 
 
 def _second_step(formula: str) -> Check:
-    p, _ = run_of(lie_map(Hamiltonian.parse(formula), 2), (sympy.S.Zero, sympy.S.Zero), 2)
+    p, _ = run_symbolically(lie_map(Hamiltonian.parse(formula), 2), (sympy.S.Zero, sympy.S.Zero), 2)
     gap = p - 2 * H_STEP - H_STEP**4
     return same("two steps of lie2 from (0, 0): `p_2` − 2h − h⁴", [gap], ("h",))
 
 
-def _added_up() -> Check:
+def _check_sum() -> Check:
     n, k = sympy.symbols("n k", integer=True, positive=True)
+    # Induction on k: v_0 = 1, and v' ≥ v + h³ as long as v ≥ 1.
     gap = sympy.expand(sympy.summation(k, (k, 0, n - 1)) - n * (n - 1) / 2)
     return Check("Σ k, k = 0 … N − 1, less N(N − 1)/2", gap == 0, f"`{gap}`")
 
 
-def _at_1(formula: str, steps: int) -> Check:
-    """e^p at t = 1 by a run of this toolkit with certified digits."""
+def _check_at_1(formula: str, steps: int) -> Check:
+    """Check e^p at t = 1 by a run of this toolkit with certified digits."""
     h = Fraction(1, steps)
     run = RunTask(
         hamiltonian=formula, parameters={}, scheme="lie2", p=Fraction(0), q=Fraction(0),
         step_size=h, steps=steps, arithmetic="auto", digits=20, observables=(), points=0,
     ).compute(NOTHING)  # fmt: skip
     value = run.values["p"]
+    # The upper bound h² is a control: a run that went astray would exceed it.
     low = abs(Fraction(value.value) - 1) - Fraction(value.bound)
     return Check(
         f"H = `{formula}`, lie2, h = {text(h)}, from (0, 0), N = {steps}: |p − 1| ≥ h²(1 − h)/2, "

@@ -2,11 +2,11 @@
 
 from verify.papers.argument import Argument, Step, proof, step
 from verify.papers.lie_derivative_scheme import developables, families
-from verify.papers.lie_derivative_scheme.determinant import PRESERVED, preserved
+from verify.papers.lie_derivative_scheme.determinant import PRESERVED, area_is_preserved
 
 
 def determinant_classification(flaw: int = 0) -> Argument:
-    """All H for which lie2 preserves area exactly; `flaw` spoils the conic family."""
+    """Classify all H for which lie2 preserves area exactly; `flaw` spoils the conic family."""
     return proof(
         "locally complete for smooth H, near the points of an open dense set, globally for "
         "polynomial H and for H = T(p) + V(q); open is only how pieces of different families may "
@@ -21,17 +21,17 @@ def determinant_classification(flaw: int = 0) -> Argument:
                 families.by_acceleration(),
             ),
             *_without_curvature(),
-            *_curved(),
+            *_with_curvature(),
             *_conic(flaw),
             *_polynomial(),
             *_separable(),
         ],
-        given="Write w = ∇H, D = det Hess H, N = −X²z.",
+        setting="Write w = ∇H, D = det Hess H, N = −X²z.",
     )
 
 
 def _without_curvature() -> list[Step]:
-    """D = 0 on an open set."""
+    """Treat the case D = 0 on an open set."""
     return [
         step(
             "Case D = 0 on an open set. Where Hess H ≠ 0 the gradient is constant on lines: w = "
@@ -55,8 +55,8 @@ def _without_curvature() -> list[Step]:
     ]
 
 
-def _curved() -> list[Step]:
-    """D ≠ 0: the Legendre transform, and one identity for the rest."""
+def _with_curvature() -> list[Step]:
+    """Treat D ≠ 0 by the Legendre transform, with one identity for the rest."""
     return [
         step(
             "Case D ≠ 0. Then w ≠ 0, for at a critical point ``ΔJ = h^4 D^2/4``.",
@@ -87,13 +87,13 @@ def _curved() -> list[Step]:
             "With Sv = (−b, a) ``(v·Yv) Y = (Yv)(Yv)ᵀ + det Y (Sv)(Sv)ᵀ``, and from that follows "
             "``2(Ψ − c) W + c'^2 + P(Ψ) ω^2 = 0``, which is (3).",
             developables.adjugate_identity(),
-            developables.contracted(),
+            developables.contraction(),
         ),
     ]
 
 
 def _conic(flaw: int) -> list[Step]:
-    """The two families with D ≠ 0."""
+    """Show that the two families with D ≠ 0 exist and preserve area."""
     conic = developables.Conic(flaw)
     return [
         step(
@@ -118,7 +118,7 @@ def _conic(flaw: int) -> list[Step]:
         step(
             "With the parameter s chosen so that ω = 1, comparing coefficients gives "
             "``(a, b)'' = −(k_2/2)(a, b)``, ``c'^2 = −P(c)``, ``c'' = −P'(c)/2``.",
-            developables.compared(),
+            developables.comparison(),
         ),
         step(
             "Conversely, for all solutions of these equations with W, P and Ψ − c not 0 the H with "
@@ -128,7 +128,7 @@ def _conic(flaw: int) -> list[Step]:
         ),
         step(
             "Examples: the powers 3/4 of definite and indefinite quadratic forms, with c = 0.",
-            *map(preserved, PRESERVED),
+            *map(area_is_preserved, PRESERVED),
         ),
     ]
 

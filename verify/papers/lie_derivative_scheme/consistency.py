@@ -1,4 +1,4 @@
-"""Smooth consistency: with it criteria 2–4 hold for every scheme, and without it they need not.
+"""Smooth consistency, which implies criteria 2–4 for every scheme, and without which they may fail.
 
 A one-step map Φ is smoothly consistent of order m ≥ 1 with the exact flow φ_h of Eq. 1 where
 
@@ -21,9 +21,9 @@ from verify.arithmetic.exact import text
 from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, areas, map_from_formulas
+from verify.papers.exact_maps import Point, areas, map_from_texts
 from verify.papers.lie_derivative_scheme.examples import enclosures, oscillator
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -32,16 +32,18 @@ STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(
 
 
 def consistent_map(hamiltonian: bool = True) -> dict[int, Poly]:
-    """ΔJ, by powers of h, of p' = p + ha + h²r, q' = q + hb + h²s, for generic r and s.
+    """Return ΔJ, by powers of h, of p' = p + ha + h²r, q' = q + hb + h²s, for generic r and s.
 
     (a, b) is the vector field of a generic H; where `hamiltonian` is False, a generic one.
     """
     parts = [f"{name}_{z}" for name in "abrs" for z in "pq"]
+    # Only first derivatives of the map enter ΔJ, so that the values of a, b, r, s are not needed.
     mixed = ["H1_1", "H2_0", "H0_2"]
     ring = Differential(["h", *parts, *mixed])
     h = ring["h"]
     a_p, a_q, b_p, b_q, r_p, r_q, s_p, s_q = (ring[name] for name in parts)
     if hamiltonian:
+        # (a, b) = (−H_q, H_p) has trace 0, and the coefficient of h in ΔJ is that trace.
         a_p, a_q = -ring["H1_1"], -ring["H0_2"]
         b_p, b_q = ring["H2_0"], ring["H1_1"]
     u_p, u_q = h * a_p + h * h * r_p, h * a_q + h * h * r_q
@@ -50,7 +52,7 @@ def consistent_map(hamiltonian: bool = True) -> dict[int, Poly]:
 
 
 def small_determinant(hamiltonian: bool = True) -> Check:
-    """ΔJ = O(h²) for every smoothly consistent map of a generic H."""
+    """Check that ΔJ = O(h²) for every smoothly consistent map of a generic H."""
     powers, zero = consistent_map(hamiltonian), flow_of_every_hamiltonian(1).ring.zero
     return vanishes(
         "the coefficients of h⁰ and h¹ in ΔJ of a generic smoothly consistent map of a generic H",
@@ -59,12 +61,12 @@ def small_determinant(hamiltonian: bool = True) -> Check:
 
 
 def criteria_of_consistent_schemes(hamiltonian: bool = True) -> Argument:
-    """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
-    grown = enclosed_growth(STEP_SIZES[0])[1]
+    """Prove criteria 2, 3 and 4 also for explicit Euler, which blows every area up."""
+    growth = enclosed_growth(STEP_SIZES[0])[1]
     return proof(
         "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
         "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
-        f"{text(STEP_SIZES[0])}, T = {TIME} is {grown}",
+        f"{text(STEP_SIZES[0])}, T = {TIME} is {growth}",
         [
             step(
                 "Since det φ' = 1 (Liouville), ``det Φ' = 1 + O(h^2)`` uniformly on compact sets.",
@@ -77,28 +79,28 @@ def criteria_of_consistent_schemes(hamiltonian: bool = True) -> Argument:
             step(
                 "A mean is at most its greatest term, so ``MSE = O(h^4) = o(h)``: criterion 3 "
                 "holds.",
-                Shipped("Sums", "sum_of_less"),
+                ShippedTheorem("Sums", "sum_of_less"),
             ),
             step(
                 "``|Λ| ≤ e^(T O(h)) − 1 → 0``: criterion 4 holds.",
-                Shipped("Theorems", "error_over_many_steps"),
+                ShippedTheorem("Theorems", "error_over_many_steps"),
             ),
             step(
                 "So they hold for every smoothly consistent scheme, whatever it does to areas "
                 "otherwise. The explicit Euler scheme, lie1, for H = (p² + q²)/2 has ΔJ = h² at "
                 f"every point, so ``1 + Λ = (1 + h^2)^(T/h)``, and for h = {text(STEP_SIZES[0])} "
-                f"and T = {TIME} the Λ of every region is {grown}.",
+                f"and T = {TIME} the Λ of every region is {growth}.",
                 _euler(),
                 _over_time(STEP_SIZES[0]),
             ),
             step(
                 "Yet Λ → 0 as h → 0, by ``(1 + h^2)^(T/h) ≤ e^(Th)``, and criteria 2 to 4 are "
                 "satisfied.",
-                Shipped("Product", "power_below_exp"),
+                ShippedTheorem("Product", "power_below_exp"),
                 tried=[_over_time(h) for h in STEP_SIZES[1:]],
             ),
         ],
-        given="""A step Φ is smoothly consistent with Eq. 1 where ``Φ(z) = φ(z) + h^(m+1)
+        setting="""A step Φ is smoothly consistent with Eq. 1 where ``Φ(z) = φ(z) + h^(m+1)
         ρ(z, h)``, m ≥ 1, φ the exact flow over h, with a ρ whose values and first
         derivatives in z are continuous up to h = 0.""",
         remark="""For m > 1 ΔJ is even O(`h^(m+1)`). The criteria are asymptotic in h, and
@@ -114,9 +116,10 @@ def _euler() -> Check:
 
 
 def enclosed_growth(h: Fraction) -> tuple[bool, str]:
-    """Whether 1 + Λ ≤ e^(Th) for lie1 on the oscillator over [0, TIME], and Λ, both enclosed."""
+    """Enclose Λ of lie1 on the oscillator over [0, TIME]; return True if 1 + Λ ≤ e^(Th), and Λ."""
     with enclosures():
         size = rational_ball(h)
+        # In logarithms, as (1 + h²)^(T/h) has T/h up to 2·10¹³ factors.
         log = (1 + size * size).log() * TIME / size
         lam = log.exp() - 1
         # 1 + Λ = exp(T log(1 + h²)/h) ≤ exp(T h), which is what tends to 1.
@@ -137,9 +140,9 @@ STEPS = (4, 16)
 
 
 def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
-    """A consistent scheme of any order that fails criteria 2 and 4; `ripple` is its p'."""
-    found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
-    local, whole, run = zip(*found, strict=True)
+    """Prove that a consistent scheme of any order may fail criteria 2 and 4; `ripple` is its p'."""
+    checks = [_check_ripple(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
+    local, whole, run = zip(*checks, strict=True)
     limit, growth = _tends_to_e(STEPS)
     return proof(
         "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
@@ -166,8 +169,8 @@ def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
             ),
             step(
                 "``Λ = (1 + h)^N − 1 ≥ 1``: criterion 4 fails.",
-                Shipped("Product", "bound_attained"),
-                Shipped("Product", "product_above_sum"),
+                ShippedTheorem("Product", "bound_attained"),
+                ShippedTheorem("Product", "product_above_sum"),
             ),
             step(
                 "It tends to e − 1.",
@@ -180,22 +183,24 @@ def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
                 *local,
             ),
         ],
-        given="Let H = q, and Φ the map p' = p − h + `h^(m+1)` sin(2πp/`h^m`)/(2π), q' = q.",
+        setting="Let H = q, and Φ the map p' = p − h + `h^(m+1)` sin(2πp/`h^m`)/(2π), q' = q.",
     )
 
 
-def _rippled(formula: str, m: int) -> tuple[Check, Check, Check]:
-    """Order m by its local error, and ΔJ_k = h along the run, for all k and exactly for some N."""
-    found = map_from_formulas(formula, "q")
+def _check_ripple(formula: str, m: int) -> tuple[Check, Check, Check]:
+    """Check order m by the local error, and ΔJ_k = h along the run, for all k and for some N."""
+    step_map = map_from_texts(formula, "q")
     k = sympy.Symbol("k", integer=True)
-    ripple = sympy.simplify((found.p_next - P + H_STEP) / H_STEP ** (m + 1))
-    slope = sympy.simplify(sympy.diff(found.p_next - P, P) / H_STEP)
+    # ρ is the local error over h^(m+1). Its derivative grows like h^(−m): ρ is not smooth at h = 0.
+    ripple = sympy.simplify((step_map.p_next - P + H_STEP) / H_STEP ** (m + 1))
+    slope = sympy.simplify(sympy.diff(step_map.p_next - P, P) / H_STEP)
     steep = sympy.simplify(sympy.diff(ripple, P) * H_STEP**m - slope)
-    along = {P: -k * H_STEP}
+    # At p = −kh with h = 1/N the argument is an integer multiple of 2π for all integers k and N.
+    on_run = {P: -k * H_STEP}
     whole = {H_STEP: 1 / sympy.Symbol("N", integer=True, positive=True)}
-    moved = sympy.simplify((found.p_next - P + H_STEP).subs(along).subs(whole))
-    area = sympy.simplify((found.delta_j / H_STEP).subs(along).subs(whole))
-    runs = [_run_of(found, n) for n in STEPS]
+    image = sympy.simplify((step_map.p_next - P + H_STEP).subs(on_run).subs(whole))
+    area = sympy.simplify((step_map.delta_j / H_STEP).subs(on_run).subs(whole))
+    runs = [_run_is_as_stated(step_map, n) for n in STEPS]
     return (
         Check(
             f"H = q, p' = `{formula}`: the local error over `h^{m + 1}` is a sine over 2π, ψ' is a "
@@ -205,8 +210,8 @@ def _rippled(formula: str, m: int) -> tuple[Check, Check, Check]:
         ),
         Check(
             f"m = {m}, at p = −kh, h = 1/N, for all integers k and N: p' − p + h = 0, ΔJ = h",
-            moved == 0 and area == 1,
-            f"{moved}, ΔJ/h = {area}",
+            image == 0 and area == 1,
+            f"{image}, ΔJ/h = {area}",
         ),
         Check(
             f"m = {m}, run from (0, 0) to T = 1 with N = {', '.join(map(str, STEPS))}: all "
@@ -218,23 +223,24 @@ def _rippled(formula: str, m: int) -> tuple[Check, Check, Check]:
     )
 
 
-def _run_of(found: StepMap, steps: int) -> bool:
-    """Exactly; a run whose numbers are not rational is none with ΔJ = h."""
+def _run_is_as_stated(step_map: StepMap, steps: int) -> bool:
+    """Return True if all ΔJ_k are h exactly; False also for a run that is not rational."""
     h = Fraction(1, steps)
     try:
-        run = areas(found, Point(Fraction(0), Fraction(0)), h, steps)
+        run = areas(step_map, Point(Fraction(0), Fraction(0)), h, steps)
     except ValueError:
         return False
     return set(run.delta_j) == {h} and run.lam == (1 + h) ** steps - 1 >= 1
 
 
 def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:
-    """Whether e − (1 + 1/N)^N lies between 0 and e/(2N + 1), and Λ."""
+    """Return True if 0 < e − (1 + 1/N)^N < e/(2N + 1) for each N, and a text with Λ."""
     with enclosures():
-        e, found = flint.arb(1).exp(), []
+        e, comparisons = flint.arb(1).exp(), []
         for n in steps:
+            # e − (1 + 1/N)^N < e/(2N + 1), a classical bound, shows the limit without taking one.
             power = rational_ball(Fraction(n + 1, n)) ** n
-            found.append((bool(e / (2 * n + 1) > e - power > 0), (power - 1)))
-        shown = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in found)
-    listed = ", ".join(map(str, steps))
-    return all(near for near, _ in found), f"for N = {listed} it is {shown}, e − 1 to 1/N"
+            comparisons.append((bool(e / (2 * n + 1) > e - power > 0), (power - 1)))
+        values = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in comparisons)
+    counts = ", ".join(map(str, steps))
+    return all(near for near, _ in comparisons), f"for N = {counts} it is {values}, e − 1 to 1/N"

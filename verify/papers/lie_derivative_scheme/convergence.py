@@ -13,7 +13,7 @@ from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.checks.sums import geometric
 from verify.papers.lie_derivative_scheme import examples
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -23,7 +23,7 @@ _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
 
 
 def convergence(shift: int = 0) -> Argument:
-    """The global error is O(h^η). `shift`: what is added to the claimed orders, 0 as printed."""
+    """Prove that the global error is O(h^η); `shift` is added to the orders, as a control."""
     return proof(
         "it holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, q) together "
         "in place of Eq. 9's two",
@@ -32,7 +32,7 @@ def convergence(shift: int = 0) -> Argument:
                 "Local error. Φ is the Taylor polynomial of degree η of the exact flow, so for a "
                 "smooth H one step from the exact solution is off by C `h^(η+1)` at most; for both "
                 "systems by no higher power.",
-                Shipped("Theorems", "flow_has_taylor_series"),
+                ShippedTheorem("Theorems", "flow_has_taylor_series"),
                 *local_orders(shift),
             ),
             step(
@@ -50,11 +50,11 @@ def convergence(shift: int = 0) -> Argument:
             step(
                 "The triangle inequality, Eq. 8, gives for `E_k` = |`z̄_k` − `z_k`|, `E_0` = 0, as "
                 "long as `E_k` ≤ r: ``E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)!``.",
-                Shipped("Sums", "size_of_sum"),
+                ShippedTheorem("Sums", "size_of_sum"),
             ),
             step(
                 "By induction ``E_k ≤ M h^η/(η+1)! (e^(LT) − 1)/L`` for all kh ≤ T.",
-                Shipped("Product", "errors_below_exp"),
+                ShippedTheorem("Product", "errors_below_exp"),
                 geometric(),
                 tried=[_within_the_bound(eta, eta + shift) for eta in ETAS],
             ),
@@ -64,7 +64,7 @@ def convergence(shift: int = 0) -> Argument:
                 "|`q̄_k` − `q_k`| are O(`h^η`) on [t₀, `t_end`].",
             ),
         ],
-        given="""Let H be of class `C^(η+1)` near the exact solution z̄(t), t₀ ≤ t ≤
+        setting="""Let H be of class `C^(η+1)` near the exact solution z̄(t), t₀ ≤ t ≤
         `t_end`, and let K be the closed tube of some radius r around it in which this
         holds; T = `t_end` − t₀. Write Φ for the step and `z̄_k` for the exact solution at
         t₀ + kh.""",
@@ -76,66 +76,71 @@ def convergence(shift: int = 0) -> Argument:
 
 
 def local_orders(shift: int) -> list[Check]:
-    """The local error is of order η + 1 + shift exactly, for both systems."""
+    """Check that the local error is of order η + 1 + shift exactly, for both systems."""
     return [_local_order(name, eta, eta + shift) for name in examples.SYSTEMS for eta in ETAS]
 
 
 def _local_order(name: str, eta: int, claimed: int) -> Check:
-    found = convergence_of(lie_map(examples.with_symbols(name), eta))
+    order = convergence_of(lie_map(examples.with_symbols(name), eta))
     return Check(
         f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
-        found.decided and found.order == claimed,
-        f"agrees with the exact flow up to `h^{found.order}`",
+        order.decided and order.order == claimed,
+        f"agrees with the exact flow up to `h^{order.order}`",
     )
 
 
 def _within_the_bound(eta: int, order: int) -> Check:
-    """On the oscillator M = 1, and L ≤ (e^h − 1)/h as the norm of every Xⁿ is 1."""
-    shown, holds = [], True
+    """Check the proof's bound on the oscillator.
+
+    There M = 1, and L ≤ (e^h − 1)/h, as the norm of every Xⁿ is 1.
+    """
+    ratios, holds = [], True
     for steps in STEPS:
         error = examples.final_error(eta, steps)
         with examples.enclosures():
             h = rational_ball(Fraction(1, steps))
             lipschitz = (h.exp() - 1) / h
+            # M h^η/(η+1)! (e^(LT) − 1)/L with M = T = 1.
             bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
             holds = holds and bool(error <= bound)
-            shown.append(f"`{(error / h**order).mid().str(5, radius=False)}`")
+            ratios.append(f"`{(error / h**order).mid().str(5, radius=False)}`")
     return Check(
-        f"oscillator, lie{eta}, T = 1: |error|/`h^{order}` for N = {_listed(STEPS)} lies below the "
-        f"proof's bound",
+        f"oscillator, lie{eta}, T = 1: |error|/`h^{order}` for N = {_list_numbers(STEPS)} lies "
+        f"below the proof's bound",
         holds,
-        ", ".join(shown),
+        ", ".join(ratios),
         BALLS,
     )
 
 
-def _listed(numbers: Sequence[int]) -> str:
+def _list_numbers(numbers: Sequence[int]) -> str:
     return ", ".join(map(str, numbers))
 
 
 def eq_10(fixed: bool = True) -> Argument:
-    """Eq. 10 with e_n, n = η, in the middle of it; `fixed` False: with e_k, as it must read."""
+    """Refute Eq. 10 with e_n, n = η, in its middle; `fixed` False: with e_k, as it must read."""
     eta, ratios = 1, []
     with examples.enclosures():
         for steps in STEPS:
             h = rational_ball(Fraction(1, steps))
             end = examples.final_error(eta, steps)
+            # As printed, e_n is the error after n = η steps; it must be that after k = N − 1.
             before = abs(examples.errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
     grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
-    shown = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
-    asked = Check(
+    ratio_texts = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
+    recursion = Check(
         f"oscillator, lie{eta}, T = 1: (`e_N` − `e^h` "
         f"`e_{eta if fixed else 'N−1'}`)/`h^{eta + 1}`, which C must exceed, for N = "
-        f"{_listed(STEPS)}",
+        f"{_list_numbers(STEPS)}",
         grows,
-        f"{shown}: {'grows like N' if grows else 'stays bounded'}",
+        f"{ratio_texts}: {'grows like N' if grows else 'stays bounded'}",
         BALLS,
     )
     return refutation(
         "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
         f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
-        f"{shown} for N = {_listed(STEPS)})",
+        f"{ratio_texts} for N = {_list_numbers(STEPS)})",
         [
             step(
                 "`e_n` is the error after η steps, which is O(`h^(η+1)`) whatever k is; so Eq. 10 "
@@ -144,29 +149,29 @@ def eq_10(fixed: bool = True) -> Argument:
             step(
                 "For H = (p² + q²)/2 and η = 1 a step takes |z|² to (1 + h²) |z|², so that "
                 "``|z_k| = (1 + h^2)^(k/2) |z_0|``, while the exact solution keeps |z|.",
-                _lengthened(),
+                _length_grows(),
             ),
             step(
                 "So at T = 1 the norm of the error is at least, for h ≤ 1/2, ``(1 + h^2)^(1/(2h)) "
                 "− 1 ≥ h/2`` (Bernoulli), and one of its two components at least h/3, which no C "
                 "h² bounds.",
-                tried=[asked],
+                tried=[recursion],
             ),
         ],
-        given="In Eq. 10 n is the order η of the truncated exponential, as its exponent `h^(n+1)` "
-        "and the text below it say.",
+        setting="In Eq. 10 n is the order η of the truncated exponential, as its exponent "
+        "`h^(n+1)` and the text below it say.",
         remark="It is a misprint: with `e_k` for `e_n` the second inequality of Eq. 10 is 1 + hL ≤ "
         "`e^(hL)`, and Eq. 11 follows by iteration for any sequence with `e_{k+1}` ≤ (1 + hL) "
         "`e_k` + C `h^(η+1)`.",
     )
 
 
-def _lengthened(eta: int = 1) -> Check:
-    """p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; not so for another `eta`."""
+def _length_grows(eta: int = 1) -> Check:
+    """Check p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; another `eta` fails."""
     hamiltonian = examples.oscillator()
-    found, square = lie_map(hamiltonian, eta), P**2 + Q**2
-    gap = found.p_next**2 + found.q_next**2 - (1 + H_STEP**2) * square
+    step_map, square = lie_map(hamiltonian, eta), P**2 + Q**2
+    gap = step_map.p_next**2 + step_map.q_next**2 - (1 + H_STEP**2) * square
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))
-    kept = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
+    derivative = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
     what = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
-    return same(what, [gap, kept], ("p", "q", "h"))
+    return same(what, [gap, derivative], ("p", "q", "h"))

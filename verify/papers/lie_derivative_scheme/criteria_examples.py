@@ -1,4 +1,4 @@
-"""Maps that tell the criteria apart: each with the closed form of its ΔJ, MSE and Λ.
+"""Maps that separate the criteria, each with the closed forms of its ΔJ, MSE and Λ.
 
 T is fixed, N = T/h steps. Every closed form is held against the map itself, run in Fractions.
 """
@@ -14,7 +14,7 @@ import sympy
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import decimal
 from verify.papers.checks.check import NUMBERS, Check, same
-from verify.papers.exact_maps import Areas, Point, areas, map_from_formulas
+from verify.papers.exact_maps import Areas, Point, areas, map_from_texts
 
 Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
 
@@ -40,29 +40,32 @@ class ExampleMap:
         return _run(self.p_next, self.q_next, self.start, steps)
 
     def check(self) -> Check:
-        """Whether the map has the numbers that are said of it, exactly, for each N."""
-        holds, shown = True, []
+        """Check that the map has the stated numbers, exactly, for each N."""
+        holds, texts = True, []
         for n in self.steps:
-            found = self.run(n)
-            holds = holds and (found.largest, found.mse, found.lam) == self.closed(Fraction(1, n))
-            shown.append(
-                f"N = {n}: max |ΔJ| = {_short(found.largest)}, MSE = {_short(found.mse)}, "
-                f"Λ = {_short(found.lam)}"
+            run_areas = self.run(n)
+            holds = holds and (run_areas.largest, run_areas.mse, run_areas.lam) == self.closed(
+                Fraction(1, n)
+            )
+            texts.append(
+                f"N = {n}: max |ΔJ| = {_short(run_areas.largest)}, MSE = {_short(run_areas.mse)}, "
+                f"Λ = {_short(run_areas.lam)}"
             )
         what = f"{self.name}: p' = `{self.p_next}`, q' = `{self.q_next}`, from {self.start}, T = 1"
-        return Check(f"{what}: {self.says}", holds, "; ".join(shown), NUMBERS)
+        return Check(f"{what}: {self.says}", holds, "; ".join(texts), NUMBERS)
 
     def changes(self) -> Check:
-        """Whether its ΔJ is what is said, at every point and for every h."""
+        """Check that its ΔJ is the stated formula, at every point and for every h."""
         names = ("p", "q", "h")
-        told = parse(self.delta_j, names, source=self.name)
-        found = map_from_formulas(self.p_next, self.q_next).delta_j
-        return same(f"{self.name}: ΔJ − (`{self.delta_j}`)", [found - told], names)
+        printed = parse(self.delta_j, names, source=self.name)
+        computed = map_from_texts(self.p_next, self.q_next).delta_j
+        return same(f"{self.name}: ΔJ − (`{self.delta_j}`)", [computed - printed], names)
 
 
+# Runs are cached, as several arguments use the same maps.
 @cache
 def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
-    return areas(map_from_formulas(p_next, q_next), start, Fraction(1, steps), steps)
+    return areas(map_from_texts(p_next, q_next), start, Fraction(1, steps), steps)
 
 
 def _short(x: Fraction) -> str:
@@ -70,14 +73,14 @@ def _short(x: Fraction) -> str:
 
 
 def shrinks_to(limit: sympy.Expr = -sympy.S.One) -> Check:
-    """log(1 − h + h²)/h → −1: with friction every area shrinks to 1/e over [0, 1]."""
+    """Check log(1 − h + h²)/h → −1: with friction every area shrinks to 1/e over [0, 1]."""
     h = sympy.Symbol("h", positive=True)
-    found = sympy.limit(sympy.log(1 - h + h**2) / h, h, 0)
-    return Check("friction: log(1 − h + h²)/h for h → 0", found == limit, f"`{found}`")
+    computed = sympy.limit(sympy.log(1 - h + h**2) / h, h, 0)
+    return Check("friction: log(1 − h + h²)/h for h → 0", computed == limit, f"`{computed}`")
 
 
 def turns_to_and_fro(sign: int = 1) -> Check:
-    """Of a step and the next, e = √h: their factors multiply to 1, and the sizes of their ΔJ."""
+    """Check two successive steps, e = √h: det J multiplies to 1, and the sizes of their ΔJ."""
     e = sympy.Symbol("e", positive=True)
     down, up = -2 * e / (1 + e), sign * 2 * e / (1 - e)
     gaps = [
@@ -93,7 +96,8 @@ def turns_to_and_fro(sign: int = 1) -> Check:
 
 
 def _root(h: Fraction) -> Fraction:
-    """√h of an h = 1/n²."""
+    """Return √h for h = 1/n²."""
+    # The root is rational only if h = 1/n², so that the map with √h stays within Fractions.
     n = round(h.denominator**0.5)
     if n * n * h != 1:
         raise ValueError("h is not 1/n²")
@@ -106,15 +110,18 @@ def _friction(h: Fraction) -> Numbers:
 
 
 def _to_and_fro(h: Fraction) -> Numbers:
-    """ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h; for odd N there is one contraction
+    """Return the numbers where ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h.
+
+    For odd N there is one contraction
     more than expansions."""
+    # A contraction and the expansion after it multiply to 1, so that Λ = 0 after even N.
     e, n = _root(h), int(1 / h)
     down, up, odd = -2 * e / (1 + e), 2 * e / (1 - e), n % 2
     return up, ((n + odd) * down**2 + (n - odd) * up**2) / (2 * n), odd * down
 
 
-def _compensated(h: Fraction) -> Numbers:
-    """ΔJ_k = h(1/2 − kh), whose sum is h/2; Λ stays as the product."""
+def _compensating(h: Fraction) -> Numbers:
+    """Return the numbers of ΔJ_k = h(1/2 − kh), whose sum is h/2; Λ stays as the product."""
     n = int(1 / h)
     values = [h * (Fraction(1, 2) - k * h) for k in range(n)]
     mse = h * h * (1 + 2 * h * h) / 12  # Σ (1/2 − kh)² h = (1 + 2h²)/12
@@ -123,8 +130,9 @@ def _compensated(h: Fraction) -> Numbers:
 
 
 def _not_uniform(h: Fraction) -> Numbers:
-    """ΔJ_k = (kh)², with Σ k⁴ in closed form."""
+    """Return the numbers of ΔJ_k = (kh)², with Σ k⁴ in closed form."""
     n = int(1 / h)
+    # Σ k⁴ for k = 0 … N − 1.
     fourth = Fraction((n - 1) * n * (2 * n - 1) * (3 * n * n - 3 * n - 1), 30)
     product = prod((1 + (k * h) ** 2 for k in range(n)), start=Fraction(1))
     return ((n - 1) * h) ** 2, fourth * h**4 / n, product - 1
@@ -165,7 +173,7 @@ COMPENSATED = ExampleMap(
     "q + h",
     _ORIGIN,
     (4, 16, 64),
-    _compensated,
+    _compensating,
     "max |ΔJ| = h/2, Σ ΔJ = h/2 and 0 < Λ < h, so that Λ → 0",
     "h*(1/2 - q)",
 )

@@ -10,7 +10,7 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same
-from verify.papers.checks.matrices import of_the_field, where_it_rests
+from verify.papers.checks.matrices import derivative_at_rest, derivative_of_the_field
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
 from verify.proof.order import convergence_of, prove
@@ -23,8 +23,8 @@ SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
 
 
 def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
-    """For the paper's two systems det J ≠ 1: at the equilibrium, for every η and almost every h."""
-    at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
+    """Prove det J ≠ 1 for the paper's systems at equilibrium, for every η and almost every h."""
+    at_rest = [_check_at_rest(name, eta) for name in names for eta in ETAS]
     return proof(
         "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
         "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
@@ -33,12 +33,12 @@ def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
                 "At a critical point z₀ of H f = 0, and with A = f'(z₀) ``(Xg)' = g''f + g'A = "
                 "g'A``. So the derivative of Xⁿz is Aⁿ, and J = R(hA), R the truncated exponential "
                 "of degree η.",
-                where_it_rests(),
+                derivative_at_rest(),
             ),
             step(
                 "A has trace 0 and determinant D = det Hess H(z₀), hence eigenvalues ±μ with μ² = "
                 "−D, and ``det J = R(hμ) R(−hμ)``.",
-                of_the_field(),
+                derivative_of_the_field(),
             ),
             step(
                 "This is a polynomial in h of degree 2η whose coefficient of `h^(2η)` is "
@@ -53,12 +53,12 @@ def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
                 *at_rest,
             ),
         ],
-        given="f = (−`H_q`, `H_p`) is the field of Eq. 1.",
+        setting="f = (−`H_q`, `H_p`) is the field of Eq. 1.",
     )
 
 
 def _last_coefficients(sign: int = -1) -> Check:
-    """The last coefficient of R(hμ) R(−hμ) is D^η/(η!)², μ² = −D, or `sign` D."""
+    """Check that the last coefficient of R(hμ) R(−hμ) is D^η/(η!)², μ² = −D, or `sign` D."""
     mu, h, d = sympy.symbols("mu h D")
     gaps = []
     for eta in ETAS:
@@ -66,33 +66,35 @@ def _last_coefficients(sign: int = -1) -> Check:
             sum((s * h * mu) ** n / sympy.factorial(n) for n in range(eta + 1)) for s in (1, -1)
         ]
         top = sympy.expand(both[0] * both[1]).coeff(h, 2 * eta)
-        put = top.subs(mu, sympy.Symbol("x")).subs(
+        # μ^(2η) is replaced as one power, by (−D)^η, or with another sign as a control.
+        substituted = top.subs(mu, sympy.Symbol("x")).subs(
             sympy.Symbol("x") ** (2 * eta), (sign * d) ** eta
         )
-        gaps.append(put - d**eta / sympy.factorial(eta) ** 2)
+        gaps.append(substituted - d**eta / sympy.factorial(eta) ** 2)
     what = "the coefficient of `h^(2η)` in R(hμ) R(−hμ) less `D^η`/(η!)², η = 1 … 5"
     return same(what, gaps, ("D",))
 
 
-def _at_rest(name: str, eta: int) -> Check:
-    """ΔJ at (0, 0) against R(ih) R(−ih) − 1, all parameters symbols."""
+def _check_at_rest(name: str, eta: int) -> Check:
+    """Check that ΔJ at (0, 0) is R(ih) R(−ih) − 1, all parameters symbols."""
     delta_j = sympy.expand(lie_map(with_symbols(name), eta).delta_j.subs({P: 0, Q: 0}))
     # R(z) R(−z) at z² = −h²
     z = sympy.Symbol("z")
     terms = [z**n / sympy.factorial(n) for n in range(eta + 1)]
+    # R(z) R(−z) is a polynomial in z² alone, so that its value at z = ih is real.
     product = sympy.expand(sum(terms) * sum(t.subs(z, -z) for t in terms))
-    told = sympy.expand(product.subs(z, sympy.I * H_STEP)) - 1
+    expected = sympy.expand(product.subs(z, sympy.I * H_STEP)) - 1
     top = sympy.Poly(delta_j, H_STEP).coeff_monomial(H_STEP ** (2 * eta)) if delta_j != 0 else 0
     return Check(
         f"{name}, lie{eta}: ΔJ at (0, 0) is R(ih) R(−ih) − 1, its last coefficient 1/({eta}!)²",
-        delta_j == told and top == sympy.Rational(1, math.factorial(eta) ** 2),
+        delta_j == expected and top == sympy.Rational(1, math.factorial(eta) ** 2),
         f"`{to_text(delta_j)}`",
     )
 
 
 def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
-    """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
-    first, *others = map(preserved, formulas)
+    """Refute det J ≠ 1 for every H, by H with det J ≡ 1 and a truncation error."""
+    first, *others = map(area_is_preserved, formulas)
     return refutation(
         "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
         "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
@@ -135,21 +137,23 @@ def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
 
 
 def _spirals(power: int = 4) -> Check:
-    """What a step of lie2 makes of I on a circle that turns with Ω: I (1 + (hΩ)^`power`/4)."""
+    """Check that a step of lie2 turning with Ω takes I to I (1 + (hΩ)^`power`/4)."""
     x, amount, h, k = sympy.symbols("x I h k")  # x = hΩ
-    grown = (1 - x**2 / 2) ** 2 + x**2 - (1 + x**power / 4)
-    moved = amount * (1 + h**4 * (k / amount) / 4)  # Ω⁴ = k/I
+    growth_gap = (1 - x**2 / 2) ** 2 + x**2 - (1 + x**power / 4)
+    next_amount = amount * (1 + h**4 * (k / amount) / 4)  # Ω⁴ = k/I
     what = "(1 − x²/2)² + x² − (1 + x⁴/4), x = hΩ; and d/dI [I (1 + h⁴Ω⁴/4)] − 1 for Ω⁴ = k/I"
-    return same(what, [grown, sympy.diff(sympy.expand(moved), amount) - 1], ("x", "I", "h", "k"))
+    return same(
+        what, [growth_gap, sympy.diff(sympy.expand(next_amount), amount) - 1], ("x", "I", "h", "k")
+    )
 
 
-def preserved(formula: str) -> Check:
-    """ΔJ ≡ 0 by the ring, and the map agrees with the flow up to h² and not further."""
+def area_is_preserved(formula: str) -> Check:
+    """Check ΔJ ≡ 0 in the ring, and that the map agrees with the flow exactly up to h²."""
     step_map = lie_map(Hamiltonian.parse(formula), 2)
-    found, agreement = prove(step_map), convergence_of(step_map)
+    area_proof, agreement = prove(step_map), convergence_of(step_map)
     return Check(
         f"H = `{formula}`: det J ≡ 1, and the local error of lie2 is of order h³ exactly",
-        found.area_preserving is True and agreement.decided and agreement.order == 2,
+        area_proof.area_preserving is True and agreement.decided and agreement.order == 2,
         f"ΔJ = `{to_text(step_map.delta_j)}`, agrees with the flow up to `h^{agreement.order}`",
     )
 
@@ -157,10 +161,10 @@ def preserved(formula: str) -> Check:
 def _singular() -> Check:
     hamiltonian = Hamiltonian.parse(SINGULAR)
     hessian = sympy.hessian(hamiltonian.expression, (P, Q)).det()
-    found = prove(lie_map(hamiltonian, 2))
-    told = -(H_STEP**4) * Q**4 / P**8
+    area_proof = prove(lie_map(hamiltonian, 2))
+    expected = -(H_STEP**4) * Q**4 / P**8
     return Check(
         f"H = `{SINGULAR}`: det Hess H = 0 and ΔJ is not 0",
-        sympy.simplify(hessian) == 0 and found.order == 4 and found.delta_j == told,
-        f"ΔJ = `{to_text(found.delta_j)}`",
+        sympy.simplify(hessian) == 0 and area_proof.order == 4 and area_proof.delta_j == expected,
+        f"ΔJ = `{to_text(area_proof.delta_j)}`",
     )

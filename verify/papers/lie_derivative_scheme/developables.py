@@ -9,7 +9,7 @@ from verify.papers.checks.differential import Differential, Flow, Poly, free_var
 
 
 def adjugate_identity() -> Check:
-    """(v·Yv) Y = (Yv)(Yv)ᵀ + det Y (Sv)(Sv)ᵀ for symmetric Y, Sv = (−v₂, v₁)."""
+    """Check (v·Yv) Y = (Yv)(Yv)ᵀ + det Y (Sv)(Sv)ᵀ for symmetric Y, Sv = (−v₂, v₁)."""
     y11, y12, y22, v1, v2 = free_variables("y11 y12 y22 v1 v2")
     image = (y11 * v1 + y12 * v2, y12 * v1 + y22 * v2)
     size, det = v1 * image[0] + v2 * image[1], y11 * y22 - y12 * y12
@@ -21,8 +21,8 @@ def adjugate_identity() -> Check:
     )
 
 
-def contracted(turned: int = 1) -> Check:
-    """(v·Yv)(u·Yu) = (u·Yv)² + det Y (u·Sv)²; `turned` is how often the last term counts.
+def contraction(weight: int = 1) -> Check:
+    """Check (v·Yv)(u·Yu) = (u·Yv)² + det Y (u·Sv)²; `turned`: the factor of the last term.
 
     With v = (a, b), u = (a', b'), w = Yv: v·w = Ψ − c, u·w = −c', u·Sv = −ω, and tr (Y Hess Ψ) = 2
     says u·Yu = −2W. That is (3).
@@ -33,15 +33,16 @@ def contracted(turned: int = 1) -> Check:
         return y11 * a[0] * b[0] + y12 * (a[0] * b[1] + a[1] * b[0]) + y22 * a[1] * b[1]
 
     v, u, det = (v1, v2), (u1, u2), y11 * y22 - y12 * y12
+    # Y is any symmetric matrix: its entries are free, and so are those of u and v.
     side = (u2 * v1 - u1 * v2) ** 2
     return vanishes(
         "(v·Yv)(u·Yu) − (u·Yv)² − det Y (u·Sv)² for every symmetric Y, every u and v",
-        form(v, v) * form(u, u) - form(u, v) ** 2 - turned * det * side,
+        form(v, v) * form(u, u) - form(u, v) ** 2 - weight * det * side,
     )
 
 
 def legendre(sign: int = 1) -> Check:
-    """∇(w·∇L − L) = (Hess L) w for a generic L(w); `sign` is that of L."""
+    """Check ∇(w·∇L − L) = (Hess L) w for a generic L(w); `sign` is that of L."""
     ring = Differential(["x", "y", "L", "L_x", "L_y", "L_xx", "L_xy", "L_yy"])
     x, y, transform, l_x, l_y, xx, xy, yy = (ring[n] for n in ring.names)
     ring.set_coordinates("x", "y")
@@ -57,9 +58,10 @@ def legendre(sign: int = 1) -> Check:
 
 
 def radial(bent: int = 0) -> Check:
-    """κ and ω of (a, b) = r(s) (α, β) are 0; `bent` s is added to b."""
+    """Check that κ and ω of (a, b) = r(s) (α, β) are 0; `bent` s is added to b."""
     r, r1, r2, alpha, beta, s = free_variables("r r1 r2 alpha beta s")
     (a, a1, a2), (b, b1, b2) = ([k * x for x in (r, r1, r2)] for k in (alpha, beta))
+    # Along a gradient curve that is a multiple of a fixed direction all 2×2 determinants vanish.
     b, b1 = b + bent * s, b1 + bent
     return vanishes(
         "κ and ω of a gradient curve (a, b) = r(s) (α, β)", a1 * b2 - a2 * b1, a1 * b - a * b1
@@ -67,11 +69,14 @@ def radial(bent: int = 0) -> Check:
 
 
 def ruled_hessian(sign: int = 1) -> Check:
-    """Hess Ψ = −(a', b')ᵀ(a', b')/W where ∇Ψ = (a(s), b(s)) on xa' + yb' + c' = 0: that gives s, so
-    W s_x = −a' and W s_y = −b'; `sign` is that of the last."""
+    """Check Hess Ψ = −(a', b')ᵀ(a', b')/W where ∇Ψ = (a(s), b(s)) on xa' + yb' + c' = 0.
+
+    That equation defines s, so that W s_x = −a' and W s_y = −b'; `sign` is that of the last.
+    """
     ring = Differential(["W", "V", "a", "a1", "b", "b1"])  # V = 1/W
     w, v, _, a1, _, b1 = (ring[n] for n in ring.names)
     ring.relate(w * v - 1)
+    # Implicit differentiation of the line's equation gives ∂s = −(a', b')/W.
     slope = {"x": -a1 * v, "y": -sign * b1 * v}
     ring.set_gradient("a", **{z: a1 * slope[z] for z in slope})
     ring.set_gradient("b", **{z: b1 * slope[z] for z in slope})
@@ -80,10 +85,13 @@ def ruled_hessian(sign: int = 1) -> Check:
     return vanishes("W Hess Ψ + (a', b')ᵀ(a', b')", *gaps)
 
 
-def compared(double: int = 2) -> Check:
-    """With ω = 1: (3) is P(Ψ) = −2κ(Ψ − c)² − 2c''(Ψ − c) − c'²; so P(c) = −c'², P'(c) = −2c'',
-    and k₂ = −2κ; `double` is the 2 of the first term of (3). As ω' = a''b − ab'' = 0, (a, b)'' is
-    some multiple of (a, b), and that is κ."""
+def comparison(double: int = 2) -> Check:
+    """Compare the coefficients of (3), with ω = 1.
+
+    Then (3) is P(Ψ) = −2κ(Ψ − c)² − 2c''(Ψ − c) − c'²; so P(c) = −c'², P'(c) = −2c'' and
+    k₂ = −2κ; `double` is the 2 of the first term of (3). As ω' = a''b − ab'' = 0, (a, b)'' is some
+    multiple of (a, b), and that is κ.
+    """
     ring = Differential(["k", "c", "c1", "c2", "Psi", "a", "a1", "b", "b1"])  # k stands for κ
     kappa, c, c1, c2, psi, a, a1, b, b1 = (ring[n] for n in ring.names)
     ring.set_gradient("Psi", Psi=ring.context.constant(1))
@@ -95,13 +103,13 @@ def compared(double: int = 2) -> Check:
         "P(c) + c'², P'(c) + 2c'' and P'' + 4κ of the P that (3) gives, ω = 1; and a'b'' − a''b' − "
         "κω for (a, b)'' = κ(a, b)",
         a1 * kappa * b - kappa * a * b1 - kappa * (a1 * b - a * b1),
-        _put(p, at_c) + c1 * c1,
-        _put(slope, at_c) + 2 * c2,
+        _substitute(p, at_c) + c1 * c1,
+        _substitute(slope, at_c) + 2 * c2,
         ring.diff(slope, "Psi") + 4 * kappa,
     )
 
 
-def _put(x: Poly, values: dict[str | int, Poly]) -> Poly:
+def _substitute(x: Poly, values: dict[str | int, Poly]) -> Poly:
     context = x.context()
     gens = [
         values.get(name, gen) for name, gen in zip(context.names(), context.gens(), strict=True)
@@ -110,23 +118,24 @@ def _put(x: Poly, values: dict[str | int, Poly]) -> Poly:
 
 
 def ruling() -> Check:
-    """ωW = ωc'' − ω'c' + κ(Ψ − c) on the line xa' + yb' + c' = 0 where xa + yb + c = Ψ."""
+    """Check ωW = ωc'' − ω'c' + κ(Ψ − c) on the line xa' + yb' + c' = 0, xa + yb + c = Ψ."""
     a, a1, a2, b, b1, b2, c1, c2, e = free_variables("a a1 a2 b b1 b2 c1 c2 e")
-    omega, turned, kappa = a1 * b - a * b1, a2 * b - a * b2, a1 * b2 - a2 * b1
+    omega, omega_slope, kappa = a1 * b - a * b1, a2 * b - a * b2, a1 * b2 - a2 * b1
+    # The point (x, y) where the line of s meets xa + yb + c = Ψ, by Cramer's rule, times ω.
     x, y = -(e * b1 + c1 * b), a * c1 + a1 * e  # ω times the point, e = Ψ − c
     return vanishes(
         "ωW = ωc'' − ω'c' + κ(Ψ − c) on a ruling line, a, b, c generic",
         x * a + y * b - omega * e,
         x * a1 + y * b1 + omega * c1,
-        x * a2 + y * b2 + omega * c2 - (omega * c2 - turned * c1 + kappa * e),
+        x * a2 + y * b2 + omega * c2 - (omega * c2 - omega_slope * c1 + kappa * e),
     )
 
 
 def developable() -> Check:
-    """H with D ≡ 0: ∇H = (a(s), b(s)) on lines pa' + qb' + c' = 0; V = 1/W, W = pa'' + qb'' + c''.
+    """Check ΔJ for H with D ≡ 0: ∇H = (a(s), b(s)) on lines pa' + qb' + c' = 0.
 
-    Then s_p = −a'/W and s_q = −b'/W, and the coefficient of h⁴ in ΔJ is −ω²κ²/(4W⁴) with
-    ω = a'b − ab' and κ = a'b'' − a''b'.
+    Write W = pa'' + qb'' + c'' and V = 1/W. Then s_p = −a'/W and s_q = −b'/W, and the coefficient
+    of h⁴ in ΔJ is −ω²κ²/(4W⁴) with ω = a'b − ab' and κ = a'b'' − a''b'.
     """
     names = ["V", "W", "W3", "a", "a1", "a2", "a3", "b", "b1", "b2", "b3", "h", "p", "q"]
     ring = Differential(names)
@@ -135,6 +144,7 @@ def developable() -> Check:
     s = {"p": -a1 * v, "q": -b1 * v}
     for name, derivative in (("a", a1), ("a1", a2), ("a2", a3), ("b", b1), ("b1", b2), ("b2", b3)):
         ring.set_gradient(name, **{z: derivative * s[z] for z in s})
+    # ∂W = (a'', b'') + W_s ∂s, with W3 for the derivative of W by s.
     direct = {"p": a2, "q": b2}
     slope = {z: direct[z] + w3 * s[z] for z in s}
     ring.set_gradient("W", **slope)
@@ -160,7 +170,7 @@ class Conic:
     """
 
     def __init__(self, flaw: int = 0) -> None:
-        """`flaw` is added to c'', to see that the identities notice."""
+        """Set up the ring in s and Ψ; `flaw` is added to c'', as a control."""
         names = ["h", "k0", "k1", "k2", "a1", "b", "c1", "a", "b1", "c", "Psi"]
         ring = self.ring = Differential(names)
         self.h, k0, k1, k2, a1, b, c1, a, b1, c, psi = (ring[n] for n in names)
@@ -172,6 +182,7 @@ class Conic:
         ):  # fmt: skip
             ring.set_gradient(name, s=derivative, Psi=zero)
         ring.set_gradient("Psi", s=zero, Psi=one)
+        # Leading terms of both relations are coprime, as `Differential.relate` requires.
         ring.relate(a1 * b - a * b1 - 1, c1 * c1 + k0 + k1 * c + k2 * c * c)
         self.p_of_psi = k0 + k1 * psi + k2 * psi * psi
         self.e = psi - c  # x a + y b
@@ -182,17 +193,19 @@ class Conic:
         self.hessian = (y * y + p * a * a, -(x * y - p * a * b), x * x + p * b * b)
 
     def derivative(self, by: str) -> tuple[tuple[Poly, Poly], tuple[Poly, Poly]]:
-        """∂w and (x a + y b) ∂z, by s or Ψ."""
+        """Return ∂w and (x a + y b) ∂z, by s or Ψ."""
         reduce, diff = self.ring.reduce, self.ring.diff
         x, y = (diff(z, by) for z in self.w)
         pp, pq, qq = self.hessian
         return (x, y), (reduce(pp * x + pq * y), reduce(pq * x + qq * y))
 
     def exists(self) -> Check:
-        """z is well defined (closed), w = ∇H with H a function of Ψ, and D = 1/P(Ψ)."""
+        """Check that z is well defined (closed), w = ∇H with H a function of Ψ, and D = 1/P(Ψ)."""
         ring, e = self.ring, self.e
         (w_s, z_s), (w_psi, z_psi) = self.derivative("s"), self.derivative("Psi")
         del w_s, w_psi
+        # The derivatives are multiplied by e = Ψ − c, which makes them polynomials. Equality of
+        # mixed derivatives, ∂_Ψ(z_s) = ∂_s(z_Ψ), so has terms from e_Ψ = 1 and e_s = −c'.
         closed = [
             e * ring.diff(z_s[i], "Psi")
             - z_s[i]
@@ -214,18 +227,21 @@ class Conic:
         )
 
     def preserves_area(self) -> Check:
-        """z'' = −(a, b), and lie2 in the coordinates s, Ψ keeps det ∂z/∂(s, Ψ), for every h."""
+        """Check z'' = −(a, b), and that lie2 preserves det ∂z/∂(s, Ψ) for every h."""
         ring, h, e = self.ring, self.h, self.e
         (w_s, z_s), (w_psi, z_psi) = self.derivative("s"), self.derivative("Psi")
         x, y = self.w
-        velocity, turned = (-y, x), (-w_s[1], w_s[0])
+        velocity, velocity_s = (-y, x), (-w_s[1], w_s[0])
         # s' is where z_s s' = f, so that z'' = f_s s'.
         newton = [
-            turned[j] * e * velocity[i] + (self.a, self.b)[j] * z_s[i]
+            velocity_s[j] * e * velocity[i] + (self.a, self.b)[j] * z_s[i]
             for i in (0, 1)
             for j in (0, 1)
         ]
-        first = [z_s[i] + e * h * turned[i] - e * h * h / 2 * (self.a1, self.b1)[i] for i in (0, 1)]
+        # e times the partial derivatives of the step by s and by Ψ.
+        first = [
+            z_s[i] + e * h * velocity_s[i] - e * h * h / 2 * (self.a1, self.b1)[i] for i in (0, 1)
+        ]
         second = [z_psi[i] + e * h * (-w_psi[1], w_psi[0])[i] for i in (0, 1)]
         after = first[0] * second[1] - first[1] * second[0]
         before = z_s[0] * z_psi[1] - z_s[1] * z_psi[0]

@@ -10,19 +10,19 @@ from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.checks.matrices import product_of_determinants
-from verify.papers.exact_maps import Point, areas, jacobian, next_point, run_of, value
+from verify.papers.exact_maps import Point, areas, jacobian, next_point, run_symbolically, value
 from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
 from verify.papers.lie_derivative_scheme.examples import duffing_step
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 _H = Fraction(1, 10)
 _START = Point(Fraction(1, 2), Fraction(1))
-_FLOW = Shipped("Taylor", "flow_has_no_defect")
-CHAIN = Shipped("Differential", "slopes_of_composition")
+_FLOW = ShippedTheorem("Taylor", "flow_has_no_defect")
+CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
 
 
-def eq_14(most: int = 5, eta: int = 5) -> Argument:
-    """det of the exact flow is 1 for a generic H up to h^most; `eta` is of what stands for it."""
+def eq_14(highest: int = 5, eta: int = 5) -> Argument:
+    """Prove that the exact flow has det 1; checked up to h^highest by lie`eta` for a generic H."""
     return proof(
         "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
         "determinant is off, a local error, and the relative change of a small region’s area",
@@ -32,12 +32,12 @@ def eq_14(most: int = 5, eta: int = 5) -> Argument:
                 "1 at every point and over every step: in its Taylor series no power of h changes "
                 "it.",
                 _FLOW,
-                _of_the_flow(most, eta),
+                _check_flow(highest, eta),
             ),
             step(
                 "Hence `ΔJ_k` = det `J_k` − 1 is the difference, in step k alone, from what is "
                 "exact; it is 0 up to `h^η` for lieη, whose step agrees with the flow so far.",
-                Shipped("Theorems", "determinant_of_lie_in_plane"),
+                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
             ),
             step(
                 "By the change of variables a small region around `z_k` of area A has an image of "
@@ -47,16 +47,16 @@ def eq_14(most: int = 5, eta: int = 5) -> Argument:
     )
 
 
-def _of_the_flow(most: int, eta: int) -> Check:
-    flow = flow_of_every_hamiltonian(most + 1)
+def _check_flow(highest: int, eta: int) -> Check:
+    flow = flow_of_every_hamiltonian(highest + 1)
     return vanishes(
-        f"the coefficients of h … `h^{most}` in ΔJ of the flow of a generic H",
-        *flow.delta_j_gaps(eta)[:most],
+        f"the coefficients of h … `h^{highest}` in ΔJ of the flow of a generic H",
+        *flow.delta_j_gaps(eta)[:highest],
     )
 
 
 def eq_15(true: int = 1, steps: int = 3) -> Argument:
-    """MSE is the mean of (det J − 1)², and 1 is the true value; `true`: what is taken for it."""
+    """Prove that MSE is the mean of (det J − 1)², 1 the true value; `true` is used in its place."""
     squares = mean_of_squares(true, steps)
     return proof(
         "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
@@ -66,7 +66,7 @@ def eq_15(true: int = 1, steps: int = 3) -> Argument:
                 "By Liouville’s theorem the exact flow has determinant 1, so `ΔJ_k` is the "
                 "calculated value less the true one.",
                 _FLOW,
-                _of_the_flow(3, 3),
+                _check_flow(3, 3),
             ),
             step(
                 "Eq. 15 is the mean of its squares over the N steps of [t₀, `t_end`]: "
@@ -78,9 +78,10 @@ def eq_15(true: int = 1, steps: int = 3) -> Argument:
 
 
 def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
-    """MSE by its closed form against det J from its entries; `true`: what is taken for 1."""
+    """Check the closed form of MSE against det J from its entries; `true` stands for 1."""
     scheme, point, dets = duffing_step(), _START, []
     for _ in range(steps):
+        # det J from the entries of J, and not from the closed form of ΔJ, which is under test.
         a, b, c, d = jacobian(scheme, point, _H)
         dets.append(a * d - b * c)
         point = next_point(scheme, point, _H)
@@ -96,13 +97,13 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
 
 
 def eq_15_sum(steps: int = 2) -> Argument:
-    """The sum of the squares is N times Eq. 15, and another number for N > 1."""
-    found = areas(duffing_step(), _START, _H, steps)
-    total = sum((x * x for x in found.delta_j), Fraction(0))
+    """Refute that Eq. 15 is the sum of the squares, which is N times as much."""
+    run_areas = areas(duffing_step(), _START, _H, steps)
+    total = sum((x * x for x in run_areas.delta_j), Fraction(0))
     differ = Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
-        total != found.mse and total == steps * found.mse,
-        f"`{decimal(total, 4)}` and `{decimal(found.mse, 4)}`",
+        total != run_areas.mse and total == steps * run_areas.mse,
+        f"`{decimal(total, 4)}` and `{decimal(run_areas.mse, 4)}`",
         NUMBERS,
     )
     return refutation(
@@ -118,13 +119,13 @@ def eq_15_sum(steps: int = 2) -> Argument:
 
 
 def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
-    """1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
+    """Prove that 1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
     return proof(
         "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
         "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
         "change by o(1) over the whole of [t₀, `t_end`]",
         [
-            *of_all_steps(stray),
+            *determinant_of_all_steps(stray),
             step(
                 "By the change of variables the area of a region’s image after N steps is ``∫ (1 + "
                 "Λ) dp dq`` over the region. If |Λ| ≤ ε for all of its initial values, then the "
@@ -135,8 +136,8 @@ def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
     )
 
 
-def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
-    """1 + Λ as the determinant of the map of all steps."""
+def determinant_of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
+    """Show that 1 + Λ is the determinant of the map of all steps."""
     return [
         step(
             "The map of N steps is Φ∘…∘Φ, whose Jacobian at `z_0` is the product of the J at `z_0` "
@@ -146,14 +147,15 @@ def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
         step(
             "Its determinant is the product of theirs: ``Π_{k} det J_k = 1 + Λ(z_0)``.",
             product_of_determinants(),
-            _composed(2, stray),
+            _composition(2, stray),
         ),
     ]
 
 
-def _composed(steps: int, stray: Fraction) -> Check:
+def _composition(steps: int, stray: Fraction) -> Check:
     scheme = duffing_step()
-    entries = [sympy.diff(x, z) for x in run_of(scheme, (P, Q), steps) for z in (P, Q)]
+    # The composition is differentiated as a whole; the chain rule is what is tested.
+    entries = [sympy.diff(x, z) for x in run_symbolically(scheme, (P, Q), steps) for z in (P, Q)]
     a, b, c, d = (value(x, _START, _H) for x in entries)
     det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
     return Check(
@@ -169,12 +171,12 @@ def _composed(steps: int, stray: Fraction) -> Check:
 
 
 def smaller_lambda() -> Argument:
-    """|Λ| is by which part areas change after all steps."""
+    """Prove that |Λ| is the relative change of areas after all steps."""
     return proof(
         "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
         "the smaller |Λ|, the less",
         [
-            *of_all_steps(),
+            *determinant_of_all_steps(),
             step(
                 "So a small region of area A around `z_0` ends with the area ``A (1 + Λ) + o(A)``."
             ),
@@ -185,7 +187,7 @@ def smaller_lambda() -> Argument:
 def smaller_lambda_each_step(
     to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
 ) -> Argument:
-    """Of two maps the one with the smaller |Λ| may change areas more in every step."""
+    """Refute that a smaller |Λ| means smaller changes of area in every step."""
     both = [(one.run(n), other.run(n)) for n in to_and_fro.steps
             for one, other in [(to_and_fro, friction)]]  # fmt: skip
     worse = [
@@ -221,5 +223,5 @@ def smaller_lambda_each_step(
                 compared,
             ),
         ],
-        given="Λ is a number at the end.",
+        setting="Λ is a number at the end.",
     )

@@ -1,4 +1,4 @@
-"""Eq. 6–8, 10 and 11 apart from Eq. 9: what is called an error, and how errors are summed up.
+"""Eq. 6–8, 10 and 11 apart from Eq. 9: the definitions of the errors, and their recursion.
 
 Eq. 10 and 11 in one norm of the plane; by components:
 `verify.papers.lie_derivative_scheme.by_components`.
@@ -21,7 +21,7 @@ from verify.papers.checks.triangle import difference, triangle
 from verify.papers.exact_maps import Point, next_point
 from verify.papers.lie_derivative_scheme.convergence import STEPS, local_orders
 from verify.papers.lie_derivative_scheme.examples import enclosures
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L
@@ -30,7 +30,7 @@ _TIME = sympy.Symbol("t")
 
 
 def local_error(shift: int = 0) -> Argument:
-    """The step from the exact solution is off by C h^(η+1); `shift` is added to the order."""
+    """Prove that the local error is C h^(η+1); `shift` is added to the order."""
     return proof(
         "one step from the exact solution, Eq. 6, is its Taylor polynomial of degree η, so that "
         "the local error is C `h^(η+1)` with |C| ≤ max |`X^(η+1)` z|/(η+1)!, of that order "
@@ -40,7 +40,7 @@ def local_error(shift: int = 0) -> Argument:
                 "Eq. 6 is Eq. 2 from a point of the exact solution. By Eq. 2, 4 and 5 its right "
                 "side is the Taylor polynomial of degree η of the exact flow from `z̄_k` to "
                 "`z̄_{k+1}`, ``Σ_{n=0}^{η} h^n/n! X^n z``, and off by C `h^(η+1)` at most.",
-                Shipped("Theorems", "flow_has_taylor_series"),
+                ShippedTheorem("Theorems", "flow_has_taylor_series"),
             ),
             step(
                 "Taylor’s remainder bounds what is left by ``M h^(η+1)/(η+1)!`` for each "
@@ -57,7 +57,7 @@ def local_error(shift: int = 0) -> Argument:
 
 
 def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument:
-    """|p̃ − p| is 0 after the first step, and the global error is not: H = p²/2 + q, lie1."""
+    """Refute Eq. 7: |p̃ − p| is 0 after the first step, the global error is not (lie1)."""
     solves, first, later = _after_steps(formula, steps)
     return refutation(
         "`p̃_1` is one step from the exact initial value, and so is `p_1`: Eq. 7 is 0 after the "
@@ -72,7 +72,7 @@ def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument
             ),
             step("After each step the two differ by h²/2, the local error.", later),
         ],
-        given="The global error at step k + 1 is `z̄_{k+1}` − `z_{k+1}`, the exact solution less "
+        setting="The global error at step k + 1 is `z̄_{k+1}` − `z_{k+1}`, the exact solution less "
         "the computed one; it stands on the left of Eq. 8. In Eq. 7 stands `z̃_{k+1}`, by Eq. 6 "
         "one step from the exact solution, in place of `z̄_{k+1}`.",
         remark="For k = 0 both steps begin at the same point whatever the scheme, its order and H "
@@ -81,15 +81,17 @@ def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument
 
 
 def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
-    """Eq. 7 and the global error in q, on p = −t, q = −t²/2, which solves H = p²/2 + q alone."""
+    """Check Eq. 7 and the global error in q, on the solution p = −t, q = −t²/2 of H = p²/2 + q."""
     hamiltonian = Hamiltonian.parse(formula)
     scheme, h = lie_map(hamiltonian, 1), Fraction(1, 10)
-    found, point = [], Point(Fraction(0), Fraction(0))
+    errors, point = [], Point(Fraction(0), Fraction(0))
     for n in range(max(steps)):
         exact = [Point(-t, -t * t / 2) for t in (n * h, (n + 1) * h)]
+        # Eq. 7 compares the step from the exact point with the numerical one, the global error the
+        # exact point itself.
         from_exact, point = next_point(scheme, exact[0], h), next_point(scheme, point, h)
-        found.append((abs(from_exact.q - point.q), abs(exact[1].q - point.q)))
-    (by_eq_7, globally), *_ = found
+        errors.append((abs(from_exact.q - point.q), abs(exact[1].q - point.q)))
+    (by_eq_7, globally), *_ = errors
     on_it = {P: -_TIME, Q: -(_TIME**2) / 2}
     rates = [sympy.diff(hamiltonian.expression, z).subs(on_it) for z in (Q, P)]
     return [
@@ -108,15 +110,15 @@ def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
         ),
         Check(
             "after each step they differ by h²/2, the local error",
-            all(abs(b - a) == h * h / 2 for a, b in found),
-            "; ".join(f"{text(a)} and {text(b)}" for a, b in found),
+            all(abs(b - a) == h * h / 2 for a, b in errors),
+            "; ".join(f"{text(a)} and {text(b)}" for a, b in errors),
             NUMBERS,
         ),
     ]
 
 
-def eq_7_meant(of: str = "ab") -> Argument:
-    """Eq. 7 differs from the global error by the local error at most; `of`: see `difference`."""
+def eq_7_meant(distance: str = "ab") -> Argument:
+    """Prove that Eq. 7 is off by the local error at most; `distance`: see `difference`."""
     return proof(
         "by the triangle inequality Eq. 7 and the global error differ by |`z̄_{k+1}` − "
         "`z̃_{k+1}`|, one local error, `O(h^(η+1))`: the one is `O(h^η)` where the other is",
@@ -124,11 +126,11 @@ def eq_7_meant(of: str = "ab") -> Argument:
             step(
                 "For each component ``| |z̃ − z| − |z̄ − z| | ≤ |z̄ − z̃|``, by the triangle "
                 "inequality.",
-                difference(of),
+                difference(distance),
             ),
             step(
                 "z̄ − z̃ is the local error of the last step, `O(h^(η+1))`.",
-                Shipped("Theorems", "flow_has_taylor_series"),
+                ShippedTheorem("Theorems", "flow_has_taylor_series"),
                 *local_orders(0),
             ),
         ],
@@ -140,11 +142,11 @@ def eq_7_meant(of: str = "ab") -> Argument:
 
 
 def eq_8(middle_sign: int = 1) -> Argument:
-    """The triangle inequality; `middle_sign` −1 makes one of its sides wrong."""
-    exact, stepped, run = free_variables("exact step run")
+    """Prove Eq. 8 by the triangle inequality; `middle_sign` −1 makes one side wrong."""
+    exact, images, run = free_variables("exact step run")
     split = vanishes(
         "(p̄ − p̃) + (p̃ − p) − (p̄ − p)",
-        (exact - stepped) + (middle_sign * stepped - run) - (exact - run),
+        (exact - images) + (middle_sign * images - run) - (exact - run),
     )
     return proof(
         "it is the triangle inequality: p̄ − p = (p̄ − p̃) + (p̃ − p), the local error of the last "
@@ -154,7 +156,7 @@ def eq_8(middle_sign: int = 1) -> Argument:
             step(
                 "|x + y| ≤ |x| + |y| for real numbers. The left side is the global error.",
                 triangle(middle_sign),
-                Shipped("Sums", "size_of_sum"),
+                ShippedTheorem("Sums", "size_of_sum"),
             ),
         ],
     )
@@ -164,7 +166,7 @@ def eq_8(middle_sign: int = 1) -> Argument:
 
 
 def eq_10_meant(slope: int = 1) -> Argument:
-    """Eq. 10 with e_k for e_n: from Eq. 8 and a Lipschitz constant; `slope` is that of 1 + x."""
+    """Prove Eq. 10 with e_k for e_n, from Eq. 8 and a Lipschitz constant; `slope`: of 1 + x."""
     with enclosures():
         sizes = [rational_ball(rate / n) for rate in _RATES for n in STEPS]
         exponentials = [bool(1 + slope * x <= x.exp()) for x in sizes]
@@ -180,7 +182,7 @@ def eq_10_meant(slope: int = 1) -> Argument:
         [
             step(
                 "The local error is at most C `h^(η+1)`.",
-                Shipped("Theorems", "flow_has_taylor_series"),
+                ShippedTheorem("Theorems", "flow_has_taylor_series"),
                 *local_orders(0),
             ),
             step(
@@ -189,18 +191,20 @@ def eq_10_meant(slope: int = 1) -> Argument:
             ),
             step(
                 "The second follows from ``1 + x ≤ e^x`` for x = hL.",
-                Shipped("Product", "one_plus_below_exp"),
+                ShippedTheorem("Product", "one_plus_below_exp"),
                 tried=[example],
             ),
         ],
-        given="Let e be the norm of the error of (p, q), and Φ have the Lipschitz constant 1 + hL "
-        "near the exact solution (Eq. 9 for both components together).",
+        setting="Let e be the norm of the error of (p, q), and Φ have the Lipschitz constant 1 + "
+        "hL near the exact solution (Eq. 9 for both components together).",
     )
 
 
 def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Argument:
-    """Eq. 11 for every sequence with the first inequality of Eq. 10; `factor`: in place of
-    (1 + hL)^k, to see that the sum notices."""
+    """Prove Eq. 11 for every sequence with the first inequality of Eq. 10.
+
+    `factor`: used in place of (1 + hL)^k, as a control.
+    """
     power = factor or (lambda rate, k: rate**k)
     return proof(
         "for every sequence with `e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)`, n = η, both "
@@ -211,12 +215,12 @@ def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Arg
                 "Iterated from `e_1` the recursion gives ``e_{k+1} ≤ (1 + hL)^k e_1 + "
                 "Σ_{m=2}^{k+1} (1 + hL)^(k+1−m) |C_m| h^(n+1)``. The term m = 1 that Eq. 11 has "
                 "besides is not negative, so its first inequality holds.",
-                Shipped("Product", "errors_sum_up"),
+                ShippedTheorem("Product", "errors_sum_up"),
                 tried=[_worst_sequence(rate, power) for rate in _RATES],
             ),
             step(
                 "`e_1` ≤ |`C_1`| `h^(n+1)`, and ``(1 + hL)^j ≤ e^(LT)`` for jh ≤ T.",
-                Shipped("Product", "power_below_exp"),
+                ShippedTheorem("Product", "power_below_exp"),
             ),
             step(
                 "The powers add up to ``((1 + hL)^(k+1) − 1)/(hL)``.",
@@ -228,7 +232,7 @@ def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Arg
                 bound_of_eq_11(),
             ),
         ],
-        given="Let `e_{k+1}` ≤ (1 + hL) `e_k` + |`C_{k+1}`| `h^(n+1)`.",
+        setting="Let `e_{k+1}` ≤ (1 + hL) `e_k` + |`C_{k+1}`| `h^(n+1)`.",
         remark="C̃ depends on the length of the interval and on L alone, as the paper says (and, "
         "for h ≤ h₀, not on h). The recursion itself is the first inequality of Eq. 10, which "
         "needs both components together.",
@@ -236,20 +240,22 @@ def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Arg
 
 
 def _worst_sequence(rate: Fraction, power: Callable[[Fraction, int], Fraction]) -> Check:
-    """The greatest sequence that the recursion allows, T = 1, against both bounds of Eq. 11."""
+    """Check the greatest sequence of the recursion, T = 1, against both bounds of Eq. 11."""
     holds, counts = True, (1, 4, 16)
     for count in counts:
         h = Fraction(1, count)
         each = [Fraction(1 + (3 * m) % 5, 5) for m in range(1, count + 1)]  # |C_m|
         error, unit = each[0] * h ** (_ORDER + 1), h ** (_ORDER + 1)
         first = error
+        # Equality in every step of the recursion: no sequence that satisfies it is greater.
         for c in each[1:]:
             error = (1 + h * rate) * error + c * unit
-        grown = 1 + h * rate
-        summed = sum((power(grown, count - m) * c for m, c in enumerate(each, 1)), Fraction(0))
-        bound = power(grown, count - 1) * first + summed * unit
-        most = max(each) * h**_ORDER * ((grown**count - 1) / rate + h * grown**count)
-        holds = holds and error <= bound <= most
+        factor = 1 + h * rate
+        total = sum((power(factor, count - m) * c for m, c in enumerate(each, 1)), Fraction(0))
+        bound = power(factor, count - 1) * first + total * unit
+        # e^(LT) stands above (1 + hL)^N; the power is used, so that the comparison is exact.
+        limit = max(each) * h**_ORDER * ((factor**count - 1) / rate + h * factor**count)
+        holds = holds and error <= bound <= limit
     return Check(
         f"L = {text(rate)}, T = 1, N = {', '.join(map(str, counts))}: the greatest sequence of the "
         "recursion ≤ the sum ≤ C̃ max |`C_m`| `h^n`",

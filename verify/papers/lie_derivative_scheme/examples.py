@@ -1,4 +1,4 @@
-"""The systems that arguments take as examples: the paper's two, and the oscillator.
+"""The systems used as examples in arguments: the paper's two, and the oscillator.
 
 The oscillator H = (p² + q²)/2 from (q, p) = (1, 0) has an exact solution. With ζ = q + ip a step of
 lieη is ζ' = R ζ, R = Σ (−ih)ⁿ/n!, n = 0 … η, and the exact solution is exp(−it). Balls (flint)
@@ -21,17 +21,17 @@ SYSTEMS = ("duffing", "pendulum")
 
 
 def with_symbols(name: str) -> Hamiltonian:
-    """The H of that system, its parameters symbols."""
+    """Return the H of that system, its parameters symbols."""
     return Hamiltonian(systems.get(name).hamiltonian().expression)
 
 
 def duffing() -> Hamiltonian:
-    """The Duffing oscillator with δ = 1."""
+    """Return the Duffing oscillator with δ = 1."""
     return systems.get("duffing").hamiltonian().with_values({"delta": 1})
 
 
 def duffing_step() -> StepMap:
-    """A step of lie2 for it."""
+    """Return the map of lie2 for the Duffing oscillator with δ = 1."""
     return lie_map(duffing(), 2)
 
 
@@ -39,17 +39,18 @@ def duffing_step() -> StepMap:
 
 
 def oscillator() -> Hamiltonian:
-    """H = (p² + q²)/2."""
+    """Return H = (p² + q²)/2."""
     return systems.get("harmonic").hamiltonian().with_values({"omega": 1})
 
 
 def enclosures() -> AbstractContextManager[None]:
-    """In which balls have 256 bits."""
+    """Return the context in which balls have 256 bits."""
     return working_precision(256)
 
 
 def factor(eta: int, h: Fraction) -> flint.acb:
-    """R as a complex ball; in the caller's precision."""
+    """Return R as a complex ball, in the caller's precision."""
+    # z = −ih, and R is the exponential series of it up to zⁿ/n!.
     z = flint.acb(0, -rational_ball(h))
     total = term = flint.acb(1)
     for n in range(1, eta + 1):
@@ -59,20 +60,21 @@ def factor(eta: int, h: Fraction) -> flint.acb:
 
 
 def errors(eta: int, h: Fraction, steps: int) -> list[flint.acb]:
-    """The errors exp(−ikh) − Rᵏ, k = 0 … steps, of the run that starts on the exact solution.
+    """Return the errors exp(−ikh) − Rᵏ, k = 0 … steps, of the run from the exact solution.
 
     To be called in `enclosures()`.
     """
+    # The exact solution turns by exp(−ih) in each step, the scheme multiplies by R.
     exact = flint.acb(0, -rational_ball(h)).exp()
     scheme = factor(eta, h)
-    found, turned, stepped = [], flint.acb(1), flint.acb(1)
+    differences, rotation, image = [], flint.acb(1), flint.acb(1)
     for _ in range(steps + 1):
-        found.append(turned - stepped)
-        turned, stepped = turned * exact, stepped * scheme
-    return found
+        differences.append(rotation - image)
+        rotation, image = rotation * exact, image * scheme
+    return differences
 
 
 def final_error(eta: int, steps: int) -> flint.arb:
-    """The norm of the error at T = 1 after `steps` steps, a real ball."""
+    """Return the norm of the error at T = 1 after `steps` steps, a real ball."""
     with enclosures():
         return abs(errors(eta, Fraction(1, steps), steps)[-1])

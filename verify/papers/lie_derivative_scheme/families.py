@@ -9,7 +9,7 @@ from verify.papers.checks.differential import (
     Differential,
     Flow,
     flow_of_every_hamiltonian,
-    of_one_function,
+    flow_of_one_function,
 )
 
 LINEAR = ("a*p + b*q", "c*p + d*q")  # H = F(u) + rest
@@ -18,8 +18,8 @@ _CONSTANTS = ("a", "b", "c", "d")
 
 
 def family(name: str, u: str, rest: str) -> Check:
-    """ΔJ of lie2 is zero for H = F(u) + rest, for a generic F and all constants."""
-    flow = of_one_function(_CONSTANTS, u, rest)
+    """Check that ΔJ of lie2 is zero for H = F(u) + rest, for a generic F and all constants."""
+    flow = flow_of_one_function(_CONSTANTS, u, rest)
     return vanishes(f"ΔJ of lie2 for {name}, F generic", *flow.delta_j_gaps(2))
 
 
@@ -32,11 +32,14 @@ def parabolic() -> Check:
 
 
 def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
-    """H = F(ℓ) + m with linear ℓ and m: X ℓ is a constant, Xz and X²z are functions of ℓ; `rest`
-    stands for m."""
-    flow = of_one_function(_CONSTANTS, LINEAR[0], rest)
+    """Check for H = F(ℓ) + m that X ℓ is a constant, and Xz, X²z functions of ℓ.
+
+    ℓ and m are linear; `rest` stands for m.
+    """
+    flow = flow_of_one_function(_CONSTANTS, LINEAR[0], rest)
     names = (*_CONSTANTS, "p", "q", "F1", "F2")
     a, b, c, d, p, q, f1, f2 = (flow.ring[name] for name in names)
+    # Xℓ for linear ℓ and m: the motion crosses the lines ℓ = constant at a constant speed.
     steady = b * c - a * d
     return vanishes(
         "H = F(ℓ) + cp + dq, ℓ = ap + bq, F generic: Xℓ − (bc − ad), Xp + bF' + d, Xq − aF' − c, "
@@ -50,17 +53,19 @@ def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
 
 
 def exact_flow() -> Check:
-    """lie2 is the flow itself where X³z = 0."""
-    flow = of_one_function(_CONSTANTS, *PARABOLIC, 5)
+    """Check that lie2 is the flow itself where X³z = 0."""
+    # F needs one derivative more than for ΔJ, as X³ takes three.
+    flow = flow_of_one_function(_CONSTANTS, *PARABOLIC, 5)
     third = [flow.lie_derivatives(z, 3)[3] for z in ("p", "q")]
     return vanishes("X³p and X³q for H = F(ap + bq + (cp + dq)²/2): lie2 is its exact flow", *third)
 
 
 def separable() -> Check:
-    """ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
+    """Check ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
     names = [f"{f}{k}" for f in "TV" for k in range(1, 5)]
     ring = Differential(["h", "p", "q", *names])
     ring.set_coordinates()
+    # T4 and V4 have no gradients: ΔJ of lie2 needs no derivatives beyond them.
     for k in range(1, 4):
         ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=ring.zero)
         ring.set_gradient(f"V{k}", p=ring.zero, q=ring[f"V{k + 1}"])
@@ -77,15 +82,19 @@ def separable() -> Check:
 
 
 def equilibrium() -> Check:
-    """At a critical point of a generic H, ΔJ of lie2 is h⁴D²/4."""
+    """Check that ΔJ of lie2 is h⁴D²/4 at a critical point of a generic H."""
     flow = flow_of_every_hamiltonian(4)
-    at: dict[str | int, int] = {"H1_0": 0, "H0_1": 0}
-    gaps = [x.subs(at) for x in flow.delta_j_gaps(2, h4=flow.hessian_determinant**2 / 4)]
+    # At an equilibrium the gradient of H vanishes, and the derivatives beyond it stay free.
+    rest_point: dict[str | int, int] = {"H1_0": 0, "H0_1": 0}
+    gaps = [x.subs(rest_point) for x in flow.delta_j_gaps(2, h4=flow.hessian_determinant**2 / 4)]
     return vanishes("ΔJ of lie2 where ∇H = 0 is h⁴D²/4, for a generic H", *gaps)
 
 
 def coefficients() -> Check:
-    """ΔJ = (h³/2) X D + (h⁴/4)(D² + det T), T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, for a generic H."""
+    """Check ΔJ = (h³/2) X D + (h⁴/4)(D² + det T) for a generic H.
+
+    T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, w = ∇H.
+    """
     flow = flow_of_every_hamiltonian(4)
     ring, w = flow.ring, (flow.h_p, flow.h_q)
     pp, pq, qq = flow.hessian
@@ -103,7 +112,7 @@ def coefficients() -> Check:
 
 
 def acceleration() -> Check:
-    """−X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
+    """Check −X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
     flow = flow_of_every_hamiltonian(4)
     pp, pq, qq = flow.hessian
     n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
@@ -116,7 +125,7 @@ def acceleration() -> Check:
 
 
 def by_acceleration(half: int = 4) -> Check:
-    """The coefficient of h⁴ in ΔJ is det N'/4, N = −X²z, for a generic H; `half` is that 4."""
+    """Check that the coefficient of h⁴ in ΔJ is det N'/4, N = −X²z; `half` is that 4."""
     flow = flow_of_every_hamiltonian(4)
     ring = flow.ring
     n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
@@ -127,7 +136,7 @@ def by_acceleration(half: int = 4) -> Check:
 
 
 def twice(factor: int = 2) -> Check:
-    """λT'' = cT'² and T''' = cT'T'' give λT''' = 2T''', by one derivative; `factor` is that 2."""
+    """Check that λT'' = cT'² and T''' = cT'T'' give λT''' = 2T'''; `factor` is that 2."""
     ring = Differential(["p", "T1", "T2", "c", "lambda"])
     t1, t2, c, constant = (ring[name] for name in ring.names[1:])
     third = c * t1 * t2

@@ -11,7 +11,7 @@ from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same, vanishes
 from verify.papers.checks.differential import Flow, Poly, flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction
@@ -19,15 +19,16 @@ Recursion = Callable[[Flow, Poly], Poly]
 
 
 def eq_4(flow: Flow, y: Poly) -> Poly:
-    """Lⁿ from y = Lⁿ⁻¹ by Eq. 4, with both operators as Eq. 5 defines them."""
+    """Return Lⁿ from y = Lⁿ⁻¹ by Eq. 4, with both operators as Eq. 5 defines them."""
     along_q = flow.h_p * flow.ring.diff(y, "q")
     along_p = -flow.h_q * flow.ring.diff(y, "p")
     return along_p + along_q
 
 
 def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.Expr]:
-    """p', q' by Eq. 2, 4 and 5 with sympy's own derivatives, started by L q = H_p, L p = −H_q."""
+    """Return p', q' by Eq. 2, 4 and 5 with sympy's derivatives, from L q = H_p, L p = −H_q."""
     h_p, h_q = (sympy.diff(hamiltonian.expression, z) for z in (P, Q))
+    # Plain sympy derivatives share no code with the step map with which this is compared.
     both = []
     for start, first in ((P, -h_q), (Q, h_p)):
         total, power = start, first
@@ -39,7 +40,7 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
 
 
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
-    """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
+    """Prove that Eq. 2 with Eq. 4 and 5 is the exponential series of hX, truncated after h^η."""
     powers = [powers_of(name, recursion) for name in ("p", "q")]
     for_systems = []
     for name in SYSTEMS:
@@ -65,14 +66,14 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
             step(
                 "Along a solution ``d/dt y(z(t)) = (Xy)(z(t))``, so that Xⁿp and Xⁿq are the n-th "
                 "time derivatives of p and q.",
-                Shipped("Solutions", "rate_along_solution"),
-                Shipped("Solutions", "derivatives_along_solution"),
+                ShippedTheorem("Solutions", "rate_along_solution"),
+                ShippedTheorem("Solutions", "derivatives_along_solution"),
             ),
             step(
                 "Hence Eq. 2 is the Taylor polynomial of degree η of the exact flow, exp(hX) "
                 "applied to the two coordinates and cut off: ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n "
                 "z``.",
-                Shipped("Theorems", "flow_has_taylor_series"),
+                ShippedTheorem("Theorems", "flow_has_taylor_series"),
                 *for_systems,
             ),
         ],
@@ -82,9 +83,10 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
 
 
 def _operators(recursion: Recursion) -> Check:
-    """Both operators of Eq. 5 together are X, whatever they are applied to."""
+    """Check that both operators of Eq. 5 together are X, whatever they are applied to."""
     flow = flow_of_every_hamiltonian(1, ["y", "y_p", "y_q"])
     ring = flow.ring
+    # y is a generic function, of which only its gradient is used.
     ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
     return vanishes(
         "Eq. 4 and 5 applied to a generic y, less X y",
@@ -93,7 +95,7 @@ def _operators(recursion: Recursion) -> Check:
 
 
 def powers_of(name: str, recursion: Recursion = eq_4) -> Check:
-    """Eq. 4 and 5 give the n-th time derivative of p or q, for a generic H."""
+    """Check that Eq. 4 and 5 give the n-th time derivative of p or q, for a generic H."""
     flow = flow_of_every_hamiltonian(MOST)
     powers = flow.lie_derivatives(name, MOST)
     gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
@@ -101,15 +103,18 @@ def powers_of(name: str, recursion: Recursion = eq_4) -> Check:
 
 
 def _same(name: str, hamiltonian: Hamiltonian, eta: int) -> Check:
-    found = lie_map(hamiltonian, eta)
+    step_map = lie_map(hamiltonian, eta)
     printed = printed_step(hamiltonian, eta)
-    gaps = [x - y for x, y in zip(printed, (found.p_next, found.q_next), strict=True)]
+    gaps = [x - y for x, y in zip(printed, (step_map.p_next, step_map.q_next), strict=True)]
     what = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
     return same(what, gaps, ("p", "q", "h", *hamiltonian.parameters), "the same")
 
 
 def eq_3(coordinate: str = "p") -> Argument:
-    """Eq. 3 as printed: L_{H_p}(p_k) = H_p ∂q/∂p = H_p. `coordinate`: what L_{H_p} is applied to.
+    """Refute Eq. 3 as printed, L_{H_p}(p_k) = H_p ∂q/∂p = H_p.
+
+    `coordinate`: the one to which L_{H_p} is applied.
+
 
     With `q` the equation is right, and so it is not refuted.
     """
@@ -149,7 +154,7 @@ def eq_3(coordinate: str = "p") -> Argument:
             step(
                 "What is meant is ``L_{H_p}(q_k) = H_p ∂q/∂q = H_p``, and the second line, "
                 "`L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q`, is right.",
-                _meant(flow, "q"),
+                _holds_as_meant(flow, "q"),
             ),
         ],
         remark="So read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and "
@@ -157,7 +162,7 @@ def eq_3(coordinate: str = "p") -> Argument:
     )
 
 
-def _meant(flow: Flow, coordinate: str) -> Check:
+def _holds_as_meant(flow: Flow, coordinate: str) -> Check:
     diff = flow.ring.diff
     return vanishes(
         f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
@@ -167,11 +172,12 @@ def _meant(flow: Flow, coordinate: str) -> Check:
 
 
 def _example() -> Check:
-    """H = p²/2 + q²/2 at (p, q) = (1, 0): the printed sides are 0 and 1."""
-    at = {symbol("p"): sympy.Integer(1), symbol("q"): sympy.Integer(0)}
+    """Check that the printed sides are 0 and 1, for H = p²/2 + q²/2 at (q, p) = (0, 1)."""
+    # (q, p) = (0, 1): H_p = p is 1 there, and ∂q/∂p is 0.
+    point = {symbol("p"): sympy.Integer(1), symbol("q"): sympy.Integer(0)}
     energy = P**2 / 2 + Q**2 / 2
-    left = (sympy.diff(energy, P) * sympy.diff(Q, P)).subs(at)
-    right = sympy.diff(energy, P).subs(at)
+    left = (sympy.diff(energy, P) * sympy.diff(Q, P)).subs(point)
+    right = sympy.diff(energy, P).subs(point)
     return Check(
         "H = (p² + q²)/2 at (p, q) = (1, 0): `H_p` ∂q/∂p against `H_p`",
         left != right,
@@ -180,8 +186,8 @@ def _example() -> Check:
 
 
 def eq_3_meant(coordinate: str = "q") -> Argument:
-    """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
-    found = [with_symbols(name) for name in SYSTEMS]
+    """Prove Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q."""
+    hamiltonians = [with_symbols(name) for name in SYSTEMS]
     return proof(
         "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
         "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
@@ -189,11 +195,11 @@ def eq_3_meant(coordinate: str = "q") -> Argument:
             step(
                 "By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q "
                 "and with y = p these are ``L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q``.",
-                _meant(flow_of_every_hamiltonian(2), coordinate),
+                _holds_as_meant(flow_of_every_hamiltonian(2), coordinate),
             ),
             step(
                 "They are the first terms of Eq. 2, by which Eq. 19 and 27 are right.",
-                *(_same(name, each, 2) for name, each in zip(SYSTEMS, found, strict=True)),
+                *(_same(name, each, 2) for name, each in zip(SYSTEMS, hamiltonians, strict=True)),
             ),
         ],
     )

@@ -12,7 +12,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, jacobian, next_point, squared
+from verify.papers.exact_maps import Point, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, enclosures, errors, factor
 
 PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))
@@ -22,20 +22,23 @@ MIXED = "a*p*q + b*p + c*q"  # H_pp = H_qq = 0
 
 
 def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
-    """Eq. 9 by a pair of points with equal p, and along a run of the oscillator; `mixed`: an H for
-    which both components decouple."""
+    """Refute Eq. 9 by a pair of points with equal p, and along a run of the oscillator.
+
+    `mixed`: an H for which both components decouple.
+    """
     h = Fraction(1, 10)
-    found = duffing_step()
-    ends = [next_point(found, point, h) for point in pair]
+    step_map = duffing_step()
+    # The p-difference of the two points is 0, so that no L_p makes the right side positive.
+    ends = [next_point(step_map, point, h) for point in pair]
     left, right = abs(ends[1].p - ends[0].p), abs(pair[1].p - pair[0].p)
-    apart = Check(
+    differs = Check(
         f"Duffing, δ = 1, lie2, h = 0.1, from (p, q) = {pair[0]} and {pair[1]}: |p̃ − p| before "
         "and after the step",
         right == 0 and left > 0,
         f"{text(right)} and {text(left)}",
         NUMBERS,
     )
-    both = [found.p_next.subs({P: z.p, Q: z.q}, simultaneous=True) for z in pair]
+    both = [step_map.p_next.subs({P: z.p, Q: z.q}, simultaneous=True) for z in pair]
     for_every_h = same(
         f"the same for every h: p' from {pair[0]} less p' from {pair[1]}, less 2h",
         [both[0] - both[1] - 2 * H_STEP],
@@ -51,7 +54,7 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
                 "Take two points with the same p and different q: the right side is 0 whatever "
                 "`L_p` is. For the Duffing oscillator with δ = 1 and lie2, from (p, q) = (0, 0) "
                 "and (0, 1), the left side is ``|p'(0, 0) − p'(0, 1)| = 2h``.",
-                apart,
+                differs,
                 for_every_h,
             ),
             step(
@@ -63,7 +66,7 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
             step("So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d."),
             step(
                 "For such an H both components decouple, for every η.",
-                _decoupled(mixed),
+                _decoupling(mixed),
             ),
             step("There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``."),
             step(
@@ -80,7 +83,7 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
                 tried=[along_a_run(size) for size in STEP_SIZES],
             ),
         ],
-        given="The right side has the p-difference alone, while `p_{k+1}` depends on `q_k`, too.",
+        setting="The right side has the p-difference alone, while `p_{k+1}` depends on `q_k`, too.",
         remark="What holds is the inequality in a norm of the plane: |Φ(z̄) − Φ(z)| ≤ (1 + hL) |z̄ "
         "− z|, or by components |`p̃_{k+1}` − `p_{k+1}`| ≤ (1 + hL) |`p̄_k` − `p_k`| + hL |`q̄_k` "
         "− `q_k`|; with either, the conclusion of Section 2.2 stands.",
@@ -97,8 +100,8 @@ def _first_terms() -> Check:
     )
 
 
-def _decoupled(mixed: str) -> Check:
-    """Xp is a function of p alone, and Xq of q, so that every Xⁿp and Xⁿq is."""
+def _decoupling(mixed: str) -> Check:
+    """Check that Xp is a function of p alone, and Xq of q, so that every Xⁿp and Xⁿq is."""
     hamiltonian = Hamiltonian.parse(mixed)
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))
     names = ("p", "q", *hamiltonian.parameters)
@@ -107,35 +110,39 @@ def _decoupled(mixed: str) -> Check:
 
 
 def along_a_run(h: Fraction) -> Check:
-    """The greatest L_p that one step of the run asks for, for both readings of the right side."""
+    """Check the greatest L_p that a step of the run requires, for both readings of Eq. 9."""
     steps = int(LATEST / h)
     with enclosures():
+        # p is the imaginary part of q + ip; the next error in p comes from both parts.
         error, scheme = errors(2, h, steps), factor(2, h)
         size = 1 / float(h)
-        barred = _largest([(scheme * e).imag for e in error], [e.imag for e in error], size)
-        stepped = [(scheme * e).imag for e in error]
-        literal = _largest(stepped[1:], stepped[:-1], size)
+        by_exact_points = _largest(
+            [(scheme * e).imag for e in error], [e.imag for e in error], size
+        )
+        images = [(scheme * e).imag for e in error]
+        as_printed = _largest(images[1:], images[:-1], size)
     return Check(
         f"oscillator from (q, p) = (1, 0), lie2, h = {text(h)}, t ≤ {LATEST}: the `L_p` that a "
         "step of the run asks for, with `p̄_k` and with `p̃_k` on the right, is above 1/h",
-        min(barred, literal) > size,
-        f"`{barred:.3g}` and `{literal:.3g}`",
+        min(by_exact_points, as_printed) > size,
+        f"`{by_exact_points:.3g}` and `{as_printed:.3g}`",
         BALLS,
     )
 
 
 def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float) -> float:
-    """A lower bound of the greatest (left/right − 1)/h over the steps where right is not 0."""
-    known = [
+    """Return a lower bound of max (left/right − 1)/h over the steps where right is not 0."""
+    # Steps whose right side may be 0 are left out, so that the maximum stays a lower bound.
+    norms = [
         float((abs(x) / abs(y)).lower())
         for x, y in zip(left, right, strict=True)
         if not y.contains(0)
     ]
-    return (max(known) - 1) * scale
+    return (max(norms) - 1) * scale
 
 
 def eq_9_plane(norm: float = 1.0) -> Argument:
-    """Eq. 9 for both components in one norm; `norm` scales L, to see that the check notices."""
+    """Prove Eq. 9 for both components in one norm; `norm` scales L, as a control."""
     return proof(
         "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
         "Φ(`z_k`)| ≤ (1 + hL) |`z̄_k` − `z_k`|, with L the greatest norm of ψ', Φ = z + hψ, on a "
@@ -151,7 +158,7 @@ def eq_9_plane(norm: float = 1.0) -> Argument:
                 tried=[_stretch(h, norm) for h in STEP_SIZES],
             ),
         ],
-        given="Let H be of class `C^(η+1)` near the solution and K a convex compact set in which "
+        setting="Let H be of class `C^(η+1)` near the solution and K a convex compact set in which "
         "that holds.",
         remark="For η = 1, “the first-order truncated”, ψ = f, and L is the greatest norm of f'. "
         "Eq. 9 prints `p̃_k` on the right; Eq. 8 and 10 need `p̄_k`, as here.",
@@ -159,14 +166,20 @@ def eq_9_plane(norm: float = 1.0) -> Argument:
 
 
 def _stretch(h: Fraction, norm: float) -> Check:
-    """Duffing, δ = 1, lie2 on the square |p|, |q| ≤ 1, where every entry of ψ' is largest in size
-    at a corner: ‖ψ'‖² is at most the sum of their squares."""
+    """Check L for Duffing, δ = 1, lie2, on |q|, |p| ≤ 1.
+
+    Every entry of ψ' is largest in size at a corner, and ‖ψ'‖² is at most the sum of their squares.
+    """
     scheme, bound = duffing_step(), Fraction(norm) * 5
     corners = [Point(Fraction(a), Fraction(b)) for a in (-1, 1) for b in (-1, 1)]
     images = [next_point(scheme, z, h) for z in corners]
     pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
-    worst = max(squared(images[i], images[j]) / squared(corners[i], corners[j]) for i, j in pairs)
+    worst = max(
+        squared_distance(images[i], images[j]) / squared_distance(corners[i], corners[j])
+        for i, j in pairs
+    )
     slopes = [zip(jacobian(scheme, z, h), (1, 0, 0, 1), strict=True) for z in corners]
+    # Frobenius' norm bounds the 2-norm from above, and is a polynomial in the entries.
     squares = max(sum((((x - unit) / h) ** 2 for x, unit in each), Fraction(0)) for each in slopes)
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, on |p|, |q| ≤ 1: ‖(J − 1)/h‖² ≤ L² with L = "
@@ -178,7 +191,7 @@ def _stretch(h: Fraction, norm: float) -> Check:
 
 
 def convergence_inference() -> Argument:
-    """“Therefore convergent”, by Eq. 9–11 as they are printed."""
+    """Refute that convergence follows from Eq. 9–11 as they are printed."""
     return refutation(
         "the printed way leads through Eq. 9 with the p-difference alone on the right, for which "
         "no constant `L_p` will do along a run of the oscillator: an `L_p` above 1/h makes "
@@ -196,6 +209,6 @@ def convergence_inference() -> Argument:
                 "claim on Eq. 9.)",
             ),
         ],
-        given="Eq. 11 is summed from Eq. 10, and that from Eq. 9.",
+        setting="Eq. 11 is summed from Eq. 10, and that from Eq. 9.",
         remark="The conclusion is true, by the same steps for both components in one norm.",
     )

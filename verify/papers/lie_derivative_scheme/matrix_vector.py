@@ -10,9 +10,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import Differential, Flow, flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, areas, jacobian, map_from_formulas, next_point
+from verify.papers.exact_maps import Point, areas, jacobian, map_from_texts, next_point
 from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -21,9 +21,9 @@ POINT = Point(p=Fraction(0), q=Fraction(1))
 
 
 def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argument:
-    """z_{k+1} = J_k z_k: refuted at one rational point, of the Duffing oscillator if not told."""
-    found = lie_map(hamiltonian or duffing(), 2)
-    product, image = _product(found, point), next_point(found, point, H)
+    """Refute z_{k+1} = J_k z_k at one rational point, by default for the Duffing oscillator."""
+    step_map = lie_map(hamiltonian or duffing(), 2)
+    product, image = _product(step_map, point), next_point(step_map, point, H)
     at_a_point = Check(
         f"Duffing, δ = 1, lie2, h = {text(H)}, z = (p, q) = {point}: J z against z'",
         product != image,
@@ -54,7 +54,7 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
             step(
                 "Conversely, for a quadratic form every Xⁿz is linear, and Eq. 12 is an identity.",
                 stays_linear(),
-                _of_a_quadratic_form(),
+                _check_quadratic_form(),
             ),
         ],
         remark="So Eq. 12 is false as a product for every other H that is smooth around the "
@@ -64,31 +64,34 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
     )
 
 
-def _product(found: StepMap, point: Point) -> Point:
-    a, b, c, d = jacobian(found, point, H)
+def _product(step_map: StepMap, point: Point) -> Point:
+    a, b, c, d = jacobian(step_map, point, H)
     return Point(a * point.p + b * point.q, c * point.p + d * point.q)
 
 
-def _of_a_quadratic_form() -> Check:
-    found = lie_map(Hamiltonian.parse("a*p**2/2 + b*p*q + c*q**2/2"), 2)
-    gaps = found.jacobian * sympy.Matrix([P, Q]) - sympy.Matrix([found.p_next, found.q_next])
+def _check_quadratic_form() -> Check:
+    step_map = lie_map(Hamiltonian.parse("a*p**2/2 + b*p*q + c*q**2/2"), 2)
+    gaps = step_map.jacobian * sympy.Matrix([P, Q]) - sympy.Matrix(
+        [step_map.p_next, step_map.q_next]
+    )
     what = "H = a p²/2 + b pq + c q²/2, lie2: J z = z' for all p, q, h, a, b, c"
     return same(what, list(gaps), ("p", "q", "h", "a", "b", "c"), "holds exactly")
 
 
 def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
-    """δz_{k+1} = J_k δz_k: Φ(z + sv) − Φ(z) − s J v is O(s²); `stray` is added to J's entries."""
-    found = duffing_step()
-    along = [Point(Fraction(1), Fraction(0)), Point(Fraction(0), Fraction(1))]
+    """Prove δz_{k+1} = J_k δz_k: Φ(z + sv) − Φ(z) − s J v = O(s²); `stray` is added to J."""
+    step_map = duffing_step()
+    directions = [Point(Fraction(1), Fraction(0)), Point(Fraction(0), Fraction(1))]
     sizes = [Fraction(1, 10**n) for n in (1, 2, 3)]
-    gaps = [[_gap(found, v, s, stray) / s**2 for s in sizes] for v in along]
+    gaps = [[_gap(step_map, v, s, stray) / s**2 for s in sizes] for v in directions]
+    # The quotients stay bounded as s falls by powers of ten if the remainder is O(s²).
     bounded = all(max(row) <= 2 * min(row) for row in gaps if max(row))
-    shown = "; ".join(", ".join(f"`{decimal(x, 3)}`" for x in row) for row in gaps)
+    texts = "; ".join(", ".join(f"`{decimal(x, 3)}`" for x in row) for row in gaps)
     example = Check(
         f"Duffing, δ = 1, lie2, h = {text(H)}, (p, q) = {POINT}: |Φ(z + sv) − Φ(z) − s J v|"
         f"/s² for s = {', '.join(map(text, sizes))} and v along p; along q, is bounded",
         bounded,
-        shown,
+        texts,
         NUMBERS,
     )
     return proof(
@@ -99,7 +102,7 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
                 "That Φ is differentiable at `z_k` says ``Φ(z_k + δz) = Φ(z_k) + J_k δz + "
                 "o(|δz|)``, and a smooth function is, with its derivatives as the entries of "
                 "`J_k`; so is every lieη of a smooth H.",
-                Shipped("Smooth", "derivation_has_slopes"),
+                ShippedTheorem("Smooth", "derivation_has_slopes"),
             ),
             step(
                 "Where Φ has second derivatives the rest is O(|δz|²) (Taylor).",
@@ -112,16 +115,17 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
     )
 
 
-def _gap(found: StepMap, v: Point, s: Fraction, stray: Fraction) -> Fraction:
-    a, b, c, d = (x + stray for x in jacobian(found, POINT, H))
-    moved = next_point(found, Point(POINT.p + s * v.p, POINT.q + s * v.q), H)
-    image = next_point(found, POINT, H)
-    gap_p = moved.p - image.p - s * (a * v.p + b * v.q)
-    return abs(gap_p) + abs(moved.q - image.q - s * (c * v.p + d * v.q))
+def _gap(step_map: StepMap, v: Point, s: Fraction, stray: Fraction) -> Fraction:
+    a, b, c, d = (x + stray for x in jacobian(step_map, POINT, H))
+    moved_image = next_point(step_map, Point(POINT.p + s * v.p, POINT.q + s * v.q), H)
+    image = next_point(step_map, POINT, H)
+    # The 1-norm: any norm of the plane will do, and this one keeps rational numbers rational.
+    gap_p = moved_image.p - image.p - s * (a * v.p + b * v.q)
+    return abs(gap_p) + abs(moved_image.q - image.q - s * (c * v.p + d * v.q))
 
 
 def near_identity(start: int = 0) -> Argument:
-    """Φ and J of lieη tend to the identity; `start`: the power of h from which on terms count."""
+    """Prove that Φ and J of lieη tend to the identity; `start`: the least power of h counted."""
     flow = flow_of_every_hamiltonian(4)
     ring, at_0 = flow.ring, [flow.ring.zero, flow.ring.zero]
     for i, image in enumerate(flow.lie(3)):
@@ -146,22 +150,23 @@ def near_identity(start: int = 0) -> Argument:
             ),
             step(
                 "It follows that ΔJ → 0, too: it is ``h^(η+1)`` times a polynomial in h.",
-                Shipped("Theorems", "determinant_of_lie_in_plane"),
+                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
             ),
         ],
     )
 
 
 def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
-    """ΔJ → 0 does not make a near-identity map: a map with ΔJ = 0 that moves a point by 1."""
-    found = map_from_formulas(p_next, q_next)
+    """Refute that ΔJ → 0 makes a near-identity map, by one with ΔJ = 0 that moves a point by 1."""
+    step_map = map_from_texts(p_next, q_next)
     sizes = (Fraction(1, 10), Fraction(1, 1000))
-    delta_j = [areas(found, POINT, h, 4).largest for h in sizes]
-    moved = [next_point(found, POINT, h) for h in sizes]
-    far = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in moved]
+    delta_j = [areas(step_map, POINT, h, 4).largest for h in sizes]
+    images = [next_point(step_map, POINT, h) for h in sizes]
+    # A distance of at least 1 for every h excludes any limit z + O(h).
+    far = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in images]
     for_every_h = same(
         f"p' = `{p_next}`, q' = `{q_next}`: ΔJ is the zero function",
-        [found.delta_j],
+        [step_map.delta_j],
         ("p", "q", "h"),
     )
     along_a_run = Check(
@@ -173,7 +178,7 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
     moves = Check(
         f"the same map takes (p, q) = {POINT} to a point that does not tend to it",
         all(x >= 1 for x in far),
-        ", ".join(map(str, moved)),
+        ", ".join(map(str, images)),
         NUMBERS,
     )
     return refutation(
@@ -195,10 +200,11 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
 
 
 def euler(power: int = 2) -> Check:
-    """d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
+    """Check d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
     names = ["u", "s", "F", "F_p", "F_q", "p", "q"]
     ring = Differential(names)
     u, s, f, f_p, f_q, p, q = (ring[name] for name in names)
+    # u = 1/s is a variable with a relation, as the ring has no negative powers.
     ring.relate(u * s - 1)  # u = 1/s
     ring.set_gradient("s", s=ring.context.constant(1))
     ring.set_gradient("u", s=-u * u)
@@ -211,14 +217,15 @@ def euler(power: int = 2) -> Check:
 
 
 def stays_linear(bent: int = 0) -> Check:
-    """X y is linear where y is and H is a quadratic form; `bent` p² is added to y."""
+    """Check that X y is linear if y is, for a quadratic form H; `bent` p² is added to y."""
     names = ["p", "q", "a", "b", "c", "alpha", "beta"]
     ring = Differential(names)
     p, q, a, b, c, alpha, beta = (ring[name] for name in names)
     ring.set_coordinates()
     flow = Flow(ring, a * p + b * q, b * p + c * q)
-    along = flow.derive(alpha * p + beta * q + bent * p * p)
+    # f = (−H_q, H_p) is linear for a quadratic H, and a derivative along it keeps the degree.
+    derivative = flow.derive(alpha * p + beta * q + bent * p * p)
     linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q
     return vanishes(
-        "X(αp + βq) − (aβ − bα)p − (bβ − cα)q for H = a p²/2 + b pq + c q²/2", along - linear
+        "X(αp + βq) − (aβ − bα)p − (bβ − cα)q for H = a p²/2 + b pq + c q²/2", derivative - linear
     )

@@ -10,7 +10,7 @@ from verify.algebra.symbols import P, Q
 from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 DUFFING = ("p**2/2 + q**2/2 + delta*q**4/4", "q + delta*q**3")  # H, and q'' less its sign
 PENDULUM = ("p**2/2 - cos(q)", "sin(q)")
@@ -18,7 +18,7 @@ _NAMES = ("p", "q", "delta")
 
 
 def eq_1(sign: int = -1) -> Argument:
-    """X H = 0 and div X = 0 for a generic H; `sign` is that of p' = −H_q."""
+    """Prove X H = 0 and div X = 0 for a generic H; `sign` is that of p' = −H_q."""
     flow = flow_of_every_hamiltonian(2)
     diff, h_p, h_q = flow.ring.diff, flow.h_p, flow.h_q
     rate = vanishes("dH/dt = `H_p` p' + `H_q` q' for a generic H", sign * h_q * h_p + h_p * h_q)
@@ -34,17 +34,17 @@ def eq_1(sign: int = -1) -> Argument:
                 "With p' = −`H_q`, q' = `H_p` the chain rule gives ``dH/dt = H_p p' + H_q q' = "
                 "−H_p H_q + H_q H_p = 0``, so the system is conservative and H an invariant.",
                 rate,
-                Shipped("Solutions", "rate_along_solution"),
+                ShippedTheorem("Solutions", "rate_along_solution"),
             ),
             step(
                 "Its divergence is ``−H_{qp} + H_{pq} = 0``.",
                 divergence,
-                Shipped("Volume", "field_without_divergence"),
+                ShippedTheorem("Volume", "field_without_divergence"),
             ),
             step(
                 "So every term in h, h², … of det φ', φ the Taylor series of the exact flow over "
                 "h, vanishes: it preserves area (Liouville).",
-                Shipped("Taylor", "flow_has_no_defect"),
+                ShippedTheorem("Taylor", "flow_has_no_defect"),
             ),
         ],
         remark="On the level curves of H the exact flow can be drawn. None of it needs that H is "
@@ -53,7 +53,7 @@ def eq_1(sign: int = -1) -> Argument:
 
 
 def _from_hamiltonian(
-    name: str, source: str, formulas: Sequence[str], words: str, *known: Shipped
+    name: str, source: str, formulas: Sequence[str], words: str, *theorems: ShippedTheorem
 ) -> Argument:
     hamiltonian, force = (parse(text, _NAMES, source=name) for text in formulas)
     h_p, h_q = sympy.diff(hamiltonian, P), sympy.diff(hamiltonian, Q)
@@ -69,7 +69,7 @@ def _from_hamiltonian(
         f"H as in {source} gives q' = p and p' = −(`{to_text(force)}`), so that q'' + "
         f"`{to_text(force)}` = 0{words}",
         [
-            step("By Eq. 1 ``q' = H_p = p, p' = −H_q``.", first, *known),
+            step("By Eq. 1 ``q' = H_p = p, p' = −H_q``.", first, *theorems),
             step("So ``q'' = p' = −H_q``, which is the equation.", whole),
             step(
                 "Conversely let q solve the equation, and call q' p: then q' = `H_p` and p' = q'' "
@@ -81,12 +81,12 @@ def _from_hamiltonian(
 
 
 def eq_17(formulas: Sequence[str] = DUFFING) -> Argument:
-    """q'' + q + δq³ = 0 from Eq. 18."""
+    """Prove q'' + q + δq³ = 0 from Eq. 18."""
     words = ", for every δ, the coefficient of the cubic restoring force"
     return _from_hamiltonian("eq-17", "Eq. 18", formulas, words)
 
 
 def eq_25(formulas: Sequence[str] = PENDULUM) -> Argument:
-    """q'' + sin q = 0 from Eq. 26."""
-    moves = Shipped("Examples", "pendulum_moves")
+    """Prove q'' + sin q = 0 from Eq. 26."""
+    moves = ShippedTheorem("Examples", "pendulum_moves")
     return _from_hamiltonian("eq-25", "Eq. 26", formulas, "", moves)

@@ -11,7 +11,7 @@ from verify.papers.lie_derivative_scheme.lie_series import eq_4, powers_of
 
 
 def taylor_method() -> Argument:
-    """lieη is the Taylor series method of order η, step for step."""
+    """Prove that lieη is the Taylor series method of order η, step for step."""
     return proof(
         "for every H a step of lieη is the Taylor polynomial of degree η of the exact flow: the "
         "Taylor series method of order η; by the paper’s own account references 23 to 29 have "
@@ -33,7 +33,7 @@ def taylor_method() -> Argument:
 
 
 def partitioned(sign: int = -1) -> Argument:
-    """The derivative along Eq. 1 is the sum of two, one from each of its equations."""
+    """Prove that the derivative along Eq. 1 is a sum of two, one from each of its equations."""
     flow = flow_of_every_hamiltonian(1, ["y", "y_p", "y_q"])
     ring = flow.ring
     ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
@@ -55,7 +55,7 @@ def partitioned(sign: int = -1) -> Argument:
 
 
 def partitioned_separable(formula: str = "p*q + p**2*q**2") -> Argument:
-    """Eq. 2–5 serve an H that is no sum of a function of p and one of q."""
+    """Refute that Eq. 2–5 need an H that is a sum of a function of p and one of q."""
     hamiltonian = Hamiltonian.parse(formula)
     mixed = sympy.expand(sympy.diff(hamiltonian.exact, P, Q))
     flow = flow_of_every_hamiltonian(2)
@@ -80,10 +80,12 @@ def partitioned_separable(formula: str = "p*q + p**2*q**2") -> Argument:
 
 
 def higher_derivatives() -> Argument:
-    """L² is a derivative of H_p and of −H_q."""
+    """Prove that L² is a derivative of H_p and of −H_q."""
     flow = flow_of_every_hamiltonian(2)
-    along = {"q": flow.h_p, "p": -flow.h_q}
-    gaps = [eq_4(flow, y) - flow.lie_derivatives(name, 2)[2] for name, y in along.items()]
+    first_derivatives = {"q": flow.h_p, "p": -flow.h_q}
+    gaps = [
+        eq_4(flow, y) - flow.lie_derivatives(name, 2)[2] for name, y in first_derivatives.items()
+    ]
     return proof(
         "`L²` q = L `H_p` and `L²` p = −L `H_q`, and so on: derivatives of functions of p and q",
         [step("By Eq. 4 ``L^2 q = X H_p, L^2 p = −X H_q``.",
@@ -94,7 +96,7 @@ def higher_derivatives() -> Argument:
 def higher_derivatives_nonlinearity(
     linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4"
 ) -> Argument:
-    """The same for linear systems; and a nonlinear one whose second derivative is of a variable."""
+    """Refute that nonlinearity is the reason, by a linear and a nonlinear system."""
     first, second = (Hamiltonian.parse(formula).exact for formula in (linear, curved))
     rates = [sympy.diff(first, z) for z in (P, Q)]
     slopes = [sympy.diff(x, y, z) for x in rates for y in (P, Q) for z in (P, Q)]

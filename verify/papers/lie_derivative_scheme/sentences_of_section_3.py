@@ -13,11 +13,11 @@ from verify.arithmetic.exact import decimal, text
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.papers.exact_maps import Areas, Point, areas, map_from_formulas, next_point, value
+from verify.papers.exact_maps import Areas, Point, areas, map_from_texts, next_point, value
 from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.convergence import STEPS
 from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 EULER = ("p - h*q", "q + h*p - h**2*q")  # symplectic Euler for H = (p² + q²)/2
@@ -27,7 +27,7 @@ _POINT_ONE = Fraction(1, 10)
 
 
 def mse_quantifies() -> Argument:
-    """MSE(J) tells how far the determinants are from 1."""
+    """Prove that MSE(J) measures how far the determinants are from 1."""
     return proof(
         "√MSE is the root mean square of det `J_k` − 1 over [t₀, `t_end`], and no |det `J_k` − 1| "
         "exceeds √(N MSE)",
@@ -42,13 +42,13 @@ def mse_quantifies() -> Argument:
 
 
 def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
-    """MSE = 0 and an error of order h: symplectic Euler for the oscillator."""
-    found = map_from_formulas(*formulas)
-    zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [found.delta_j], ("p", "q", "h"))
+    """Refute it for the solution: symplectic Euler for the oscillator has MSE = 0, error O(h)."""
+    step_map = map_from_texts(*formulas)
+    zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [step_map.delta_j], ("p", "q", "h"))
     errors = [_error_at_1(formulas, n) for n in STEPS]
     return refutation(
         "symplectic Euler has det `J_k` = 1 and MSE = 0 whatever h is, while its solution is off "
-        f"by {', '.join(each.shown for each in errors)} at t = 1 for the oscillator with h = "
+        f"by {', '.join(each.value for each in errors)} at t = 1 for the oscillator with h = "
         f"{', '.join(text(Fraction(1, n)) for n in STEPS)}",
         [
             step("For symplectic Euler (Eq. 24, 32) ΔJ = 0 at every point, so MSE = 0.", zero),
@@ -57,13 +57,13 @@ def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
                 *errors,
             ),
         ],
-        given="Let the calculated values be those of (p, q).",
+        setting="Let the calculated values be those of (p, q).",
     )
 
 
 def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
-    """The distance from the exact solution after N steps of 1/N, in balls; the map is linear."""
-    jacobian = map_from_formulas(*formulas).jacobian
+    """Check the error after N steps of 1/N, in balls; the map is linear."""
+    jacobian = map_from_texts(*formulas).jacobian
     h = Fraction(1, steps)
     a, b, c, d = (value(x, Point(Fraction(0), Fraction(0)), h) for x in jacobian)
     with examples.enclosures():
@@ -73,18 +73,18 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
         one = flint.arb(1)
         off = ((p + one.sin()) ** 2 + (q - one.cos()) ** 2).sqrt()
         share = off * steps
-        holds, shown = bool(share > 0.4) and bool(share < 0.5), off.mid().str(3, radius=False)
+        holds, texts = bool(share > 0.4) and bool(share < 0.5), off.mid().str(3, radius=False)
     return Check(
         f"symplectic Euler, oscillator, h = {text(h)}: the error at t = 1 lies between 0.4 h and "
         "0.5 h",
         holds,
-        f"`{shown}`",
+        f"`{texts}`",
         BALLS,
     )
 
 
 def errors_in_every_step() -> Argument:
-    """ΔJ of lie2 is not 0 at almost every state of either system."""
+    """Prove that ΔJ of lie2 is not 0 at almost every state of either system."""
     return proof(
         "for both systems ΔJ of lie2 is an analytic function of (p, q) that is not identically 0, "
         "for any h > 0: it is 0 on a set of measure 0 alone",
@@ -100,7 +100,8 @@ def errors_in_every_step() -> Argument:
 
 
 def _part_in_p(name: str) -> Check:
-    """∂ΔJ/∂p for δ = 1, which has no zero but where it should have."""
+    """Check that ∂ΔJ/∂p of lie2 is not identically 0, for δ = 1."""
+
     parameters = {"delta": 1} if name == "duffing" else {}
     slope = lie_map(examples.with_symbols(name).with_values(parameters), 2).delta_j
     slope = sympy.simplify(sympy.diff(slope, P))
@@ -110,18 +111,21 @@ def _part_in_p(name: str) -> Check:
 def errors_in_every_step_exactly(
     q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)
 ) -> Argument:
-    """ΔJ = 0 on a curve of the Duffing oscillator; `share`: p on it at this q, over h."""
-    found = examples.duffing_step()
-    put = {P: sympy.Rational(share.numerator, share.denominator) * H_STEP, Q: sympy.Rational(q)}
-    there = same(
+    """Refute it exactly, by a curve of the Duffing oscillator with ΔJ = 0; `share`: p/h on it."""
+    step_map = examples.duffing_step()
+    substitution = {
+        P: sympy.Rational(share.numerator, share.denominator) * H_STEP,
+        Q: sympy.Rational(q),
+    }
+    vanishing = same(
         f"Duffing, δ = 1, lie2: ΔJ at q = {text(q)}, p = `{text(share)} h`",
-        [sympy.expand(found.delta_j.subs(put, simultaneous=True))],
+        [sympy.expand(step_map.delta_j.subs(substitution, simultaneous=True))],
         ("h",),
     )
     return refutation(
         f"for the Duffing oscillator with δ = 1 the step from q = {text(q)}, p = −4h/3 has ΔJ = 0, "
         "as those have from every point of the curve 12pq = −h (1 + 3q²)²",
-        [step("ΔJ = 3h³pq + `h⁴ (1 + 3q²)²/4` is 0 on this curve.", there)],
+        [step("ΔJ = 3h³pq + `h⁴ (1 + 3q²)²/4` is 0 on this curve.", vanishing)],
     )
 
 
@@ -131,17 +135,18 @@ def errors_in_every_step_exactly(
 def duffing_criteria_inference(
     formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
 ) -> Argument:
-    """A map with the numbers of Figure 3 at h = 0.001 that satisfies neither criterion."""
-    found = map_from_formulas(*formulas)
+    """Refute the inference by a map with the numbers of Figure 3 that fails both criteria."""
+    step_map = map_from_texts(*formulas)
     points = [Point(Fraction(0), Fraction(1))]
-    points += [next_point(found, points[0], _POINT_ONE)]
-    both = [value(found.delta_j, point, _POINT_ONE) for point in points]
-    again = next_point(found, points[1], _POINT_ONE) == points[0]
+    points += [next_point(step_map, points[0], _POINT_ONE)]
+    both = [value(step_map.delta_j, point, _POINT_ONE) for point in points]
+    # The map has period 2 in z, so that Λ after N steps is a power of the ΔJ of two steps.
+    again = next_point(step_map, points[1], _POINT_ONE) == points[0]
     size, pair = max(map(abs, both)), (1 + both[0]) * (1 + both[1]) - 1
     with examples.enclosures():
-        grown = (1 + rational_ball(pair)) ** (steps // 2) - 1
-        near = bool(grown > 5e-6) and bool(grown < 2e-5)
-        shown = grown.mid().str(3, radius=False)
+        growth = (1 + rational_ball(pair)) ** (steps // 2) - 1
+        near = bool(growth > 5e-6) and bool(growth < 2e-5)
+        text_of_growth = growth.mid().str(3, radius=False)
     return refutation(
         "criteria 2 and 4 speak of h → 0, and a number at one h says nothing of that: a map that "
         "does not depend on h at all, with ΔJ = 10⁻¹¹ (1/20 ± 1), has these very numbers at h = "
@@ -152,14 +157,14 @@ def duffing_criteria_inference(
                 "two ΔJ, about ±10⁻¹¹, whatever h is: |ΔJ| is about 10⁻¹¹ and no o(h).",
                 Check(
                     "the map: it returns after two steps, and max |ΔJ|",
-                    again and H_STEP not in found.delta_j.free_symbols and 5e-12 < size < 2e-11,
+                    again and H_STEP not in step_map.delta_j.free_symbols and 5e-12 < size < 2e-11,
                     f"`{decimal(size, 3)}`",
                     NUMBERS,
                 ),
             ),
             step(
                 "Over [0, 20000] with h = 0.001 its Λ is about 10⁻⁵.",
-                Check(f"the map: Λ after {steps} steps", near, f"`{shown}`", BALLS),
+                Check(f"the map: Λ after {steps} steps", near, f"`{text_of_growth}`", BALLS),
             ),
             step(
                 "After N = T/h steps 1 + Λ is a fixed number above 1 to the power N/2, which does "
@@ -178,16 +183,16 @@ def duffing_criteria_inference(
 def total_error_increases(
     start: Point = START, h: Fraction = Fraction(1, 10), steps: int = 3
 ) -> Argument:
-    """|Λ| after n steps falls: exact for the Duffing oscillator, and why for every even η."""
-    found = areas(examples.duffing_step(), start, h, steps).delta_j
-    totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
-    shown = ", ".join(f"`{decimal(x, 4)}`" for x in totals)
+    """Refute that |Λ| increases with the steps, for the Duffing oscillator and every even η."""
+    delta_j = areas(examples.duffing_step(), start, h, steps).delta_j
+    totals = [abs(Areas(delta_j[:n]).lam) for n in range(1, steps + 1)]
+    totals_text = ", ".join(f"`{decimal(x, 4)}`" for x in totals)
     flow = flow_of_every_hamiltonian(4)
     falls = Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, from (p, q) = {start}: |Λ| after n steps falls, "
         f"n = 1 … {steps}",
         any(later < earlier for earlier, later in pairwise(totals)),
-        shown,
+        totals_text,
         NUMBERS,
     )
     telescopes = vanishes(
@@ -196,7 +201,7 @@ def total_error_increases(
     )
     return refutation(
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
-        f"1, 2, … steps is {shown}, exact but for the rounding of what is shown; the leading "
+        f"1, 2, … steps is {totals_text}, exact but for the rounding of what is shown; the leading "
         "part of Λ is a boundary term that does not grow",
         [
             step(
@@ -209,8 +214,8 @@ def total_error_increases(
                 "It is not a matter of a few steps. For lie2 and every smooth H the leading term "
                 "of ΔJ is a derivative along the flow: ``ΔJ = (h^3/2) X(det Hess H) + O(h^4)``.",
                 telescopes,
-                Shipped("Theorems", "lie_telescopes_in_plane_for_even"),
-                Shipped("Theorems", "determinant_of_lie_in_plane"),
+                ShippedTheorem("Theorems", "lie_telescopes_in_plane_for_even"),
+                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
             ),
             step(
                 "On a fixed [0, T] its sum is therefore a boundary term, with D = det Hess H: ``Λ "

@@ -10,7 +10,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, same
 from verify.papers.checks.matrices import stretching
-from verify.papers.exact_maps import Point, jacobian, next_point, squared
+from verify.papers.exact_maps import Point, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, with_symbols
 from verify.papers.lie_derivative_scheme.lipschitz import PAIR
 
@@ -21,7 +21,7 @@ _STRETCHES = {"duffing": "3*delta*q**2/2", "pendulum": "(1 - cos(q))/2"}
 
 
 def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argument:
-    """L_p = ‖J_k‖₂ in Eq. 9: refuted at a point where ‖J‖₂ > 1 + h ‖J‖₂ is exact."""
+    """Refute L_p = ‖J_k‖₂ in Eq. 9, at a point where ‖J‖₂ > 1 + h ‖J‖₂ holds exactly."""
     a, b, c, d = jacobian(duffing_step(), point, h)
     # With |Jv| ≤ ‖J‖₂ |v| for v = (1, −1), ‖J‖₂ (1 − h) > 1 follows from |Jv|² (1 − h)² > |v|².
     stretch = ((a - b) ** 2 + (c - d) ** 2) / 2
@@ -67,19 +67,20 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
                 tried=[_is_a_factor(Fraction(*q)) for q in _BESIDE],
             ),
         ],
-        given="‖J‖₂ is the local Lipschitz constant of the step map itself, Φ, whose factor in Eq. "
-        "9 is 1 + hL. To put L = ‖J‖₂ counts it twice.",
+        setting="‖J‖₂ is the local Lipschitz constant of the step map itself, Φ, whose factor in "
+        "Eq. 9 is 1 + hL. To put L = ‖J‖₂ counts it twice.",
         remark="What Eq. 9 needs in a norm is L = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + "
         "hψ, which stays bounded as h → 0; with it the conclusion of Section 2.2 stands.",
     )
 
 
 def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _EDGE) -> Check:
-    """‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing with δ = 1 at p = 0, exactly where q² < `edge`."""
+    """Check that ‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing, δ = 1, at p = 0 exactly where q² < `edge`."""
     a, b, c, d = jacobian(duffing_step(), Point(Fraction(0), q), h)
+    # ‖J‖₂² is the greater zero of x² − (tr JᵀJ) x + (det J)², so that no root is needed.
     trace, square = a * a + b * b + c * c + d * d, (a * d - b * c) ** 2
-    most = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
-    holds = most**2 - trace * most + square >= 0 and 2 * most >= trace
+    limit = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
+    holds = limit**2 - trace * limit + square >= 0 and 2 * limit >= trace
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, (p, q) = (0, `{text(q)}`): ‖J‖₂ ≤ 1 + h‖J‖₂, if and "
         "only if q² < 2/3",
@@ -89,31 +90,32 @@ def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _
     )
 
 
-def _stretch_of(name: str, told: str = "") -> Check:
-    """s² of the system, all parameters symbols; `told`: what is taken for s."""
+def _stretch_of(name: str, stretch: str = "") -> Check:
+    """Check s² of the system, all parameters symbols; `stretch` is used in place of s."""
     energy = with_symbols(name).expression
-    s = Hamiltonian.parse(told or _STRETCHES[name]).expression
+    s = Hamiltonian.parse(stretch or _STRETCHES[name]).expression
     pp, pq, qq = (sympy.diff(energy, *by) for by in ((P, P), (P, Q), (Q, Q)))
     gap = s**2 - (pq**2 + (pp - qq) ** 2 / 4)
-    return same(f"{name}: s² for s = `{told or _STRETCHES[name]}`", [gap], ("p", "q", "delta"))
+    return same(f"{name}: s² for s = `{stretch or _STRETCHES[name]}`", [gap], ("p", "q", "delta"))
 
 
 def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
-    """‖J‖₂ as the Lipschitz constant of the step itself, the 1 + hL of Eq. 9; `scale` times it.
+    """Prove that ‖J‖₂ is the Lipschitz constant of the step itself; `scale` multiplies it.
 
     On the segment between two points |Φ(z̄) − Φ(z)|² ≤ max ‖J‖₂² |z̄ − z|².
     """
     h = Fraction(1, 10)
-    found, ends = duffing_step(), PAIR
-    images = [next_point(found, z, h) for z in ends]
-    moved = squared(*images) / squared(*ends)
+    step_map, ends = duffing_step(), PAIR
+    images = [next_point(step_map, z, h) for z in ends]
+    stretch = squared_distance(*images) / squared_distance(*ends)
+    # The segment between the two points, on which the mean value theorem takes the maximum.
     between = [Point(Fraction(0), Fraction(k, 8)) for k in range(9)]
-    norms = [_norm_squared(jacobian(found, z, h)) for z in between]
+    norms = [_norm_squared(jacobian(step_map, z, h)) for z in between]
     example = Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}: |Φ(z̄) − Φ(z)|²/|z̄ − z|² for (p, q) = "
         f"{ends[0]} and {ends[1]}, at most the greatest of 9 lower bounds of ‖J‖₂² between",
-        moved <= scale * max(norms),
-        f"`{decimal(moved, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
+        stretch <= scale * max(norms),
+        f"`{decimal(stretch, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
         NUMBERS,
     )
     return proof(
@@ -135,6 +137,6 @@ def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
 
 
 def _norm_squared(entries: tuple[Fraction, ...]) -> Fraction:
-    """A lower bound of ‖J‖₂²: |J v|²/|v|² for the better of v = (0, 1) and (1, 0)."""
+    """Return a lower bound of ‖J‖₂²: |J v|²/|v|² for the better of v = (0, 1) and (1, 0)."""
     a, b, c, d = entries
     return max(a * a + c * c, b * b + d * d)

@@ -6,13 +6,21 @@ from itertools import combinations_with_replacement, product
 from typing import Any
 
 from verify.proof.assistant.factors import Reducer
-from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, real, safe, signed
+from verify.proof.assistant.formulas import (
+    Spelling,
+    deep,
+    format_signed,
+    list_of,
+    rational,
+    real,
+    safe_names,
+)
 from verify.proof.assistant.text import Export, template_words
 from verify.proof.certificates.coefficients import (
     Stages,
     Tableau,
-    gaps_of_stages,
-    gaps_of_tableau,
+    residuals_of_stages,
+    residuals_of_tableau,
 )
 from verify.proof.certificates.numbers import Number, Residues
 from verify.proof.certificates.readers import Poly
@@ -23,16 +31,17 @@ _STAGES = [*_SHEARS, *_FORMULAS, "StageSchemes"]
 _TABLEAU = [*_SHEARS, *_FORMULAS, "RungeKutta"]
 
 
-def of_stages(entries: Stages) -> Export:
-    """The theorems of such a certificate, and their proofs."""
+def export_stages(entries: Stages) -> Export:
+    """Export the theorems of a certificate by stages, and their proofs."""
     names = _Numbers(entries, "stages")
+    # Shears have a theorem that needs no solvability, so they are exported by it where possible.
     shears = list(_shears(entries, names))
     if None not in shears:
         return Export(_SHEARS, "shears", {**names.values, "shears": shears})
     zero: Poly = {}
     times = entries.times or [zero] * len(entries.rows)
     rows = [(*row, time) for row, time in zip(entries.rows, times, strict=True)]
-    gaps = list(gaps_of_stages(entries, Residues(())))
+    residuals = list(residuals_of_stages(entries, Residues(())))
     return Export(
         needs=_STAGES,
         template="stages",
@@ -41,17 +50,19 @@ def of_stages(entries: Stages) -> Export:
             "separable": entries.separable,
             "separable_": "true" if entries.separable else "false",
             "rows": [[names.shallow.poly(x) for x in row] for row in rows],
-            "deep": names.checked(gaps) | {"rows": list_of(map(names.deep.list, rows))},
+            "deep": names.deep_values(residuals) | {"rows": list_of(map(names.deep.list, rows))},
         },
     )
 
 
-def of_tableau(entries: Tableau) -> Export:
-    """The theorems of such a certificate, and their proofs."""
+def export_tableau(entries: Tableau) -> Export:
+    """Export the theorems of a certificate by a tableau, and their proofs."""
     names, a, b = _Numbers(entries, "tableau"), entries.rows, entries.weights
     pairs = combinations_with_replacement(range(len(b)), 2)
-    gaps = dict(zip(pairs, (x for _, x in gaps_of_tableau(entries, Residues(()))), strict=True))
-    every = [gaps[min(pair), max(pair)] for pair in product(range(len(b)), repeat=2)]
+    residuals = dict(
+        zip(pairs, (x for _, x in residuals_of_tableau(entries, Residues(()))), strict=True)
+    )
+    every = [residuals[min(pair), max(pair)] for pair in product(range(len(b)), repeat=2)]
     return Export(
         needs=_TABLEAU,
         template="tableau",
@@ -60,21 +71,21 @@ def of_tableau(entries: Tableau) -> Export:
             "m": len(b),
             "rows": [[names.shallow.poly(x) for x in row] for row in a],
             "weights": [names.shallow.poly(x) for x in b],
-            "deep": names.checked(every)
+            "deep": names.deep_values(every)
             | {"rows": list_of(map(names.deep.list, a)), "weights": names.deep.list(b)},
         },
     )
 
 
 def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
-    """Kicks and drifts, one after the other; None where a stage is not made of them."""
+    """Yield kicks and drifts, one after the other; None where a stage is not made of them."""
     for k, (kick, drift, at_p, at_q) in enumerate(entries.rows):
         time = ""
         if entries.times is not None:
             moment = names.shallow.poly(entries.times[k])
             time = f" (t + ({moment}) * h)" if entries.times[k] else " t"
-        own = (time and "({}{})") or "{}"
-        by_v, by_t = (f"{own.format(x, time)} {own.format(f'{x}1', time)}" for x in "VT")
+        point = (time and "({}{})") or "{}"
+        by_v, by_t = (f"{point.format(x, time)} {point.format(f'{x}1', time)}" for x in "VT")
         first = f"Kick ({names.shallow.poly(kick)}) {by_v}"
         second = f"Drift ({names.shallow.poly(drift)}) {by_t}"
         if not entries.separable:
@@ -88,19 +99,19 @@ def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
 
 
 class _Numbers:
-    """The algebraic numbers of a certificate: how they are written, and what is known of them."""
+    """The algebraic numbers of a certificate: their spelling, and the facts about them."""
 
     def __init__(self, entries: Stages | Tableau, template: str) -> None:
         self.numbers = entries.numbers
         words = template_words(template)
-        # What is said of a number is called by its name, too.
-        said = ("is_", "there_is_", "E_")
-        self.written = safe([number.name for number in self.numbers], words, said)
+        # The names of statements about a number are prefixes and its name: none may clash.
+        prefixes = ("is_", "there_is_", "E_")
+        self.spelling = safe_names([number.name for number in self.numbers], words, prefixes)
         self.deep = deep({number.name: k for k, number in enumerate(self.numbers, start=1)})
         self.shallow = Spelling(
-            real, lambda name: self.written[name], power=lambda base, n: f"{base} ^ {n}"
+            real, lambda name: self.spelling[name], power=lambda base, n: f"{base} ^ {n}"
         )
-        names = list(self.written.values())
+        names = list(self.spelling.values())
         self.values: dict[str, Any] = {
             "n": entries.layout.degrees,
             "timed": entries.times is not None,
@@ -115,11 +126,11 @@ class _Numbers:
             + "".join(f" is_{name} {name} ->" for name in names),
         }
 
-    def checked(self, gaps: Sequence[Poly]) -> dict[str, str]:
-        """The relations as formulas, and the factors by which the gaps are 0."""
+    def deep_values(self, residuals: Sequence[Poly]) -> dict[str, str]:
+        """Return the relations as formulas, and the factors by which the residuals are 0."""
         relations = list(map(_relation, self.numbers))
         names = [number.name for number in self.numbers]
-        factors = Reducer(names, list(enumerate(relations))).all_factors(gaps)
+        factors = Reducer(names, list(enumerate(relations))).all_factors(residuals)
         return {
             "relations": self.deep.list(relations),
             "factors": list_of(map(self.deep.factors, factors)),
@@ -127,10 +138,10 @@ class _Numbers:
 
     def _number(self, number: Number) -> dict[str, Any]:
         return {
-            "name": self.written[number.name],
+            "name": self.spelling[number.name],
             "equation": self.shallow.poly(_relation(number)),
-            "low": signed(number.low),
-            "high": signed(number.high),
+            "low": format_signed(number.low),
+            "high": format_signed(number.high),
             "polynomial": list_of(number.polynomial),
             "ends": [rational(number.low), rational(number.high)],
         }

@@ -39,15 +39,15 @@ _SHALLOW = Spelling(
 )
 
 
-def of_every(entries: Expansion) -> Export:
-    """The theorems of such a certificate, and their proofs."""
+def export_every(entries: Expansion) -> Export:
+    """Export the theorems of a certificate for every H, and their proofs."""
     names, order, potential = _Names(entries), entries.order, entries.potential
-    shown, length = energy_that_shows(entries), entries.length
+    witness, length = energy_that_shows(entries), entries.length
     return Export(
-        needs=_NEEDS if shown is None else (*_NEEDS, "EveryNonzero"),
+        needs=_NEEDS if witness is None else (*_NEEDS, "EveryNonzero"),
         template="every",
         of_rings=True,
-        shows_nonzero=order is None or shown is not None,
+        shows_nonzero=order is None or witness is not None,
         values={
             **names.values(),
             "which": _WHICH[entries.separable, entries.timed],
@@ -65,11 +65,11 @@ def of_every(entries: Expansion) -> Export:
             ],
             "length": length,
             "left": max(0, 2 * length - order - 2) if order else None,
-            "shown": shown
+            "shown": witness
             and {
-                "entry": tuple(names.coordinates[x] for x in shown.entry),
-                "energy": names.deep.scoped(shown.energy),
-                "point": list_of(rational(shown.point[x]) for x in names.coordinates),
+                "entry": tuple(names.coordinates[x] for x in witness.entry),
+                "energy": names.deep.format_scoped(witness.energy),
+                "point": list_of(rational(witness.point[x]) for x in names.coordinates),
             },
             "leading": names.form(entries.leading),
             "potential": None if potential is None else names.form(potential),
@@ -79,15 +79,15 @@ def of_every(entries: Expansion) -> Export:
 
 
 class _Names(Names):
-    """Coordinates and derivatives of H."""
+    """The names of the coordinates and of the derivatives of H."""
 
     shallow, zero = _SHALLOW, "(rational 0)"
 
     def __init__(self, entries: Expansion) -> None:
         super().__init__(entries)
         self.n = entries.layout.degrees
-        used = {name for x in polynomials_of(entries) for names in x for name in names}
-        derived = {self._index(name) for name in used if name not in self.coordinates}
+        used_names = {name for x in polynomials_of(entries) for names in x for name in names}
+        derived = {self._index(name) for name in used_names if name not in self.coordinates}
         # The formulas are derived once more, and the slopes of H twice.
         derived |= {(k,) for k in range(2 * self.n)}
         self.derived = sorted(derived | set(self._slopes(derived)), key=lambda x: (len(x), x))
@@ -98,11 +98,12 @@ class _Names(Names):
         self.deep = deep(numbers)
 
     def bound(self, polys: Iterable[Poly], text: str) -> str:
-        used = {name for x in polys for names in x for name in names}
-        plain = [name for name in self.coordinates if name in used]
-        derived = sorted((self._index(x) for x in used - {*plain}), key=lambda x: (len(x), x))
+        used_names = {name for x in polys for names in x for name in names}
+        plain = [name for name in self.coordinates if name in used_names]
+        derived = sorted((self._index(x) for x in used_names - {*plain}), key=lambda x: (len(x), x))
         bound = [f"let {x} := coordinate s {self.coordinates[x]} in" for x in plain]
         if derived:
+            # Rocq expands each `let` where it is used, so only names that occur are bound.
             bound.append("let H := hamiltonian s in")
         for index in derived:
             slopes = " (".join(f"by_coordinate {k}" for k in index)
@@ -110,7 +111,7 @@ class _Names(Names):
         return "\n  ".join([*bound, text])
 
     def _index(self, name: str) -> tuple[int, ...]:
-        """By which coordinates H is derived, in order."""
+        """Return the coordinates by which H is derived, in order."""
         return tuple(sorted(self.coordinates[by] for by in derived_by(name)))
 
     def _name(self, index: tuple[int, ...]) -> str:
@@ -118,7 +119,7 @@ class _Names(Names):
         return "H_" + "".join(letters[k] for k in index)
 
     def _slopes(self, derived: Iterable[tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
-        """The derivatives of these by one coordinate more, those that are not 0 for all H meant."""
+        """Yield the derivatives of these by one more coordinate, without those that are 0."""
         for index in derived:
             for by in range(2 * self.n + self.entries.timed):
                 more = tuple(sorted((*index, by)))

@@ -1,6 +1,6 @@
-"""Certificates for a proof assistant: `coqc` accepts what is written, or it proves nothing.
+"""Certificates exported for a proof assistant: they prove nothing unless `coqc` accepts them.
 
-A certificate for one H without the functions that nothing in it is made of.
+A certificate for one H is exported without the functions that are not used in it.
 """
 
 import re
@@ -10,16 +10,16 @@ from pathlib import Path
 
 from verify.errors import InputError
 from verify.formats import read_json
-from verify.proof.assistant.coefficients import of_stages, of_tableau
-from verify.proof.assistant.every import of_every
+from verify.proof.assistant.coefficients import export_stages, export_tableau
+from verify.proof.assistant.every import export_every
 from verify.proof.assistant.formulas import KEYWORDS
 from verify.proof.assistant.names import polynomials_of
-from verify.proof.assistant.one import of_one
-from verify.proof.assistant.text import Export, body_of, theorems_of, written
+from verify.proof.assistant.one import export_one
+from verify.proof.assistant.text import Export, body_of, render_file, theorems_of
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.coefficients import Stages, Tableau
 from verify.proof.certificates.entries import Expansion, Function
-from verify.proof.certificates.established import Established, established
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
 from verify.proof.certificates.file import FORMAT
 from verify.proof.certificates.readers import need
 
@@ -28,58 +28,63 @@ _PARTNERS = {"sin": "cos", "cos": "sin"}
 
 
 def with_used_functions(entries: Expansion) -> Expansion:
-    """The certificate with those that H, the map, L and G are made of, and their derivatives.
+    """Drop the functions that H, the map, L and G, and their derivatives, do not use.
 
-    What it says holds without the others, too, and where these are not defined. Raises ValueError
-    where they are too many, or nested too deeply, for `coqc` to take it within minutes.
+    The statement holds without the others, and also where these are not defined. Raises ValueError
+    where too many remain, or they are nested too deeply, for `coqc` to take minutes only.
     """
-    needed = {name for x in polynomials_of(entries) for names in x for name in names}
-    kept: list[Function] = []
-    for made in reversed(entries.functions):  # outer functions first
-        if made.name in needed or _is_partner(made, kept):
-            kept.insert(0, made)
-            needed |= {name for names in made.argument for name in names}
-    for made in entries.functions:  # of those partners that come before the others
-        if made not in kept and _is_partner(made, kept):
-            kept.append(made)
-    order = {made.name: k for k, made in enumerate(entries.functions)}
-    functions = tuple(sorted(kept, key=lambda made: order[made.name]))
+    names_in_use = {name for x in polynomials_of(entries) for names in x for name in names}
+    functions_in_use: list[Function] = []
+    for function in reversed(entries.functions):  # outer functions first
+        if function.name in names_in_use or _is_partner(function, functions_in_use):
+            functions_in_use.insert(0, function)
+            names_in_use |= {name for names in function.argument for name in names}
+    # sin' is cos and cos' is −sin, so the partner is needed for the derivatives; a partner may come
+    # earlier in the file than the function that needs it.
+    for function in entries.functions:
+        if function not in functions_in_use and _is_partner(function, functions_in_use):
+            functions_in_use.append(function)
+    order = {function.name: k for k, function in enumerate(entries.functions)}
+    functions = tuple(sorted(functions_in_use, key=lambda function: order[function.name]))
     need(
         len(functions) <= _MOST, f"it needs more than {_MOST} functions, which coqc takes long for"
     )
-    said = f"its functions are nested more than {_DEEPEST} deep, which coqc takes long for"
-    need(_depth(functions) <= _DEEPEST, said)
+    problem = f"its functions are nested more than {_DEEPEST} deep, which coqc takes long for"
+    need(_depth(functions) <= _DEEPEST, problem)
     return replace(entries, functions=functions)
 
 
 def _depth(functions: Iterable[Function]) -> int:
-    """How many of them stand within one another at most."""
+    """Return the greatest depth to which the functions are nested."""
     depths: dict[str, int] = {}
-    for made in functions:  # inner ones first
-        within = (depths.get(name, 0) for names in made.argument for name in names)
-        depths[made.name] = 1 + max(within, default=0)
+    for function in functions:  # inner ones first
+        inner_depths = (depths.get(name, 0) for names in function.argument for name in names)
+        depths[function.name] = 1 + max(inner_depths, default=0)
     return max(depths.values(), default=0)
 
 
-def _is_partner(made: Function, kept: list[Function]) -> bool:
-    """Whether it is the cos of a sin, or the sin of a cos, that is needed."""
-    return any(f.argument == made.argument and _PARTNERS.get(f.kind) == made.kind for f in kept)
+def _is_partner(function: Function, functions: list[Function]) -> bool:
+    """Return True if it is the cos of a sin, or the sin of a cos, that is kept."""
+    return any(
+        f.argument == function.argument and _PARTNERS.get(f.kind) == function.kind
+        for f in functions
+    )
 
 
 _FILE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\.v")
 
 
 @dataclass(frozen=True)
-class Exported:
-    """`text`: of the file; `of`: what it proves; `theorems`: their names in it, in order."""
+class ExportedFile:
+    """An exported file: its `text`, the `facts` it proves, and its `theorems` in order."""
 
     text: str
-    of: Established
+    facts: EstablishedStatement
     theorems: tuple[str, ...]
 
 
-def exported(path: Path, *, stands_alone: bool = True) -> Exported:
-    """The certificate in this file as one for Rocq.
+def export_certificate(path: Path, *, stands_alone: bool = True) -> ExportedFile:
+    """Export the certificate in this file for Rocq.
 
     Raises InputError where it is no certificate, and where the small checker refuses it.
     """
@@ -89,30 +94,30 @@ def exported(path: Path, *, stands_alone: bool = True) -> Exported:
         if isinstance(entries, Expansion):
             entries = with_used_functions(entries)
         export = _export(entries)
-        of = established(entries, nonzero=export.shows_nonzero)
+        established_facts = state_theorem(entries, nonzero=export.shows_nonzero)
     except InputError:
         raise
     except ValueError as reason:
         raise InputError("file", str(path), f"is refused: {reason}") from None
     except RecursionError:
-        said = "is refused: its functions are nested too deeply, or too many"
-        raise InputError("file", str(path), said) from None
-    text = written(export, of, stands_alone=stands_alone)
-    return Exported(text, of, theorems_of(body_of(export)))
+        problem = "is refused: its functions are nested too deeply, or too many"
+        raise InputError("file", str(path), problem) from None
+    text = render_file(export, established_facts, stands_alone=stands_alone)
+    return ExportedFile(text, established_facts, theorems_of(body_of(export)))
 
 
 def check_file_name(path: Path) -> None:
-    """InputError unless `coqc` takes a file of this name, which is that of a module."""
+    """Raise InputError unless `coqc` takes a file of this name, which is also a module's name."""
     if not _FILE.fullmatch(path.name) or path.stem in KEYWORDS:
-        said = "coqc takes a name of letters, digits and _ that ends in .v, such as lie2.v"
-        raise InputError("coq", str(path), said)
+        problem = "coqc takes a name of letters, digits and _ that ends in .v, such as lie2.v"
+        raise InputError("coq", str(path), problem)
 
 
 def _export(entries: Stages | Tableau | Expansion) -> Export:
     if isinstance(entries, Stages):
-        return of_stages(entries)
+        return export_stages(entries)
     if isinstance(entries, Tableau):
-        return of_tableau(entries)
+        return export_tableau(entries)
     if entries.hamiltonian is None:
-        return of_every(entries)
-    return of_one(entries, entries.hamiltonian)
+        return export_every(entries)
+    return export_one(entries, entries.hamiltonian)

@@ -54,29 +54,31 @@ KEYWORDS = frozenset(
 
 @dataclass(frozen=True)
 class Spelling:
-    """How a number, a name and a power are written. A number is written without its sign."""
+    """The spelling of numbers, names and powers; a number is written without its sign."""
 
     number: Callable[[Fraction], str]
     name: Callable[[str], str]
     power: Callable[[str, int], str]
-    scope: str = ""  # by whose rules Rocq reads it
+    scope: str = ""  # the notation scope in which Rocq reads it
 
-    def scoped(self, x: Poly) -> str:
-        """The polynomial, read by these rules wherever it stands."""
+    def format_scoped(self, x: Poly) -> str:
+        """Format the polynomial with its scope, so that it reads the same wherever it stands."""
         if not self.scope:
             return self.poly(x)
         return self.argument(x) if is_name(x) else f"({self.poly(x)})%{self.scope}"
 
     def argument(self, x: Poly) -> str:
-        """The polynomial as a function is applied to it."""
+        """Format the polynomial as a function's argument."""
         text = self.poly(x)
         return text if is_name(x) and _WORD.fullmatch(text) else f"({text})"
 
     def poly(self, x: Poly) -> str:
-        """The sum of the terms, long ones first, one after the other."""
+        """Format the sum of the terms, long ones first."""
         text = ""
         for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
             first, term = not text, self._term(names, abs(c))
+            # Rocq binds a leading minus to the first factor, so a negative product gets
+            # parentheses: the deep and the shallow form must have the same structure.
             if c < 0 and first:  # of a product the sign would be the first factor's
                 text = f"- {term}" if c == -1 and _is_power(names) else f"- ({term})"
             else:
@@ -91,16 +93,16 @@ class Spelling:
         return " * ".join(factors)
 
     def list(self, series: Iterable[Poly]) -> str:
-        """A list of polynomials, one a line."""
-        return "[" + ";\n    ".join(self.scoped(x) for x in series) + "]"
+        """Format a list of polynomials, one a line."""
+        return "[" + ";\n    ".join(self.format_scoped(x) for x in series) + "]"
 
     def factors(self, factors: Iterable[tuple[int, Poly]]) -> str:
-        """Those of a gap, each with the number of its relation."""
-        return list_of(f"({k}%nat, {self.scoped(x)})" for k, x in factors)
+        """Format the factors of a residual, each with the number of its relation."""
+        return list_of(f"({k}%nat, {self.format_scoped(x)})" for k, x in factors)
 
 
 def is_name(x: Poly) -> bool:
-    """Whether the polynomial is one name alone."""
+    """Return True if the polynomial is one name alone."""
     return len(x) == 1 and all(len(names) == 1 and c == 1 for names, c in x.items())
 
 
@@ -109,7 +111,7 @@ def _is_power(names: Sequence[str]) -> bool:
 
 
 def deep(numbers: dict[str, int]) -> Spelling:
-    """Formulas in the names of these numbers."""
+    """Return the spelling as formulas of the theory, in names that are numbers."""
     return Spelling(
         number=lambda c: f"Number {rational(c)}",
         name=lambda name: f"Name {numbers[name]}",
@@ -119,46 +121,46 @@ def deep(numbers: dict[str, int]) -> Spelling:
 
 
 def rational(c: Fraction) -> str:
-    """A rational number."""
+    """Format a rational number as Rocq's Q."""
     return f"({c.numerator} # {c.denominator})"
 
 
 def real(c: Fraction) -> str:
-    """A number of at least 0 as a real one."""
+    """Format a number of at least 0 as a real one."""
     return str(c.numerator) if c.denominator == 1 else f"{c.numerator} / {c.denominator}"
 
 
-def signed(c: Fraction) -> str:
-    """A number as a real one; Rocq reads a sign before digits as theirs."""
+def format_signed(c: Fraction) -> str:
+    """Format a number as a real one; Rocq reads a sign before digits as theirs."""
     return f"-{real(-c)}" if c < 0 else real(c)
 
 
-def safe(
+def safe_names(
     names: Iterable[str], words: Iterable[str], prefixes: Iterable[str] = ()
 ) -> dict[str, str]:
-    """The names as they stand among these words, of which none may be hidden, nor a keyword.
+    """Map the names to spellings that hide none of these words, and no keyword.
 
-    `prefixes`: a name with one of these before it is none of the words and no other name, either.
-    An apostrophe stands in no name that a certificate has.
+    `prefixes`: a spelling after one of these is none of the words, and no other spelling, either.
+    A spelling ends in apostrophes where needed, which no name of a certificate has.
     """
-    taken, own = KEYWORDS | set(words), ("", *prefixes)
-    found: dict[str, str] = {}
+    reserved, all_prefixes = KEYWORDS | set(words), ("", *prefixes)
+    spellings: dict[str, str] = {}
     for name in names:
         # Of Rocq's commands some are keywords, and all of them begin with a capital letter.
-        written = f"{name}'" if re.match("[A-Z].", name) else name
-        while taken & {f"{prefix}{written}" for prefix in own}:
-            written += "'"
-        taken |= {f"{prefix}{written}" for prefix in own}
-        found[name] = written
-    return found
+        spelling = f"{name}'" if re.match("[A-Z].", name) else name
+        while reserved & {f"{prefix}{spelling}" for prefix in all_prefixes}:
+            spelling += "'"
+        reserved |= {f"{prefix}{spelling}" for prefix in all_prefixes}
+        spellings[name] = spelling
+    return spellings
 
 
 def lines(text: str, most: int = 96) -> str:
-    """The text with its long lines broken at blanks, as far as that goes."""
-    return "\n".join(part for line in text.split("\n") for part in _broken(line, most))
+    """Break the text's long lines at blanks, where there are any."""
+    return "\n".join(part for line in text.split("\n") for part in _break_line(line, most))
 
 
-def _broken(line: str, most: int) -> list[str]:
+def _break_line(line: str, most: int) -> list[str]:
     indent = " " * (len(line) - len(line.lstrip()))
     parts = []
     while len(line) > most:
@@ -171,19 +173,19 @@ def _broken(line: str, most: int) -> list[str]:
 
 
 def whole(x: bool) -> str:
-    """A truth value."""
+    """Format a truth value."""
     return "true" if x else "false"
 
 
 def list_of(items: Iterable[object]) -> str:
-    """A list."""
+    """Format a list."""
     return f"[{'; '.join(map(str, items))}]"
 
 
 def form_list(x: Form, coordinates: Mapping[str, int], spelling: Spelling) -> str:
-    """A 2-form as a list of its entries, each with the numbers of its coordinates."""
+    """Format a 2-form as a list of its entries, each with the numbers of its coordinates."""
     entries = [
-        f"({coordinates[a]}%nat, {coordinates[b]}%nat, {spelling.scoped(c)})"
+        f"({coordinates[a]}%nat, {coordinates[b]}%nat, {spelling.format_scoped(c)})"
         for (a, b), c in x.items()
     ]
     return "[" + ";\n    ".join(entries) + "]"

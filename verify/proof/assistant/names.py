@@ -1,17 +1,17 @@
-"""The names that a certificate's polynomials are made of, and what every export of a map has."""
+"""The names in a certificate's polynomials, and the parts common to all exports of a map."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from verify.proof.assistant.factors import known_power
+from verify.proof.assistant.factors import last_checked_power
 from verify.proof.assistant.formulas import Spelling, form_list
 from verify.proof.certificates.entries import Expansion, Form
 from verify.proof.certificates.readers import PLANE, Poly
 
 
 class Names(ABC):
-    """How they are written: `deep`, as numbered names, and `shallow`, as a person does."""
+    """The spellings of names: `deep`, as numbered names, and `shallow`, as a person writes."""
 
     deep: Spelling
     shallow: Spelling
@@ -23,33 +23,34 @@ class Names(ABC):
 
     @abstractmethod
     def bound(self, polys: Iterable[Poly], text: str) -> str:
-        """The text, in which the names that these have are bound to what they stand for."""
+        """Bind the names in these polynomials to what they stand for, around the text."""
 
     def form(self, x: Form) -> str:
-        """A 2-form as a person writes it."""
+        """Format a 2-form as a person writes it."""
         if self.entries.layout.single:
             return self.bound(x.values(), self.shallow.poly(x.get(PLANE, {})))
         entries = self.bound(x.values(), form_list(x, self.coordinates, self.shallow))
         return f"entry {self.zero} ({entries})"
 
     def series(self, spelling: Spelling) -> str:
-        """The coefficients of each coordinate's new value."""
+        """Format the coefficients of each coordinate's new value."""
         lists = ";\n   ".join(map(spelling.list, self.entries.after))
         return f"[{lists}]"
 
     def values(self) -> dict[str, Any]:
-        """What a template is given of any map."""
+        """Return the template's variables for any map."""
         entries = self.entries
         return {
             "n": entries.layout.degrees,
             "planar": entries.layout.single,
             "agreement": entries.convergence_order,
-            "known": known_power(entries),
+            # The template's name for the last power of h that the theory checks.
+            "known": last_checked_power(entries),
             "order": entries.order,
         }
 
     def deep_values(self) -> dict[str, str]:
-        """The same, of what stands in it as formulas in numbered names."""
+        """Return the template's variables that are formulas in numbered names."""
         entries = self.entries
         return {
             "series": self.series(self.deep),
@@ -59,7 +60,7 @@ class Names(ABC):
 
 
 def polynomials_of(entries: Expansion) -> Iterator[Poly]:
-    """H, where it is one, the map, L and G."""
+    """Yield all polynomials of a certificate: H, if it is for one H, the map, L and G."""
     if entries.hamiltonian is not None:
         yield entries.hamiltonian
     for series in entries.after:

@@ -6,14 +6,14 @@ from verify.proof.assistant.factors import factors_of
 from verify.proof.assistant.formulas import (
     Spelling,
     deep,
+    format_signed,
     list_of,
     rational,
     real,
-    safe,
-    signed,
+    safe_names,
 )
 from verify.proof.assistant.names import Names
-from verify.proof.assistant.nonzero import Shown, point_that_shows
+from verify.proof.assistant.nonzero import NonzeroWitness, point_that_shows
 from verify.proof.assistant.text import Export, template_words
 from verify.proof.certificates.checker import Identities
 from verify.proof.certificates.entries import Expansion, Function
@@ -35,8 +35,8 @@ _NEEDS = [
     "FlowClaims",
     "AgreementClaims",
 ]
-_OWN = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that are written here
-_OF_ORDER = ("RationalValues", "Nonzero")
+_WORDS = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that this module writes
+_NEEDS_OF_ORDER = ("RationalValues", "Nonzero")
 _EXACT = ("RealExact", "ExactClaims")
 _TELESCOPING = ("RealPotential",)
 _LONGEST = 20_000  # characters of a function, written out
@@ -44,25 +44,25 @@ _PARTNERS = {"sin": "cos", "cos": "sin"}
 _KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
 
 
-def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
-    """The theorems of such a certificate, whose H this is, and their proofs."""
+def export_one(entries: Expansion, hamiltonian: Poly) -> Export:
+    """Export the theorems of a certificate for one H, and their proofs."""
     names, order, potential = _Names(entries), entries.order, entries.potential
     algebra = Identities(entries)
     slopes = [algebra.slopes[by] for by in entries.coordinates]
     spelled, shallow = names.deep, names.shallow
-    shown = point_that_shows(entries) if order is not None else None
-    needs = (*_NEEDS, *(_EXACT if order is None else _OF_ORDER))
+    witness = point_that_shows(entries) if order is not None else None
+    needs = (*_NEEDS, *(_EXACT if order is None else _NEEDS_OF_ORDER))
     return Export(
         needs=needs if potential is None else (*needs, *_TELESCOPING),
         template="one",
-        shows_nonzero=order is None or shown is not None,
+        shows_nonzero=order is None or witness is not None,
         values={
             **names.values(),
             "timed": entries.timed,
             "coordinates": names.moving,
-            "parameters": [names.written[name] for name in entries.parameters],
+            "parameters": [names.spelling[name] for name in entries.parameters],
             "degree": entries.length - 1,
-            "shown": names.shown(shown),
+            "shown": names.nonzero_values(witness),
             "potential": potential,
             "domain": names.domain(),
             "maps": [
@@ -78,8 +78,8 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
                 "potential": names.form(potential or {}),
             },
             "deep": {
-                "functions": list_of(map(names.made, entries.functions)),
-                "energy": spelled.scoped(hamiltonian),
+                "functions": list_of(map(names.format_function, entries.functions)),
+                "energy": spelled.format_scoped(hamiltonian),
                 "slopes": spelled.list(slopes),
                 **names.deep_values(),
                 "factors": list_of(map(spelled.factors, factors_of(entries))),
@@ -89,7 +89,7 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
 
 
 class _Names(Names):
-    """Coordinates, parameters and functions; `point`: what a function is taken at."""
+    """The names of coordinates, parameters and functions; `point`: a function's arguments."""
 
     zero = "0"
 
@@ -97,59 +97,63 @@ class _Names(Names):
         super().__init__(entries)
         self.moving = [*entries.coordinates, *("t",) * entries.timed]
         self.point = self.moving if entries.layout.single else ["z"]
-        known = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
-        self.numbers = {name: k for k, name in enumerate(known, start=1)}
+        all_names = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
+        self.numbers = {name: k for k, name in enumerate(all_names, start=1)}
         self.deep = deep(self.numbers)
-        self.written = safe(entries.parameters, template_words("one") | _OWN)
+        self.spelling = safe_names(entries.parameters, template_words("one") | _WORDS)
         self.shallow = Spelling(real, self._word, self._power)
         self.calls = dict[str, str]()
         for function in entries.functions:  # inner ones first
             kind = "/" if function.kind == "inverse" else function.kind
             call = f"{kind} {self.shallow.argument(function.argument)}"
+            # Arguments are written out within arguments, so the length may grow exponentially with
+            # nesting.
             if len(call) > _LONGEST:
                 raise ValueError("a function is too long to be written out")
             self.calls[function.name] = call
 
     def _word(self, name: str) -> str:
-        return self.calls.get(name) or self.written.get(name, name)
+        return self.calls.get(name) or self.spelling.get(name, name)
 
     def _power(self, base: str, n: int) -> str:
         return f"({base}) ^ {n}" if " " in base else f"{base} ^ {n}"
 
-    def made(self, function: Function) -> str:
-        """A function of the vocabulary: its kind, with the number of its partner, and argument."""
+    def format_function(self, function: Function) -> str:
+        """Format a function of the vocabulary: kind, number of its partner, and argument."""
         partner = ""
         if function.kind in _PARTNERS:
-            wanted = (_PARTNERS[function.kind], function.argument)
-            found = [f for f in self.entries.functions if (f.kind, f.argument) == wanted]
-            partner = f" {self.numbers[found[0].name]}"
-        return f"({_KINDS[function.kind]}{partner}, {self.deep.scoped(function.argument)})"
+            key = (_PARTNERS[function.kind], function.argument)
+            # The certificate has both functions of a pair, as sin and cos are each other's
+            # derivatives.
+            partners = [f for f in self.entries.functions if (f.kind, f.argument) == key]
+            partner = f" {self.numbers[partners[0].name]}"
+        return f"({_KINDS[function.kind]}{partner}, {self.deep.format_scoped(function.argument)})"
 
     def _below(self) -> list[Poly]:
         return [f.argument for f in self.entries.functions if f.kind == "inverse"]
 
     def domain(self) -> str:
-        """That no denominator is 0."""
+        """Format the condition that no denominator is 0."""
         conditions = [f"{self.shallow.argument(x)} <> 0" for x in self._below()]
         return self.bound((), " /\\ ".join(conditions) or "True")
 
     def bound(self, _: Iterable[Poly], text: str) -> str:
-        named = (x for x in self.moving if x not in self.point)
-        lets = [f"let {name} := z {self.coordinates[name]}%nat in" for name in named]
+        unpacked = (x for x in self.moving if x not in self.point)
+        lets = [f"let {name} := z {self.coordinates[name]}%nat in" for name in unpacked]
         return "\n  ".join([*lets, text])
 
-    def shown(self, found: Shown | None) -> dict[str, object] | None:
-        """What the theorem that L is not 0 is written with."""
-        if found is None:
+    def nonzero_values(self, witness: NonzeroWitness | None) -> dict[str, object] | None:
+        """Return the template's variables for the theorem that L is not 0."""
+        if witness is None:
             return None
-        values, names = found.values, list(self.numbers)
-        given = [values[name] for name in self.entries.parameters]
-        at = [f"({signed(x)})" for x in given]
+        values, names = witness.values, list(self.numbers)
+        values_of_parameters = [values[name] for name in self.entries.parameters]
+        arguments = [f"({format_signed(x)})" for x in values_of_parameters]
         return {
-            "at": " ".join([*at, *self.point]),
-            "entry": [f"{self.coordinates[x]}%nat" for x in found.entry],
+            "at": " ".join([*arguments, *self.point]),
+            "entry": [f"{self.coordinates[x]}%nat" for x in witness.entry],
             "point": list_of(rational(values[name]) for name in self.coordinates),
-            "given": list_of(map(rational, given)),
+            "given": list_of(map(rational, values_of_parameters)),
             "numbers": list_of(rational(values[name]) for name in names),
-            "by": list_of(self.coordinates[x] for x in found.by),
+            "by": list_of(self.coordinates[x] for x in witness.by),
         }

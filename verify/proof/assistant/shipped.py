@@ -1,15 +1,13 @@
-"""The theory: files for Rocq below `theory/`, each of which imports those that it stands on.
+"""The theory: files for Rocq below `theory/`, each of which imports those that it depends on.
 
-`coqc -Q theory AreaPreservation` compiles them one by one; a file that is to stand alone holds
-what it needs of them as modules.
+`coqc -Q theory AreaPreservation` compiles them one by one; an exported file that stands alone
+contains the parts of them that it needs as modules, and leaves out the rest.
 
-What a file that stands alone needs of the theory: what nothing in it names is left out.
-
-A file of the theory is a row of sentences; what they prove or define has a name. It stays where its
-name is a word of something that stays and may mean it, whatever it does mean there: rather too much
-stays than too little, and `coqc` has the last word. What works without being named, such
-as notations, records and instances, always stays; what a section declares for itself goes with the
-last that it is declared for.
+A file of the theory is a sequence of sentences; what they prove or define has a name. A sentence is
+kept if its name is a word of something that is kept and may mean it, whatever it does mean there:
+rather too much is kept than too little, and `coqc` has the last word. What works without its name,
+such as notations, records and instances, is always kept; the declarations of a section are dropped
+with the last sentence that they serve.
 """
 
 import re
@@ -36,8 +34,8 @@ _OF_A_SECTION = re.compile(r"(?:Section|End|Context|Let|Notation|Add Ring|Local|
 class Part:
     """A sentence with its proof, and the comment before it.
 
-    `name`: of what it proves or defines, by which alone it is of use; `section`: the name of the
-    one it stands in; `serves`: whether it is there for what else is in the file, or in its section.
+    `name`: the name that it proves or defines, if that is its only use; `section`: the name of its
+    section; `serves`: whether it only serves other sentences of its file or section.
     """
 
     text: str
@@ -47,97 +45,103 @@ class Part:
     serves: bool
 
 
-def needed(files: Mapping[str, str], below: Mapping[str, Iterable[str]], by: str) -> dict[str, str]:
-    """What the text `by` needs of these files, without those of which nothing is left.
+def select_needed(
+    files: Mapping[str, str], below: Mapping[str, Iterable[str]], by: str
+) -> dict[str, str]:
+    """Return the parts of these files that the text `by` needs, without files that become empty.
 
-    `below`: of each file those that it may name something of, itself among them.
+    `below`: for each file, the files whose names it may use, itself among them.
     """
     parts = [(file, part) for file, text in files.items() for part in parts_of(text)]
-    kept = [parts[k] for k in sorted(_kept(parts, below, words_of(without_comments(by))))]
-    words = words_of(by).union(*(part.words for _, part in kept))
-    stays = {file for file, part in kept if not part.serves} | (set(files) & words)
+    kept_parts = [
+        parts[k] for k in sorted(_numbers_of_kept(parts, below, words_of(without_comments(by))))
+    ]
+    words = words_of(by).union(*(part.words for _, part in kept_parts))
+    stays = {file for file, part in kept_parts if not part.serves} | (set(files) & words)
     return {
-        file: "".join(part.text for of, part in kept if of == file)
+        file: "".join(part.text for owner, part in kept_parts if owner == file)
         for file in files
         if file in stays
     }
 
 
-def _kept(
+def _numbers_of_kept(
     parts: Sequence[tuple[str, Part]], below: Mapping[str, Iterable[str]], by: Iterable[str]
 ) -> set[int]:
-    """Those that stay, by their numbers."""
-    kept: set[int] = set()
-    named = {file: set(by) for file, _ in parts}  # words that may mean something of the file
+    """Return the numbers of the parts that are kept."""
+    numbers: set[int] = set()
+    words = {file: set(by) for file, _ in parts}  # words that may mean something of the file
     in_use: set[tuple[str, str | None]] = set()  # files, and sections in them
 
     def stays(file: str, part: Part) -> bool:
         if part.name is not None:
-            return part.name in named[file]
+            return part.name in words[file]
         return not part.serves or (file, part.section) in in_use
 
-    while found := {k for k, each in enumerate(parts) if k not in kept and stays(*each)}:
-        kept |= found
-        for file, part in map(parts.__getitem__, found):
+    # A fixed point: each round keeps what the round before names, until nothing is added.
+    while added := {k for k, each in enumerate(parts) if k not in numbers and stays(*each)}:
+        numbers |= added
+        for file, part in map(parts.__getitem__, added):
             for under in below[file]:
-                named[under] |= part.words
+                words[under] |= part.words
             if not part.serves:
                 in_use |= {(file, None), (file, part.section)}
-    return kept
+    return numbers
 
 
 @cache
 def parts_of(text: str) -> tuple[Part, ...]:
-    """The file in parts, whose texts follow one another in it."""
-    found: list[Part] = []
+    """Split the file into parts, whose texts follow one another in it."""
+    parts: list[Part] = []
     plain, begin, section = without_comments(text), 0, None
     for end in _ends(plain):
         sentence = plain[begin:end].strip()
-        if section is None and (opened := _SECTION.match(sentence)):
-            section = opened[1]
-        found.append(_part(text[begin:end], sentence, section))
+        if section is None and (section_start := _SECTION.match(sentence)):
+            section = section_start[1]
+        parts.append(_part(text[begin:end], sentence, section))
         if sentence == f"End {section}.":
             section = None
         begin = end
-    return (*found, Part(text[begin:], frozenset(), None, None, serves=True))
+    return (*parts, Part(text[begin:], frozenset(), None, None, serves=True))
 
 
 def _part(text: str, sentence: str, section: str | None) -> Part:
-    named, imports = _NAMED.match(sentence), _IMPORTS.match(sentence)
+    definition, imports = _NAMED.match(sentence), _IMPORTS.match(sentence)
     serving = _OF_A_FILE if section is None else _OF_A_SECTION
+    # The names of imported files are no use of what these files define.
     words = frozenset() if imports else words_of(sentence)
     serves = bool(imports or serving.match(sentence))
-    return Part(text, words, named[1] if named else None, section, serves)
+    return Part(text, words, definition[1] if definition else None, section, serves)
 
 
 def _ends(plain: str) -> Iterator[int]:
-    """Where the sentences end, those that a proof follows with their proofs."""
-    at = 0
-    while found := _END_OF_SENTENCE.search(plain, at):
-        at = found.end()
-        if _PROOF.match(plain, at):
-            proof = _END_OF_PROOF.search(plain, at)
-            at = proof.end() if proof else len(plain)
-        yield at
+    """Yield the ends of the sentences; a proof belongs to the sentence before it."""
+    end = 0
+    while sentence_end := _END_OF_SENTENCE.search(plain, end):
+        end = sentence_end.end()
+        if _PROOF.match(plain, end):
+            proof = _END_OF_PROOF.search(plain, end)
+            end = proof.end() if proof else len(plain)
+        yield end
 
 
 def words_of(plain: str) -> frozenset[str]:
-    """The words of a text without comments, any of which may be a name."""
+    """Return the words of a text without comments, any of which may be a name."""
     return frozenset(_WORD.findall(plain))
 
 
 def without_comments(text: str) -> str:
-    """The text with blanks in the place of its comments, of which some stand within others."""
+    """Replace the comments of the text, which may be nested, with blanks."""
     pieces, depth, begin = [], 0, 0
-    for found in _COMMENT.finditer(text):
-        opens = found[0] == "(*"
+    for bracket in _COMMENT.finditer(text):
+        opens = bracket[0] == "(*"
         depth += 1 if opens else -1
         if opens and depth == 1:
-            pieces.append(text[begin : found.start()])
-            begin = found.start()
+            pieces.append(text[begin : bracket.start()])
+            begin = bracket.start()
         elif depth == 0:
-            pieces.append(re.sub(r"[^\n]", " ", text[begin : found.end()]))
-            begin = found.end()
+            pieces.append(re.sub(r"[^\n]", " ", text[begin : bracket.end()]))
+            begin = bracket.end()
     return "".join([*pieces, text[begin:]])
 
 
@@ -150,23 +154,23 @@ _LIBRARY = re.compile(r"^From Coq Require Import ([^.]*)\.\n", re.MULTILINE)
 
 @cache
 def files() -> dict[str, Path]:
-    """The files of the theory by their names, which are different in all folders."""
+    """Return the files of the theory by their names, which are unique across folders."""
     return {path.stem: path for path in sorted(FOLDER.rglob("*.v"))}
 
 
 @cache
 def text_of(name: str) -> str:
-    """The file of this name as it stands."""
+    """Read the file of this name."""
     return files()[name].read_text(encoding="utf-8")
 
 
 def imports_of(name: str) -> list[str]:
-    """The files that it imports."""
+    """Return the names of the files that a file of the theory imports."""
     return _words(_IMPORT, text_of(name))
 
 
-def in_order(names: Iterable[str]) -> list[str]:
-    """These files and all that they stand on, each after what it imports."""
+def sort_by_imports(names: Iterable[str]) -> list[str]:
+    """Return these files and all that they depend on, each after its imports."""
     ordered: dict[str, None] = {}
 
     def add(name: str) -> None:
@@ -180,23 +184,23 @@ def in_order(names: Iterable[str]) -> list[str]:
     return list(ordered)
 
 
-def imported(names: Iterable[str]) -> str:
-    """The line by which a file imports these from an installed theory."""
+def import_line(names: Iterable[str]) -> str:
+    """Format the line by which a file imports these from an installed theory."""
     return f"From {LOGICAL} Require Import {' '.join(names)}.\n"
 
 
-def as_modules(names: Iterable[str], by: str) -> str:
-    """What the text `by` needs of these files, and of what they stand on, as modules in one file.
+def format_modules(names: Iterable[str], by: str) -> str:
+    """Format what the text `by` needs of these files, and of their imports, as modules.
 
-    It ends with the line that imports them.
+    The text ends with the line that imports these modules.
     """
     names = list(names)
-    ordered = in_order(names)
+    ordered = sort_by_imports(names)
     # Libraries are imported once for all modules: each time takes a fifth of a second. Every file
     # says which scopes it means, and its own names are imported after theirs.
     library = sorted({word for name in ordered for word in _words(_LIBRARY, text_of(name))})
-    below = {name: in_order([name]) for name in ordered}
-    files = needed({name: text_of(name) for name in ordered}, below, by)
+    below = {name: sort_by_imports([name]) for name in ordered}
+    files = select_needed({name: text_of(name) for name in ordered}, below, by)
     modules = [
         f"Module {name}.\n{_inside(text, files)}End {name}.\n" for name, text in files.items()
     ]
@@ -205,30 +209,30 @@ def as_modules(names: Iterable[str], by: str) -> str:
 
 
 def _words(pattern: re.Pattern[str], text: str) -> list[str]:
-    return [word for found in pattern.findall(text) for word in found.split()]
+    return [word for listed in pattern.findall(text) for word in listed.split()]
 
 
 def _inside(text: str, files: Container[str]) -> str:
-    """A file within a module, which imports those of these files that it did."""
-    own = _IMPORT.sub(lambda found: _import(found[1].split(), files), text)
-    return _LIBRARY.sub("", own)
+    """Return a file's text for use in a module, its imports restricted to these files."""
+    local_text = _IMPORT.sub(lambda match: _import(match[1].split(), files), text)
+    return _LIBRARY.sub("", local_text)
 
 
 def _import(names: Iterable[str], files: Container[str]) -> str:
-    left = [name for name in names if name in files]
-    return f"Import {' '.join(left)}.\n" if left else ""
+    remaining = [name for name in names if name in files]
+    return f"Import {' '.join(remaining)}.\n" if remaining else ""
 
 
 def install(folder: Path) -> list[Path]:
-    """Writes the theory there, with the project file that `coq_makefile` takes.
+    """Write the theory to the folder, with the project file that `coq_makefile` takes.
 
     Raises InputError where a file cannot be written.
     """
-    written = []
-    for name in in_order(files()):
+    paths = []
+    for name in sort_by_imports(files()):
         path = folder / files()[name].relative_to(FOLDER)
         write_atomically(path, text_of(name))
-        written.append(path)
-    listed = "".join(f"{path.relative_to(folder).as_posix()}\n" for path in written)
+        paths.append(path)
+    listed = "".join(f"{path.relative_to(folder).as_posix()}\n" for path in paths)
     write_atomically(folder / "_CoqProject", f"-Q . {LOGICAL}\n{listed}")
-    return written
+    return paths

@@ -11,8 +11,8 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from verify.proof.assistant.formulas import lines
-from verify.proof.assistant.shipped import as_modules, imported
-from verify.proof.certificates.established import Established
+from verify.proof.assistant.shipped import format_modules, import_line
+from verify.proof.certificates.established import EstablishedStatement
 
 _LONGEST = 2000  # characters of a formula in the words
 _WIDTH = 88
@@ -26,10 +26,11 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 @dataclass(frozen=True)
 class Export:
-    """`needs`: files of the theory; `template`, with `values`: definitions, theorems, proofs.
+    """The parts of an exported file: theory, definitions, theorems and proofs.
 
-    `of_rings`: whether the theorems are of any ring, and assume nothing. `shows_nonzero`: whether
-    one of them is that L is not 0, where there is an L.
+    `needs`: files of the theory; `template`, with `values`: definitions, theorems and proofs.
+    `of_rings`: whether the theorems hold in any ring and assume nothing. `shows_nonzero`: whether
+    one of them states that L is not 0, where there is an L.
     """
 
     needs: Sequence[str]
@@ -39,45 +40,52 @@ class Export:
     shows_nonzero: bool = True
 
 
-def written(export: Export, of: Established, *, stands_alone: bool) -> str:
-    """The whole file."""
-    said = [line for text in _said(of) for line in wrap(text, _WIDTH, subsequent_indent="  ")]
-    statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
+def render_file(export: Export, facts: EstablishedStatement, *, stands_alone: bool) -> str:
+    """Render the whole file for Rocq."""
+    fact_lines = [
+        line
+        for text in _formulas_in_words(facts)
+        for line in wrap(text, _WIDTH, subsequent_indent="  ")
+    ]
+    statement = "\n    ".join(wrap(_comment(facts.statement), _WIDTH))
     words = {
         "statement": statement,
-        "said": said,
+        "said": fact_lines,
         "alone": stands_alone,
         "shows_nonzero": export.shows_nonzero,
     }
     head = _environment().get_template("head.jinja").render(words)
+    # The theory is reduced to what the body names, so the body is rendered first.
     body = body_of(export)
-    theory = as_modules(export.needs, by=body) if stands_alone else imported(export.needs)
-    asked = _asked(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
-    return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{asked}")
+    theory = format_modules(export.needs, by=body) if stands_alone else import_line(export.needs)
+    assumptions = _print_assumptions(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
+    return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{assumptions}")
 
 
 def body_of(export: Export) -> str:
-    """The definitions, the theorems and their proofs."""
+    """Render the definitions, the theorems and their proofs."""
     return _environment().get_template(f"{export.template}.jinja").render(export.values)
 
 
 def theorems_of(body: str) -> tuple[str, ...]:
-    """The names of the theorems, in order."""
+    """Return the names of the theorems, in order."""
     return tuple(_THEOREM.findall(body))
 
 
-def _asked(claimed: str, *, of_rings: bool) -> str:
-    """By which Rocq prints what the theorems assume: of rings, and over the real numbers.
+def _print_assumptions(claimed: str, *, of_rings: bool) -> str:
+    """Write the commands by which Rocq prints what the theorems assume, by kind.
 
-    For each theorem it would go through the library anew, for about a second: it is asked of all
-    of a kind together.
+    For each command Rocq goes through the library anew, for about a second: so one command stands
+    for all theorems of rings, and one for those over the real numbers.
     """
     rings, _, reals = claimed.partition(_OVER_THE_REALS) if of_rings else ("", "", claimed)
     kinds = {"theorems_of_rings": rings, "theorems_over_the_reals": reals}
-    return "\n".join(_asked_of(name, _STATED.findall(text)) for name, text in kinds.items() if text)
+    return "\n".join(
+        _print_command(name, _STATED.findall(text)) for name, text in kinds.items() if text
+    )
 
 
-def _asked_of(name: str, theorems: Sequence[str]) -> str:
+def _print_command(name: str, theorems: Sequence[str]) -> str:
     if len(theorems) == 1:
         return f"Print Assumptions {theorems[0]}.\n"
     listed = ",\n  ".join(theorems)
@@ -86,7 +94,7 @@ def _asked_of(name: str, theorems: Sequence[str]) -> str:
 
 @cache
 def template_words(template: str) -> frozenset[str]:
-    """The words of a template and of those it includes, which no name of a certificate may hide."""
+    """Return the words of a template and its includes, which no certificate's name may hide."""
     text = (_TEMPLATES / f"{template}.jinja").read_text(encoding="utf-8")
     included = (template_words(name) for name in _INCLUDED.findall(text))
     return frozenset(_WORD.findall(text)).union(*included)
@@ -97,6 +105,7 @@ def _environment() -> Environment:
     return Environment(
         loader=FileSystemLoader(_TEMPLATES, encoding="utf-8"),
         autoescape=False,  # noqa: S701 - no page: what is set is numbers and names that were checked
+        # A variable missing in a template must not become an empty text within a proof.
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -104,13 +113,18 @@ def _environment() -> Environment:
     )
 
 
-def _said(of: Established) -> list[str]:
-    told = {"H": of.hamiltonian, "L": of.leading, "G": of.potential, "map": of.scheme}
+def _formulas_in_words(facts: EstablishedStatement) -> list[str]:
+    formulas = {
+        "H": facts.hamiltonian,
+        "L": facts.leading,
+        "G": facts.potential,
+        "map": facts.scheme,
+    }
     return [
         f"{name} = {_comment(text if len(text) <= _LONGEST else _cut(text))}"
-        for name, text in told.items()
+        for name, text in formulas.items()
         if text
-    ] + [f"where {_comment(text)}" for text in of.domain]
+    ] + [f"where {_comment(text)}" for text in facts.domain]
 
 
 def _cut(text: str) -> str:
@@ -118,5 +132,5 @@ def _cut(text: str) -> str:
 
 
 def _comment(text: str) -> str:
-    """The text with nothing in it that ends or begins a comment or a string of Rocq."""
+    """Escape everything in the text that ends or begins a comment or a string of Rocq."""
     return text.replace('"', "'").replace("(*", "( *").replace("*)", "* )")

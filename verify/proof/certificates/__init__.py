@@ -1,1 +1,1 @@
-"""What a proof rests on as JSON, and a checker that shares nothing with the prover."""
+"""Certificates: the identities behind a proof, as JSON, and a checker independent of the prover."""

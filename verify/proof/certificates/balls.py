@@ -1,47 +1,48 @@
-"""Balls of rational numbers: a middle and a radius, rounded outwards, so that nothing grows long.
+"""Balls of rational numbers: a midpoint and a radius, rounded outwards to a bounded length.
 
-A ball holds the number that it stands for. ValueError where a number is beyond all use.
+A ball contains the number that it encloses. ValueError where a number is too large to be of use.
 """
 
 from fractions import Fraction
 
 from verify.proof.certificates.readers import need
 
-Ball = tuple[Fraction, Fraction]  # middle, radius
+Ball = tuple[Fraction, Fraction]  # midpoint, radius
 
-_BITS = 512  # of a middle
+_BITS = 512  # of a midpoint
 _LARGEST = 256  # argument of sin, cos or exp
-_FARTHEST = 1 << 16  # binary exponent of a middle or a radius
+_FARTHEST = 1 << 16  # binary exponent of a midpoint or a radius
 _SIGNS = {"sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0), "exp": (1,)}  # of their Taylor series
 
 
 def plus(x: Ball, y: Ball) -> Ball:
-    """x + y."""
-    return _rounded(x[0] + y[0], x[1] + y[1])
+    """Return a ball that contains x + y."""
+    return _round_out(x[0] + y[0], x[1] + y[1])
 
 
 def times(x: Ball, y: Ball) -> Ball:
-    """x·y."""
-    return _rounded(x[0] * y[0], abs(x[0]) * y[1] + abs(y[0]) * x[1] + x[1] * y[1])
+    """Return a ball that contains x·y."""
+    return _round_out(x[0] * y[0], abs(x[0]) * y[1] + abs(y[0]) * x[1] + x[1] * y[1])
 
 
 def function(kind: str, x: Ball) -> Ball:
-    """sin, cos or exp of x, or 1/x (`inverse`), which has a value where x is not 0."""
-    middle, radius = x
+    """Enclose sin, cos or exp of x, or 1/x (`inverse`); ValueError where x may be 0."""
+    midpoint, radius = x
     if kind == "inverse":
-        need(abs(middle) > radius, "a denominator may be 0 at the witness")
-        return _rounded(1 / middle, radius / (abs(middle) * (abs(middle) - radius)))
-    size = abs(middle) + radius
+        need(abs(midpoint) > radius, "a denominator may be 0 at the witness")
+        return _round_out(1 / midpoint, radius / (abs(midpoint) * (abs(midpoint) - radius)))
+    size = abs(midpoint) + radius
     need(size <= _LARGEST, f"{kind}: its argument is beyond {_LARGEST} at the witness")
-    value, error = _taylor(_SIGNS[kind], middle)
-    return _rounded(value, error + radius * 3 ** (int(size) + 1))  # the slope is at most e^size
+    value, error = _taylor(_SIGNS[kind], midpoint)
+    return _round_out(value, error + radius * 3 ** (int(size) + 1))  # the slope is at most e^size
 
 
 def _taylor(signs: tuple[int, ...], x: Fraction) -> Ball:
-    """Σ signs_n xⁿ/n! by Horner's rule on a grid, with a bound of all that is left out.
+    """Enclose Σ signs_n xⁿ/n!, computed by Horner's rule on a grid.
 
-    What a rounding of half a unit at the n-th term leaves in the sum is |x|ⁿ/n! of it, all together
-    e^|x|; terms beyond twice |x| are less than a half of the one before.
+    A rounding error of half a unit at the n-th term contributes |x|ⁿ/n! times itself to the sum,
+    all of them together e^|x| times half a unit; each term beyond twice |x| is less than half of
+    the one before it, which bounds the truncated tail.
     """
     size = int(abs(x)) + 1
     last = 4 * size + 100
@@ -55,13 +56,15 @@ def _taylor(signs: tuple[int, ...], x: Fraction) -> Ball:
     return total, unit * 3**size + left_out
 
 
-def _rounded(middle: Fraction, radius: Fraction) -> Ball:
-    """A ball with a middle of so many bits that holds this one."""
-    size = _exponent(middle)
+def _round_out(midpoint: Fraction, radius: Fraction) -> Ball:
+    """Return a ball that contains this one, with a midpoint of a bounded number of bits."""
+    # The midpoint keeps _BITS bits; the rounding error is added to the radius, rounded up to a
+    # unit.
+    size = _exponent(midpoint)
     need(max(abs(size), abs(_exponent(radius))) <= _FARTHEST, "a value is too large or too small")
     unit = Fraction(2) ** (size - _BITS)
-    near = round(middle / unit) * unit
-    return near, (int((radius + abs(near - middle)) / unit) + 1) * unit
+    near = round(midpoint / unit) * unit
+    return near, (int((radius + abs(near - midpoint)) / unit) + 1) * unit
 
 
 def _exponent(x: Fraction) -> int:

@@ -1,8 +1,8 @@
-"""A scheme's coefficients as a certificate has them: `stages` or a `tableau`, and `numbers`.
+"""The coefficients of a scheme in a certificate: `stages` or a `tableau`, and `numbers`.
 
-Coefficients are embedded in one ring together. Each of its generators is a real algebraic number,
-and gets a name, its minimal polynomial, such as b wⁿ − a, and an interval in which the checker
-finds one root.
+All coefficients are embedded in one ring. Each of its generators is a real algebraic number, and
+gets a name, its minimal polynomial, such as b wⁿ − a, and an interval in which the checker finds
+one root.
 """
 
 import math
@@ -17,7 +17,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import Generator, Poly, terms_of
 from verify.algebra.ring import Ring
-from verify.arithmetic.arb import Ball, bounds, in_reach
+from verify.arithmetic.arb import Ball, bounds, is_representable
 from verify.errors import InputError
 from verify.proof.certificates.minimal_polynomial import MinimalPolynomials
 from verify.proof.certificates.numbers import MOST_DEGREE, Number, check_root
@@ -29,35 +29,36 @@ from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
 
 _PRECISION = 512
-_HALVED = 300  # times an interval is, until it has one root
+_HALVED = 300  # halvings of an interval, at most, until it has one root
 Rows = list[list[Any]]  # of sympy's numbers, or of what stands for them in the file
 
 
-def by_coefficients(scheme: Scheme, *, timed: bool) -> dict[str, Any] | None:
-    """What is to stand in the certificate; None of a scheme that is not given by such.
+def write_coefficients(scheme: Scheme, *, timed: bool) -> dict[str, Any] | None:
+    """Return the certificate's entries for the coefficients; None for a scheme without such.
 
-    Raises InputError for a coefficient that is not made by roots, or of too high a degree.
+    Raises InputError for a coefficient that is not expressed by roots, or of too high a degree.
     """
     every_h = scheme.every_h
     rows = _rows(every_h)
     if rows is None:
         return None
+    # The clock is one more row while the numbers are embedded, so all share one set of generators.
     if timed:
         rows.append(list(conditions_for(every_h).clock))
-    written, numbers = _written(scheme.name, rows)
-    clock = written.pop() if timed else []
+    texts, numbers = _write_rows(scheme.name, rows)
+    clock = texts.pop() if timed else []
     if isinstance(every_h, TreeConditions):
-        *a, b = written
-        found: dict[str, Any] = {"tableau": {"a": a, "b": b, **({"c": clock} if timed else {})}}
+        *a, b = texts
+        entries: dict[str, Any] = {"tableau": {"a": a, "b": b, **({"c": clock} if timed else {})}}
     elif timed:
-        found = {"stages": [[*row, time] for row, time in zip(written, clock, strict=True)]}
+        entries = {"stages": [[*row, time] for row, time in zip(texts, clock, strict=True)]}
     else:
-        found = {"stages": written}
-    return {"numbers": numbers, **found} if numbers else found
+        entries = {"stages": texts}
+    return {"numbers": numbers, **entries} if numbers else entries
 
 
 def _rows(every_h: object) -> Rows | None:
-    """Those of the stages, or of the tableau with its weights."""
+    """Return the rows of the stages, or of the tableau with its weights."""
     none = sympy.S.Zero
     if isinstance(every_h, Splitting):
         each = {"kick": lambda x: [x, none, none, none], "drift": lambda x: [none, x, none, none]}
@@ -70,32 +71,32 @@ def _rows(every_h: object) -> Rows | None:
     return None
 
 
-def _written(scheme: str, rows: Rows) -> tuple[Rows, list[list[Any]]]:
-    """The rows as texts, and as terms in names where they are irrational, and what these are."""
+def _write_rows(scheme: str, rows: Rows) -> tuple[Rows, list[list[Any]]]:
+    """Return the rows in JSON's form, with terms in names for irrational numbers, and these."""
     ring, elements = embed([x for row in rows for x in row], ())
-    own = _own(ring, elements)
-    names = {g.index: "w" if len(own) == 1 else f"w{k}" for k, g in enumerate(own, 1)}
+    generators = _generators_in(ring, elements)
+    names = {g.index: "w" if len(generators) == 1 else f"w{k}" for k, g in enumerate(generators, 1)}
     texts = iter([_coefficient(x, names) for x in elements])
     minimal = MinimalPolynomials(ring, MOST_DEGREE)
-    numbers = [_number(scheme, minimal, g, names[g.index]) for g in own]
+    numbers = [_number(scheme, minimal, g, names[g.index]) for g in generators]
     return [[next(texts) for _ in row] for row in rows], numbers
 
 
-def _own(ring: Ring, elements: list[Poly]) -> list[Generator]:
-    """The generators that stand in the elements, arguments left out."""
-    found = {k for x in elements for m, _ in terms_of(x) for k, n in enumerate(m) if n}
-    return [g for g in ring.generators if g.index in found]
+def _generators_in(ring: Ring, elements: list[Poly]) -> list[Generator]:
+    """Return the generators that occur in the elements, without those in their arguments."""
+    indices = {k for x in elements for m, _ in terms_of(x) for k, n in enumerate(m) if n}
+    return [g for g in ring.generators if g.index in indices]
 
 
 def _coefficient(x: Poly, names: Mapping[int, str]) -> str | list[list[str]]:
     if x.is_zero():
         return "0"
-    found = terms(x, names)
-    return found[0][0] if x.is_constant() else found
+    listed = terms(x, names)
+    return listed[0][0] if x.is_constant() else listed
 
 
 def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
-    """The polynomial as a list of terms; `names`: of the variables by their index."""
+    """Return the polynomial as a list of terms; `names`: of the variables by their index."""
     return [
         [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
         for monomial, c in terms_of(x)
@@ -105,37 +106,38 @@ def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
 def polynomial(
     context: flint.fmpq_mpoly_ctx, places: Mapping[str, int], x: Mapping[Monomial, Fraction]
 ) -> Poly:
-    """The checker's polynomial in a ring; `places`: those of the variables by their names."""
-    found = {}
+    """Convert the checker's polynomial to a ring; `places`: of the variables by their names."""
+    by_powers = {}
     for names, c in x.items():
         powers = [0] * context.nvars()
         for name in names:
             powers[places[name]] += 1
-        found[tuple(powers)] = flint.fmpq(c.numerator, c.denominator)
-    return context.from_dict(found)
+        by_powers[tuple(powers)] = flint.fmpq(c.numerator, c.denominator)
+    return context.from_dict(by_powers)
 
 
 # -- numbers --------------------------------------------------------------------------------------
 
 
 def _number(scheme: str, minimal: MinimalPolynomials, g: Generator, name: str) -> list[Any]:
-    """The entry of `numbers` that is this generator."""
+    """Return the entry of `numbers` for this generator."""
     element = minimal.ring.context.gens()[g.index]
     try:
-        polynomial = tuple(int(c) for c in minimal.of(g.index).coeffs())
-        number = _isolated(name, polynomial, enclose(minimal.ring, element, {}, _PRECISION))
+        polynomial = tuple(int(c) for c in minimal.polynomial_of(g.index).coeffs())
+        number = _isolate(name, polynomial, enclose(minimal.ring, element, {}, _PRECISION))
     except ValueError as problem:
-        shown = str(minimal.ring.expression(element))[:60]
-        raise InputError("scheme", scheme, f"{shown} {problem}: no certificate") from None
+        expression = str(minimal.ring.expression(element))[:60]
+        raise InputError("scheme", scheme, f"{expression} {problem}: no certificate") from None
     return [name, [*map(str, polynomial)], str(number.low), str(number.high)]
 
 
-def _isolated(name: str, polynomial: tuple[int, ...], ball: Ball | None) -> Number:
-    """The number in the largest interval that is seen to have no other root."""
-    if ball is not None and in_reach(ball):
+def _isolate(name: str, polynomial: tuple[int, ...], ball: Ball | None) -> Number:
+    """Isolate the number in the largest dyadic interval that is shown to have no other root."""
+    if ball is not None and is_representable(ball):
         least, most = bounds(ball)
         for k in range(_HALVED):
             low = Fraction(math.floor(least * 2**k), 2**k)
+            # Halving ends: near the root the derivative has one sign, and the ball is far narrower.
             number = Number(name, polynomial, low, low + Fraction(1, 2**k))
             if most <= number.high and _has_one_root(number):
                 return number

@@ -58,14 +58,14 @@ from math import factorial
 from verify.proof.certificates.balls import Ball, function, plus, times
 from verify.proof.certificates.coefficients import ONE, Stages, Tableau, check_coefficients
 from verify.proof.certificates.entries import Expansion, derived_by, read
-from verify.proof.certificates.readers import Monomial, Poly, bits_of, collected, need
+from verify.proof.certificates.readers import Monomial, Poly, bits_of, collect_terms, need
 
 Term = tuple[Monomial, Fraction]
 _MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
 
 
 def check(data: object) -> Stages | Tableau | Expansion:
-    """The certificate's entries, of which the theorem holds; ValueError names what fails."""
+    """Check a certificate and return its entries; ValueError names the identity that fails."""
     entries = read(data)
     if isinstance(entries, Expansion):
         Identities(entries).check()
@@ -75,19 +75,19 @@ def check(data: object) -> Stages | Tableau | Expansion:
 
 
 def single(name: str) -> Poly:
-    """The polynomial that is one name."""
+    """Return the polynomial that is one name."""
     return {(name,): Fraction(1)}
 
 
 class Identities:
-    """What the theorem says, identity by identity.
+    """The identities that the theorem asserts, checked one by one.
 
-    The derivatives of every name by the coordinates and t are the free derivatives of H, or those
-    of functions of arguments.
+    The derivatives of every name by the coordinates and t are the free derivatives of H, or follow
+    from the chain rule for functions of arguments.
     """
 
     def __init__(self, entries: Expansion) -> None:
-        self.given, self.cofactors = entries, dict(entries.cofactors)
+        self.entries, self.cofactors = entries, dict(entries.cofactors)
         self.values: dict[str, Ball] = {n: (x, Fraction(0)) for n, x in entries.witness.items()}
         self.work = 0
         self.variables = (*entries.coordinates, *("t",) * entries.timed)
@@ -96,29 +96,30 @@ class Identities:
         self.pairs = list(pairs)
         self.images: dict[str, dict[str, Poly]] = {by: {by: ONE} for by in self.variables}
         self.relations: dict[str, Poly] = {}
-        for made in entries.functions:
-            slope = self.slope(made.name, made.kind, made.argument)
-            self.images[made.name] = {
-                by: self.mul(slope, self.diff(made.argument, by)) for by in self.variables
+        for entry in entries.functions:
+            slope = self.slope(entry.name, entry.kind, entry.argument)
+            self.images[entry.name] = {
+                by: self.mul(slope, self.diff(entry.argument, by)) for by in self.variables
             }
-        self.slopes: dict[str, Poly] = {}  # of H, by each coordinate
+        # The derivatives of H by each coordinate; for every H they are names of their own.
+        self.slopes: dict[str, Poly] = {}
         for by in entries.coordinates:
             h = entries.hamiltonian
             self.slopes[by] = single(f"H_{by}") if h is None else self.diff(h, by)
 
     def slope(self, name: str, kind: str, u: Poly) -> Poly:
-        """The derivative of the function by its argument; a relation that it obeys is noted."""
-        own = single(name)
+        """Return the derivative of the function by its argument, and record its relation."""
+        itself = single(name)
         if kind == "exp":
-            return own
+            return itself
         if kind == "inverse":
-            self.relations[name] = self.add(self.mul(own, u), ONE, -1)
-            return self.mul(own, own, -1)
+            self.relations[name] = self.add(self.mul(itself, u), ONE, -1)
+            return self.mul(itself, itself, -1)
         partner = {"sin": "cos", "cos": "sin"}[kind]
-        same = [f.name for f in self.given.functions if (f.kind, f.argument) == (partner, u)]
+        same = [f.name for f in self.entries.functions if (f.kind, f.argument) == (partner, u)]
         need(same, f"{name}: there is no {partner} of its argument")
         side = single(same[0])
-        squares = self.add(self.mul(own, own), self.mul(side, side))
+        squares = self.add(self.mul(itself, itself), self.mul(side, side))
         self.relations[name] = self.add(squares, ONE, -1)
         return self.add({}, side, 1 if kind == "sin" else -1)
 
@@ -127,7 +128,7 @@ class Identities:
             return self.images.get(name, {}).get(by, {})  # a parameter has none
         derived = sorted([*derived_by(name), by], key=self.variables.index)
         mixed = len({x[0] for x in derived} & {"p", "q"}) == 2
-        return {} if self.given.separable and mixed else single("H_" + "".join(derived))
+        return {} if self.entries.separable and mixed else single("H_" + "".join(derived))
 
     def add(self, x: Poly, y: Poly, scale: Fraction | int = 1) -> Poly:
         return self.sum_of([*x.items(), *((m, scale * c) for m, c in y.items())])
@@ -144,112 +145,117 @@ class Identities:
         )
 
     def along_flow(self, x: Poly) -> Poly:
-        """X x, or D x."""
+        """Return X x, or D x where H depends on time."""
         slope: Poly = {}
         for p, q in self.pairs:
             slope = self.add(slope, self.mul(self.slopes[p], self.diff(x, q)))
             slope = self.add(slope, self.mul(self.slopes[q], self.diff(x, p)), -1)
-        return self.add(slope, self.diff(x, "t")) if self.given.timed else slope
+        return self.add(slope, self.diff(x, "t")) if self.entries.timed else slope
 
     def sum_of(self, terms: Iterable[Term]) -> Poly:
-        return collected(map(self.counted, terms))
+        return collect_terms(map(self.count_work, terms))
 
-    def counted(self, term: Term) -> Term:
+    def count_work(self, term: Term) -> Term:
         names, c = term
+        # The work is counted in about 64-bit words, so that no certificate can stall the checker.
         self.work += 1 + (8 * len(names) + bits_of(c)) // 64
         need(self.work <= _MOST_WORK, "is too large to be checked here")
         return term
 
-    # -- what has to hold -----------------------------------------------------------------------
+    # -- the identities -------------------------------------------------------------------------
 
     def check(self) -> None:
-        """ValueError names the first of them that does not hold."""
-        given = self.given
-        said = "order, leading: one says that det J is 1, and one that it is not"
-        need((given.order is None) == (not given.leading), said)
-        fits = given.last is None or given.length <= given.last + 1
-        need(fits, f"{given.layout.maps}: are longer than is said of them")
-        for what, gap in self.gaps():
+        """Check all identities; ValueError names the first one that does not hold."""
+        entries = self.entries
+        problem = "order, leading: one says that det J is 1, and one that it is not"
+        need((entries.order is None) == (not entries.leading), problem)
+        fits = entries.last is None or entries.length <= entries.last + 1
+        need(fits, f"{entries.layout.maps}: are longer than is said of them")
+        for what, residual in self.residuals():
             for name, cofactor in self.cofactors.pop(what, {}).items():
                 need(name in self.relations, f"cofactors of {what}: {name!a} has no relation")
-                gap = self.add(gap, self.mul(cofactor, self.relations[name]), -1)
-            need(not gap, f"{what} is not zero")
+                residual = self.add(residual, self.mul(cofactor, self.relations[name]), -1)
+            need(not residual, f"{what} is not zero")
+        # A cofactor that is not used may be a misspelled name: nothing in the file goes unread.
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
         self.check_witness()
 
-    def gaps(self) -> Iterator[tuple[str, Poly]]:
-        """All that has to be 0, each by its name."""
-        yield from self.gaps_of_flow()
-        yield from self.gaps_of_defect(self.given.order or 2 * self.given.length)
-        yield from self.gaps_of_potential()
+    def residuals(self) -> Iterator[tuple[str, Poly]]:
+        """Yield each polynomial that must be 0, with its name."""
+        yield from self.residuals_of_flow()
+        yield from self.residuals_of_defect(self.entries.order or 2 * self.entries.length)
+        yield from self.residuals_of_potential()
 
-    def gaps_of_flow(self) -> Iterator[tuple[str, Poly]]:
-        for by, series in zip(self.given.coordinates, self.given.after, strict=True):
+    def residuals_of_flow(self) -> Iterator[tuple[str, Poly]]:
+        for by, series in zip(self.entries.coordinates, self.entries.after, strict=True):
             flow = single(by)
-            for n in range(self.given.convergence_order + 1):
+            for n in range(self.entries.convergence_order + 1):
                 if n:
                     flow = self.along_flow(flow)
-                own = series[n] if n < len(series) else {}
-                yield f"{by} {n}", self.add(own, flow, Fraction(-1, factorial(n)))
+                coefficient = series[n] if n < len(series) else {}
+                yield f"{by} {n}", self.add(coefficient, flow, Fraction(-1, factorial(n)))
 
-    def gaps_of_defect(self, last: int) -> Iterator[tuple[str, Poly]]:
-        """Up to h^last; that of h⁰ is 0, as the map there is the identity."""
-        given, after = self.given, dict(zip(self.given.coordinates, self.given.after, strict=True))
+    def residuals_of_defect(self, last: int) -> Iterator[tuple[str, Poly]]:
+        """Yield the residuals of S up to h^last; none at h⁰, where the map is the identity."""
+        entries = self.entries
+        after = dict(zip(entries.coordinates, entries.after, strict=True))
         slopes = {
-            (of, by): [self.diff(c, by) for c in series[: last + 1]]
-            for of, series in after.items()
-            for by in given.coordinates
+            (coordinate, by): [self.diff(c, by) for c in series[: last + 1]]
+            for coordinate, series in after.items()
+            for by in entries.coordinates
         }
         for n in range(1, last + 1):
-            for a, b in combinations(given.coordinates, 2):
-                expected = given.leading.get((a, b), {}) if n == given.order else {}
-                gap = self.add({}, expected, -1)
+            for a, b in combinations(entries.coordinates, 2):
+                expected = entries.leading.get((a, b), {}) if n == entries.order else {}
+                residual = self.add({}, expected, -1)
                 for p, q in self.pairs:
                     both = (slopes[p, a], slopes[q, b]), (slopes[p, b], slopes[q, a])
                     for (x, y), sign in zip(both, (1, -1), strict=True):
+                        # The coefficient of hⁿ in a product of two series, as far as both have
+                        # coefficients.
                         for k in range(max(0, n - len(y) + 1), min(n + 1, len(x))):
-                            gap = self.add(gap, self.mul(x[k], y[n - k]), sign)
-                yield given.layout.defect.format(n, a, b), gap
+                            residual = self.add(residual, self.mul(x[k], y[n - k]), sign)
+                yield entries.layout.defect.format(n, a, b), residual
 
-    def gaps_of_potential(self) -> Iterator[tuple[str, Poly]]:
-        """That its Lie derivative is L: X G_ab + Σ_c (f_c,a G_cb + G_ac f_c,b), f = (−H_q, H_p)."""
-        given, potential = self.given, self.given.potential
+    def residuals_of_potential(self) -> Iterator[tuple[str, Poly]]:
+        """Yield X G_ab + Σ_c (f_c,a G_cb + G_ac f_c,b) − L_ab, f = (−H_q, H_p), each to be 0."""
+        entries, potential = self.entries, self.entries.potential
         if potential is None:
             return
 
-        def at(a: str, b: str) -> Poly:
+        def entry(a: str, b: str) -> Poly:
             turned = (a, b) not in potential and (b, a) in potential
             return self.add({}, potential[b, a], -1) if turned else potential.get((a, b), {})
 
         field = {p: self.add({}, self.slopes[q], -1) for p, q in self.pairs}
         field |= {q: self.slopes[p] for p, q in self.pairs}
-        for a, b in combinations(given.coordinates, 2):
-            gap = self.add(self.along_flow(at(a, b)), given.leading.get((a, b), {}), -1)
+        for a, b in combinations(entries.coordinates, 2):
+            residual = self.add(self.along_flow(entry(a, b)), entries.leading.get((a, b), {}), -1)
             # f_a,a + f_b,b is 0 of a pair, and so of all that there is in the plane.
             both = self.add(self.diff(field[a], a), self.diff(field[b], b))
-            gap = self.add(gap, self.mul(both, at(a, b)))
-            for c in (x for x in given.coordinates if x not in (a, b)):
-                gap = self.add(gap, self.mul(self.diff(field[c], a), at(c, b)))
-                gap = self.add(gap, self.mul(at(a, c), self.diff(field[c], b)))
-            yield given.layout.potential.format(a, b), gap
+            residual = self.add(residual, self.mul(both, entry(a, b)))
+            for c in (x for x in entries.coordinates if x not in (a, b)):
+                residual = self.add(residual, self.mul(self.diff(field[c], a), entry(c, b)))
+                residual = self.add(residual, self.mul(entry(a, c), self.diff(field[c], b)))
+            yield entries.layout.potential.format(a, b), residual
 
     def check_witness(self) -> None:
-        """That there is a point where all functions have a value, and L another than 0."""
-        inverses = [f.name for f in self.given.functions if f.kind == "inverse"]
-        if self.given.hamiltonian is None or not (inverses or self.given.leading):
-            need(not self.given.witness, "witness: there is nothing to see")
+        """Check that at the witness all functions have a value, and L one other than 0."""
+        inverses = [f.name for f in self.entries.functions if f.kind == "inverse"]
+        if self.entries.hamiltonian is None or not (inverses or self.entries.leading):
+            need(not self.entries.witness, "witness: there is nothing to see")
             return
-        need(self.given.witness, "witness: is missing")
+        need(self.entries.witness, "witness: is missing")
         for name in inverses:
             self.value_of(name)
-        if self.given.leading:
-            balls = (self.value(x) for x in self.given.leading.values())
-            seen = any(abs(middle) > radius for middle, radius in balls)
-            need(seen, "the leading coefficient may be 0 at the witness")
+        if self.entries.leading:
+            balls = (self.value(x) for x in self.entries.leading.values())
+            is_nonzero = any(abs(midpoint) > radius for midpoint, radius in balls)
+            need(is_nonzero, "the leading coefficient may be 0 at the witness")
 
     def value(self, x: Poly) -> Ball:
-        """At the witness."""
+        """Enclose the polynomial at the witness."""
         total = Fraction(0), Fraction(0)
         for names, c in x.items():
             term = c, Fraction(0)
@@ -260,6 +266,6 @@ class Identities:
 
     def value_of(self, name: str) -> Ball:
         if name not in self.values:
-            made = next(f for f in self.given.functions if f.name == name)
-            self.values[name] = function(made.kind, self.value(made.argument))
+            function_entry = next(f for f in self.entries.functions if f.name == name)
+            self.values[name] = function(function_entry.kind, self.value(function_entry.argument))
         return self.values[name]

@@ -1,7 +1,7 @@
-"""Schemes for every H that a certificate gives by coefficients, and what makes them symplectic.
+"""Schemes for every H given by coefficients, and the conditions that make them symplectic.
 
-A coefficient is a rational number, or a polynomial in the certificate's `numbers`; what is said of
-it to be 0 is so by their polynomials.
+A coefficient is a rational number, or a polynomial in the certificate's `numbers`; whether an
+expression in these is 0 is decided by their polynomials.
 """
 
 from collections.abc import Iterator
@@ -12,8 +12,8 @@ from itertools import combinations_with_replacement
 from verify.proof.certificates.numbers import Number, Residues, read_numbers
 from verify.proof.certificates.readers import (
     Layout,
-    Left,
     Poly,
+    UnreadEntries,
     array_of,
     need,
     number_of,
@@ -53,77 +53,80 @@ class Tableau:
     numbers: tuple[Number, ...]
 
 
-def read_coefficients(left: Left, kind: str) -> Stages | Tableau:
-    """The scheme that stands under `kind`, "stages" or "tableau"."""
-    need(left.take("hamiltonian") == "every", f"{kind}: are those of every hamiltonian")
-    reader = _Reader(left, kind)
-    found = reader.stages() if kind == "stages" else reader.tableau()
+def read_coefficients(entries: UnreadEntries, kind: str) -> Stages | Tableau:
+    """Read the scheme under the key `kind`, "stages" or "tableau"."""
+    need(entries.take("hamiltonian") == "every", f"{kind}: are those of every hamiltonian")
+    reader = _Reader(entries, kind)
+    scheme = reader.stages() if kind == "stages" else reader.tableau()
     unused = min(reader.unused, default=None)
     need(unused is None, f"numbers: nothing asks for {unused}")
-    return found
+    return scheme
 
 
 class _Reader:
-    def __init__(self, left: Left, kind: str) -> None:
-        self.left, self.kind = left, kind
-        self.separable = left.flag("separable")
-        self.numbers = read_numbers(left.take("numbers")) if "numbers" in left.left else ()
+    def __init__(self, entries: UnreadEntries, kind: str) -> None:
+        self.entries, self.kind = entries, kind
+        self.separable = entries.flag("separable")
+        self.numbers = read_numbers(entries.take("numbers")) if "numbers" in entries.unread else ()
         self.residues = Residues(self.numbers)
         self.unused = {number.name for number in self.numbers}
 
     def stages(self) -> Stages:
-        rows = array_of(self.left.take("stages"), "stages")
+        rows = array_of(self.entries.take("stages"), "stages")
         need(0 < len(rows) <= _MOST_ROWS, f"stages: has 1 to {_MOST_ROWS} rows")
-        found, times = [], []
+        coefficients, times = [], []
         for row in rows:
-            kick, drift, at_p, at_q, *time = self.row(row, 4 + self.left.timed)
-            found.append((kick, drift, at_p, at_q))
+            kick, drift, at_p, at_q, *time = self.row(row, 4 + self.entries.timed)
+            coefficients.append((kick, drift, at_p, at_q))
             times += time
-        own = tuple(times) if self.left.timed else None
-        return Stages(self.separable, tuple(found), own, self.left.layout, self.numbers)
+        clock = tuple(times) if self.entries.timed else None
+        return Stages(self.separable, tuple(coefficients), clock, self.entries.layout, self.numbers)
 
     def tableau(self) -> Tableau:
-        entries = dict(object_of(self.left.take("tableau"), "tableau"))
-        wanted = ("a", "b", *("c",) * self.left.timed)
-        need(set(entries) == set(wanted), f"tableau: has {', '.join(wanted)}")
+        entries = dict(object_of(self.entries.take("tableau"), "tableau"))
+        keys = ("a", "b", *("c",) * self.entries.timed)
+        need(set(entries) == set(keys), f"tableau: has {', '.join(keys)}")
         rows = array_of(entries["a"], "tableau")
         need(0 < len(rows) <= _MOST_STAGES, f"tableau: has 1 to {_MOST_STAGES} rows")
-        found = tuple(self.row(row, len(rows)) for row in rows)
+        coefficients = tuple(self.row(row, len(rows)) for row in rows)
         weights = self.row(entries["b"], len(rows))
-        times = self.row(entries["c"], len(rows)) if self.left.timed else None
-        return Tableau(self.separable, found, weights, times, self.left.layout, self.numbers)
+        times = self.row(entries["c"], len(rows)) if self.entries.timed else None
+        return Tableau(
+            self.separable, coefficients, weights, times, self.entries.layout, self.numbers
+        )
 
     def row(self, data: object, length: int) -> tuple[Poly, ...]:
-        given = array_of(data, self.kind)
-        need(len(given) == length, f"{self.kind}: a row has {length} numbers")
-        return tuple(map(self.coefficient, given))
+        numbers = array_of(data, self.kind)
+        need(len(numbers) == length, f"{self.kind}: a row has {length} numbers")
+        return tuple(map(self.coefficient, numbers))
 
     def coefficient(self, data: object) -> Poly:
         if not isinstance(data, list):
             number = number_of(data, self.kind)
             return {(): number} if number else {}
-        return self.residues.reduced(poly_of(data, self.kind, self.known))
+        return self.residues.reduce(poly_of(data, self.kind, self.use_name))
 
-    def known(self, name: str) -> bool:
+    def use_name(self, name: str) -> bool:
+        # Every number of the certificate must be used in a coefficient; see `read_coefficients`.
         self.unused.discard(name)
         return any(name == number.name for number in self.numbers)
 
 
-# -- what makes them symplectic -------------------------------------------------------------------
+# -- conditions of symplecticity ------------------------------------------------------------------
 
 
 def check_coefficients(entries: Stages | Tableau) -> None:
-    """ValueError names what does not hold."""
+    """Check the conditions of symplecticity; ValueError names one that does not hold."""
     residues = Residues(entries.numbers)
     if isinstance(entries, Tableau):
-        for name, gap in gaps_of_tableau(entries, residues):
-            need(not gap, f"tableau: {name} is not zero")
+        for name, residual in residuals_of_tableau(entries, residues):
+            need(not residual, f"tableau: {name} is not zero")
         return
-    need(not any(gaps_of_stages(entries, residues)), "det A is not det B")
+    need(not any(residuals_of_stages(entries, residues)), "det A is not det B")
 
 
-def gaps_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
-    """k d (1 − s − u) and k − d of each; that they are 0 suffices for det J = 1, and for S = 0.
+def residuals_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
+    """Yield k d (1 − s − u) and k − d of each stage; all 0 suffices for det J = 1, and for S = 0.
 
     A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
     h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
@@ -139,8 +142,8 @@ def gaps_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
         yield {} if entries.separable else residues.sum((1, k), (-1, d))
 
 
-def gaps_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
-    """M_ij = b_i a_ij + b_j a_ji − b_i b_j; that all are 0 suffices for S = 0.
+def residuals_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
+    """Yield M_ij = b_i a_ij + b_j a_ji − b_i b_j, with their names; all 0 suffices for S = 0.
 
     With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and
     p' = p + h Σ b_i F_i, likewise with Q, q and G:
@@ -152,6 +155,6 @@ def gaps_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str,
     a, b = entries.rows, entries.weights
     for i, j in combinations_with_replacement(range(len(b)), 2):
         one, two = residues.product(b[i], a[i][j]), residues.product(b[j], a[j][i])
-        gap = residues.sum((1, one), (1, two), (-1, residues.product(b[i], b[j])))
+        residual = residues.sum((1, one), (1, two), (-1, residues.product(b[i], b[j])))
         m, n = i + 1, j + 1
-        yield f"b_{m} a_{m}{n} + b_{n} a_{n}{m} - b_{m} b_{n}", gap
+        yield f"b_{m} a_{m}{n} + b_{n} a_{n}{m} - b_{m} b_{n}", residual

@@ -1,7 +1,7 @@
-"""What a checked certificate establishes, in formulas that stand for themselves.
+"""The statement that a checked certificate establishes, in self-contained formulas.
 
-Everything here is derived from the entries that the checker has looked at; a name is nowhere
-believed. Formulas are written as `verify` reads them, with each function in the place of its name.
+Everything here is derived from the entries that the checker has examined; no name is trusted.
+Formulas are written as `verify` reads them, with each function in the place of its name.
 """
 
 from collections.abc import Sequence
@@ -37,14 +37,15 @@ _TELESCOPES = {  # by that, and whether H depends on t
 
 
 @dataclass(frozen=True)
-class Established:
-    """What holds: for which H, of which map, and where.
+class EstablishedStatement:
+    """A statement that holds: for which H, about which map, and where.
 
-    `hamiltonian`: the one H, or which. `order`: of ΔJ = det J − 1, whose coefficient is `leading`;
-    None, with `area_preserving`: det J = 1. `agrees`: the map does so with the flow up to this
-    power of h; None where nothing is said. `scheme`: where the entries are those of one. In n
-    `degrees` of freedom `order` and `leading` are those of S, `symplectic` says whether that is 0,
-    and the map is a formula for each coordinate. `numbers`: what each name of a number stands for.
+    `hamiltonian`: the one H, or the class of H. `order`: of ΔJ = det J − 1, with the leading
+    coefficient `leading`; None, with `area_preserving`: det J = 1. `convergence_order`: the map
+    agrees with the flow up to this power of h; None where nothing is stated. `scheme`: its name,
+    where the entries are those of a scheme. In n `degrees` of freedom `order` and `leading` are
+    those of S, `symplectic` says whether S is 0, and the map is a formula for each coordinate.
+    `numbers`: the definition of each named number.
     """
 
     statement: str
@@ -63,20 +64,22 @@ class Established:
     numbers: tuple[str, ...] = ()
 
 
-def accepted(data: object) -> Established | str:
-    """What a certificate establishes, or why the checker refuses it."""
+def check_certificate(data: object) -> EstablishedStatement | str:
+    """Check a certificate: return what it establishes, or the reason why it is refused."""
     try:
-        return established(check(data))
+        return state_theorem(check(data))
     except ValueError as reason:
         return str(reason)
     except RecursionError:
         return "its functions are nested too deeply"
 
 
-def established(entries: Stages | Tableau | Expansion, *, nonzero: bool = True) -> Established:
-    """What the theorem of `verify.proof.certificates.checker` says of these entries.
+def state_theorem(
+    entries: Stages | Tableau | Expansion, *, nonzero: bool = True
+) -> EstablishedStatement:
+    """State the theorem of `verify.proof.certificates.checker` for these entries.
 
-    `nonzero`: whether it is said that L is not 0.
+    `nonzero`: whether the statement includes that L is not 0.
 
     Raises ValueError where a formula is too long to be written out.
     """
@@ -85,14 +88,16 @@ def established(entries: Stages | Tableau | Expansion, *, nonzero: bool = True) 
     return _of_tableau(entries) if isinstance(entries, Tableau) else _of_expansion(entries, nonzero)
 
 
-def _of_stages(entries: Stages) -> Established:
+def _of_stages(entries: Stages) -> EstablishedStatement:
     p, q, p_next, q_next, implicit = "p", "q", [], [], False
     for n, (kick, drift, at_p, at_q) in enumerate(entries.rows, 1):
         p_new, q_new = f"p{n}", f"q{n}"
         time = _time(entries, n - 1)
-        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
-        p_next.append(f"{p_new} = {p}" + (f" - h*({_poly(kick)})*H_q{at}" if kick else ""))
-        q_next.append(f"{q_new} = {q}" + (f" + h*({_poly(drift)})*H_p{at}" if drift else ""))
+        place = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
+        p_next.append(f"{p_new} = {p}" + (f" - h*({_poly(kick)})*H_q{place}" if kick else ""))
+        q_next.append(f"{q_new} = {q}" + (f" + h*({_poly(drift)})*H_p{place}" if drift else ""))
+        # The stage is implicit where H_q depends on p', or H_p on q', which it does for a general
+        # H; for H = T + V only where both parts are moved and both taken on the way.
         mixed = not entries.separable and ((kick and at_p) or (drift and at_q))
         implicit |= bool(mixed or (kick and drift and at_p and at_q))  # else det A is 1
         p, q = p_new, q_new
@@ -100,16 +105,16 @@ def _of_stages(entries: Stages) -> Established:
     return _symplectic(entries, "the scheme of these stages", (p_next, q_next), end, implicit)
 
 
-def _of_tableau(entries: Tableau) -> Established:
-    at = [f"(P{j}, Q{j}{_time(entries, j - 1)})" for j in range(1, len(entries.weights) + 1)]
+def _of_tableau(entries: Tableau) -> EstablishedStatement:
+    places = [f"(P{j}, Q{j}{_time(entries, j - 1)})" for j in range(1, len(entries.weights) + 1)]
     points = [(f"P{i}", f"Q{i}") for i in range(1, len(entries.weights) + 1)]
     p_next, q_next = [], []
     for (p, q), row in zip([*points, ("p1", "q1")], [*entries.rows, entries.weights], strict=True):
-        kept = [(_poly(a), place) for a, place in zip(row, at, strict=True) if a]
-        p_next.append(f"{p} = p" + "".join(f" - h*({a})*H_q{place}" for a, place in kept))
-        q_next.append(f"{q} = q" + "".join(f" + h*({a})*H_p{place}" for a, place in kept))
-    said = "the Runge–Kutta scheme of these stages"
-    return _symplectic(entries, said, (p_next, q_next), "(p, q) ↦ (p1, q1)", True)
+        terms = [(_poly(a), place) for a, place in zip(row, places, strict=True) if a]
+        p_next.append(f"{p} = p" + "".join(f" - h*({a})*H_q{place}" for a, place in terms))
+        q_next.append(f"{q} = q" + "".join(f" + h*({a})*H_p{place}" for a, place in terms))
+    scheme = "the Runge–Kutta scheme of these stages"
+    return _symplectic(entries, scheme, (p_next, q_next), "(p, q) ↦ (p1, q1)", True)
 
 
 def _symplectic(
@@ -118,10 +123,10 @@ def _symplectic(
     formulas: tuple[Sequence[str], Sequence[str]],
     end: str,
     implicit: bool,
-) -> Established:
+) -> EstablishedStatement:
     which = _which(entries, entries.times is not None)
     p_next, q_next = map("; ".join, formulas)
-    return Established(
+    return EstablishedStatement(
         statement=f"{_WORDS[entries.layout.single][0]} for {which} and {scheme}",
         scheme=end,
         hamiltonian=which,
@@ -152,7 +157,7 @@ def _number(number: Number) -> str:
 
 
 def _time(entries: Stages | Tableau, k: int) -> str:
-    """The time of a stage, beside the point that H is taken at."""
+    """Format the time of a stage, the third argument of H; empty where H has none."""
     if entries.times is None:
         return ""
     time = entries.times[k]
@@ -169,10 +174,11 @@ def _between(start: str, end: str, share: Poly) -> str:
     return f"{start} + ({_poly(share)})*({end} - {start})"
 
 
-def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
-    written, single = _Writer(entries.functions), entries.layout.single
+def _of_expansion(entries: Expansion, nonzero: bool) -> EstablishedStatement:
+    writer, single = _Writer(entries.functions), entries.layout.single
     which, order, degrees = _which(entries, entries.timed), entries.order, entries.layout.degrees
     of_one, agreed = entries.hamiltonian is not None, entries.convergence_order
+    # The statement is put together from the entries alone, so it claims no more than was checked.
     area, defect = _WORDS[single]
     if order is not None:
         area = f"{defect} = L h^{order} + O(h^{order + 1})"
@@ -180,15 +186,15 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
             area += f", L not zero{'' if of_one else ' for some H'}"
     by = "" if entries.potential is None else _TELESCOPES[single, entries.timed]
     flow = f"which agrees with the flow up to h^{agreed}{by}"
-    formulas = tuple(written.series(x, entries.last) for x in entries.after)
+    formulas = tuple(writer.series(x, entries.last) for x in entries.after)
 
     def form(x: Form) -> str:
-        return written.poly(x.get(PLANE, {})) if single else written.form(x)
+        return writer.poly(x.get(PLANE, {})) if single else writer.form(x)
 
-    return Established(
+    return EstablishedStatement(
         statement=f"{area}, for {'this H' if of_one else which} and this map, {flow}",
         scheme=_taylor_series(entries),
-        hamiltonian=which if entries.hamiltonian is None else written.poly(entries.hamiltonian),
+        hamiltonian=which if entries.hamiltonian is None else writer.poly(entries.hamiltonian),
         p_next=formulas[0] if single else formulas[:degrees],
         q_next=formulas[1] if single else formulas[degrees:],
         area_preserving=order is None if single or order is None else None,
@@ -197,7 +203,7 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
         potential=None if entries.potential is None else form(entries.potential),
         convergence_order=agreed,
         domain=(
-            *(f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
+            *(f"{writer.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
             # L is not zero as a polynomial in the parameters, too; for some of them it may be.
             *([_ALMOST] if order is not None and entries.parameters else []),
         ),
@@ -207,39 +213,43 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
 
 
 def _taylor_series(entries: Expansion) -> str | None:
-    """The flow's own series, where that is all there is of the map."""
+    """Name the flow's Taylor series, if the map is just that; else None."""
     agreed = entries.convergence_order
-    beyond = [c for series in entries.after for c in series[agreed + 1 :] if c]
-    if beyond or (entries.last is not None and entries.last <= agreed):
+    # Up to h^c the coefficients are those of the flow; the map is its series if there are no
+    # others, and if the remainder does not already begin below.
+    later_coefficients = [c for series in entries.after for c in series[agreed + 1 :] if c]
+    if later_coefficients or (entries.last is not None and entries.last <= agreed):
         return None
     up_to = "" if entries.last is None else f", up to O(h^{entries.last + 1})"
     return f"the Taylor series of the flow, cut off after h^{agreed}{up_to}"
 
 
 class _Writer:
-    """Polynomials in names as formulas; a function stands written out in the place of its name."""
+    """A writer of polynomials as formulas, with each function in the place of its name."""
 
     def __init__(self, functions: Sequence[Function] = ()) -> None:
         self.functions: dict[str, str] = {}
-        self.below: dict[str, str] = {}  # what 1/u divides by
-        for made in functions:
-            inner = self.poly(made.argument)
-            self.functions[made.name] = f"{made.kind}({inner})"
-            if made.kind == "inverse":
-                self.below[made.name] = f"({inner})"
+        self.below: dict[str, str] = {}  # the divisors of inverses, by their names
+        for function in functions:
+            inner = self.poly(function.argument)
+            self.functions[function.name] = f"{function.kind}({inner})"
+            if function.kind == "inverse":
+                self.below[function.name] = f"({inner})"
 
     def poly(self, x: Poly) -> str:
-        """The polynomial as a formula."""
+        """Format the polynomial as a formula."""
         terms, length = [], 0
         for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
             terms.append(f"{'-' if c < 0 else '+'} {self._term(names, abs(c))}")
             length += len(terms[-1])
+            # Functions are written out in their places, so nesting may make a short certificate
+            # enormous.
             need(length <= _LONGEST, "a formula is too long to be written out")
         text = " ".join(terms) or "0"
         return text.removeprefix("+ ") if text[0] != "-" else f"-{text[2:]}"
 
     def form(self, x: Form) -> str:
-        """A 2-form, entry by entry."""
+        """Format a 2-form, entry by entry."""
         return " + ".join(f"({self.poly(c)})*d{a}∧d{b}" for (a, b), c in x.items()) or "0"
 
     def _term(self, names: Monomial, c: Fraction) -> str:
@@ -249,6 +259,7 @@ class _Writer:
             n = names.count(name)
             base = self.below.get(name) or self.functions.get(name, name)
             (below if name in self.below else above).append(base if n == 1 else f"{base}**{n}")
+        # A term is (numerator·factors)/(denominator·what an inverse divides by).
         if c.numerator != 1 or not above:
             above.insert(0, str(c.numerator))
         if c.denominator != 1:
@@ -256,7 +267,7 @@ class _Writer:
         return "/".join(["*".join(above), *below])
 
     def series(self, coefficients: Sequence[Poly], last: int | None) -> str:
-        """Σ c_n hⁿ, with what is not known where there is a last power."""
+        """Format Σ c_n hⁿ, with a remainder O(…) where there is a last power."""
         parts = []
         for n, c in enumerate(coefficients):
             power = "h*" if n == 1 else f"h**{n}*"

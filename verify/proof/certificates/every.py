@@ -37,7 +37,7 @@ has to be zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
 
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import coordinates_in
-from verify.proof.certificates.by_coefficients import by_coefficients
+from verify.proof.certificates.by_coefficients import write_coefficients
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.certificates.statement import Statement, degrees_of, entries_of, layout_of
 from verify.proof.every_by_series import series_in_jets
@@ -46,11 +46,11 @@ from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import BySeries
 from verify.verdict import Verdict
 
-_NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
+_NOT_COVERED = "the checker knows coefficients of what preserves area, and Taylor polynomials"
 
 
-def of_every(proof: EveryProof) -> Certificate:
-    """The certificate of a proof for every H; InputError where nothing is proved."""
+def certify_every(proof: EveryProof) -> Certificate:
+    """Write the certificate of a proof for every H; InputError where nothing is proved."""
     scheme, agreed = get(proof.scheme), proof.convergence_order
     every_h = scheme.every_h
     if proof.verdict is not Verdict.PROVED or every_h is None or agreed is None:
@@ -63,11 +63,13 @@ def of_every(proof: EveryProof) -> Certificate:
         "separable": proof.separable,
         **({"time_dependent": True} if proof.timed else {}),
     }
-    given = by_coefficients(scheme, timed=proof.timed) if proof.symplectic else None
-    if given is not None:
-        return data | given
+    # Coefficients are the shorter certificate, and suffice where the scheme preserves the
+    # structure.
+    coefficients = write_coefficients(scheme, timed=proof.timed) if proof.symplectic else None
+    if coefficients is not None:
+        return data | coefficients
     if proof.order is None or proof.form is None or not isinstance(every_h, BySeries):
-        raise InputError("scheme", proof.scheme, _NOT_KNOWN)
+        raise InputError("scheme", proof.scheme, _NOT_COVERED)
     series, potential = series_in_jets(proof, every_h, proof.order), proof.potential_form
     flow, powers = series.flow, range(proof.order + 1)
     statement = Statement(
@@ -78,4 +80,4 @@ def of_every(proof: EveryProof) -> Certificate:
         entries_of(proof.form),
         None if potential is None else entries_of(potential),
     )
-    return data | statement.written(dict(enumerate(flow.ring.context.names())))
+    return data | statement.entries(dict(enumerate(flow.ring.context.names())))

@@ -1,15 +1,18 @@
-"""A certificate's file, checked: what it establishes, and else why it is refused."""
+"""The check of a certificate's file: what it establishes, or why it is refused."""
 
 from pathlib import Path
 from typing import Any
 
 from verify.formats import read_json
-from verify.proof.certificates.established import Established, accepted
+from verify.proof.certificates.established import EstablishedStatement, check_certificate
 
 FORMAT = "areaproof certificate 2"
-Certificate = dict[str, Any]  # as JSON has it; who reads it takes nothing for granted
+Certificate = dict[str, Any]  # as in JSON; its readers check every entry
 
 
-def checked(path: Path) -> Established | str:
-    """What it establishes, or why it is refused; InputError where it is no such certificate."""
-    return accepted(read_json(path, FORMAT))
+def check_file(path: Path) -> EstablishedStatement | str:
+    """Check a certificate's file: return what it establishes, or the reason of the refusal.
+
+    Raises InputError where the file is no such certificate.
+    """
+    return check_certificate(read_json(path, FORMAT))

@@ -1,4 +1,4 @@
-"""Algebraic numbers of a certificate: each a name for one root of a polynomial, and shown to be.
+"""Algebraic numbers of a certificate: each a name for one root of a polynomial, as is checked.
 
 `numbers` is a list of [name, polynomial, low, high]. The polynomial is its coefficients c₀, c₁, …,
 whole numbers; at the ends of the interval it has values of two signs, and so a root between them.
@@ -6,7 +6,7 @@ Its derivative has one sign between them, and so there is no second one: of the 
 (1 + x)ⁿ f((low + high·x)/(1 + x)) of the derivative f all coefficients have one sign (or are 0),
 and between the ends x > 0.
 
-What is 0 by the polynomials is 0 of the numbers: `Residues` takes multiples of them away.
+A multiple of a number's polynomial has the value 0: `Residues` reduces by such multiples.
 """
 
 import re
@@ -31,15 +31,15 @@ from verify.proof.certificates.readers import (
 MOST_NUMBERS = 8
 MOST_DEGREE = 32
 _MOST_DIGITS = 200  # of a coefficient, and of an end, above or below
-_MOST_BITS = 1 << 14  # of a coefficient that reducing makes
-_MOST_WORK = 100_000  # terms that are made, more for long ones: some seconds
+_MOST_BITS = 1 << 14  # of a coefficient in a reduced polynomial
+_MOST_WORK = 100_000  # terms computed, long ones counting more: some seconds
 # p1, q2, P1, … are a scheme's points, where its formulas are printed, and H, T, V functions.
 _NAME = re.compile(r"(?![pq][0-9]*$)[a-z][a-z0-9_]{0,31}")
 
 
 @dataclass(frozen=True)
 class Number:
-    """The one root of a polynomial, which is given by c₀, c₁, …, between `low` and `high`."""
+    """The only root, between `low` and `high`, of the polynomial with coefficients c₀, c₁, …."""
 
     name: str
     polynomial: tuple[int, ...]
@@ -53,45 +53,46 @@ class Number:
 
 
 def read_numbers(data: object) -> tuple[Number, ...]:
-    """The numbers, each of a new name; ValueError unless each of them is one root."""
-    given = array_of(data, "numbers")
-    need(len(given) <= MOST_NUMBERS, f"numbers: there are more than {MOST_NUMBERS}")
-    found: dict[str, Number] = {}
-    for each in given:
+    """Read the numbers, each with a new name; ValueError unless each of them is a single root."""
+    listed = array_of(data, "numbers")
+    need(len(listed) <= MOST_NUMBERS, f"numbers: there are more than {MOST_NUMBERS}")
+    numbers: dict[str, Number] = {}
+    for each in listed:
         four = array_of(each, "numbers")
         need(len(four) == 4, "numbers: each is a name, a polynomial and the ends of an interval")
-        name, said = text_of(four[0], "numbers"), f"numbers: {short(four[0])} is no new name"
-        new = _NAME.fullmatch(name) and not iskeyword(name) and name not in {*RESERVED, *found}
-        need(new, said)
-        coefficients = [_limited(x, name) for x in array_of(four[1], f"numbers: {name}")]
+        name, problem = text_of(four[0], "numbers"), f"numbers: {short(four[0])} is no new name"
+        new = _NAME.fullmatch(name) and not iskeyword(name) and name not in {*RESERVED, *numbers}
+        need(new, problem)
+        coefficients = [_read_limited(x, name) for x in array_of(four[1], f"numbers: {name}")]
         whole = all(x.denominator == 1 for x in coefficients)
         need(whole, f"numbers: the polynomial of {name} has whole coefficients c0, c1, …")
         fits = 1 < len(coefficients) <= MOST_DEGREE + 1 and coefficients[-1] != 0
-        said = f"a degree of 1 to {MOST_DEGREE}, and its last coefficient is not 0"
-        need(fits, f"numbers: the polynomial of {name} has {said}")
-        low, high = _limited(four[2], name), _limited(four[3], name)
-        found[name] = Number(name, tuple(map(int, coefficients)), low, high)
-        check_root(found[name])
-    return tuple(found.values())
+        problem = f"a degree of 1 to {MOST_DEGREE}, and its last coefficient is not 0"
+        need(fits, f"numbers: the polynomial of {name} has {problem}")
+        low, high = _read_limited(four[2], name), _read_limited(four[3], name)
+        numbers[name] = Number(name, tuple(map(int, coefficients)), low, high)
+        check_root(numbers[name])
+    return tuple(numbers.values())
 
 
-def _limited(data: object, name: str) -> Fraction:
+def _read_limited(data: object, name: str) -> Fraction:
     long = isinstance(data, str) and len(data) > 2 * _MOST_DIGITS
     need(not long, f"numbers: one of {name} has more than {_MOST_DIGITS} digits")
     return number_of(data, f"numbers: {name}")
 
 
 def check_root(number: Number) -> None:
-    """ValueError unless the polynomial has one root in the interval, and is 0 at no end."""
+    """Raise ValueError unless the polynomial has one root in the interval, and none at an end."""
     name, low, high = number.name, number.low, number.high
     need(low < high, f"numbers: {name} is in no interval, {number.ends}")
     first, last = (_value(number.polynomial, x) for x in (low, high))
-    said = f"the polynomial of {name} has no two signs at the ends of {number.ends}"
-    need(first * last < 0, f"numbers: {said}")
+    problem = f"the polynomial of {name} has no two signs at the ends of {number.ends}"
+    need(first * last < 0, f"numbers: {problem}")
     slope = [k * c for k, c in enumerate(number.polynomial)][1:]
+    # Where all coefficients have one sign, f' has it for all x > 0, that is, in the open interval.
     signs = {c > 0 for c in _between(slope, low, high) if c}
-    said = f"the polynomial of {name} is not seen to have one root alone in {number.ends}"
-    need(len(signs) == 1, f"numbers: {said}")
+    problem = f"the polynomial of {name} is not seen to have one root alone in {number.ends}"
+    need(len(signs) == 1, f"numbers: {problem}")
 
 
 def _value(polynomial: Sequence[int], x: Fraction) -> Fraction:
@@ -102,7 +103,7 @@ def _value(polynomial: Sequence[int], x: Fraction) -> Fraction:
 
 
 def _between(polynomial: Sequence[int], low: Fraction, high: Fraction) -> list[int]:
-    """The coefficients of dⁿ (1 + x)ⁿ f((low + high·x)/(1 + x)), d the ends' denominator."""
+    """Return the coefficients of dⁿ (1 + x)ⁿ f((low + high·x)/(1 + x)), d the ends' denominator."""
     d = lcm(low.denominator, high.denominator)
     a, b = int(low * d), int(high * d)
     total, unit = [polynomial[-1]], [1]
@@ -113,59 +114,60 @@ def _between(polynomial: Sequence[int], low: Fraction, high: Fraction) -> list[i
 
 
 def _times(polynomial: Sequence[int], u: int, v: int) -> list[int]:
-    """The polynomial by u + v·x."""
+    """Multiply the polynomial by u + v·x."""
     pairs = zip([*polynomial, 0], [0, *polynomial], strict=True)
     return [u * x + v * y for x, y in pairs]
 
 
 class Residues:
-    """Polynomials in the numbers, with no power of one that its own polynomial makes lower."""
+    """Arithmetic of polynomials in the numbers, reduced by the numbers' polynomials."""
 
     def __init__(self, numbers: Sequence[Number]) -> None:
         self.numbers = numbers
         self.work = 0
 
-    def reduced(self, x: Poly) -> Poly:
-        """x less multiples of the numbers' polynomials."""
+    def reduce(self, x: Poly) -> Poly:
+        """Reduce x by multiples of the numbers' polynomials."""
         for number in self.numbers:
-            x = self._lowered(x, number)
+            x = self._lower_powers(x, number)
         return x
 
     def product(self, x: Poly, y: Poly) -> Poly:
-        """x·y, reduced."""
+        """Return x·y, reduced."""
         terms = ((m + n, c * d) for m, c in x.items() for n, d in y.items())
-        return self.reduced(self._collected(terms))
+        return self.reduce(self._collect(terms))
 
     def sum(self, *parts: tuple[int, Poly]) -> Poly:
-        """Σ sign·x."""
-        return self._collected((m, sign * c) for sign, x in parts for m, c in x.items())
+        """Return Σ sign·x over the parts."""
+        return self._collect((m, sign * c) for sign, x in parts for m, c in x.items())
 
-    def _lowered(self, x: Poly, number: Number) -> Poly:
+    def _lower_powers(self, x: Poly, number: Number) -> Poly:
         *tail, first = number.polynomial
         shares = [Fraction(-c, first) for c in tail]
         powers: dict[int, Poly] = {}
         for names, c in x.items():
             rest = tuple(name for name in names if name != number.name)
             powers.setdefault(len(names) - len(rest), {})[rest] = c
+        # wⁿ = −(c₀ + … + c_(d−1) w^(d−1)) w^(n−d)/c_d, from the highest power down.
         for n in range(max(powers, default=0), len(tail) - 1, -1):
             top = powers.pop(n, {})
             for k, share in enumerate(shares, start=n - len(tail)):
-                at = powers.setdefault(k, {}) if share else {}
+                target = powers.setdefault(k, {}) if share else {}
                 for rest, c in top.items() if share else ():
-                    at[rest] = self._counted(at.get(rest, Fraction(0)) + c * share)
-        return self._collected(
+                    target[rest] = self._count_work(target.get(rest, Fraction(0)) + c * share)
+        return self._collect(
             (rest + (number.name,) * n, c) for n, part in powers.items() for rest, c in part.items()
         )
 
-    def _collected(self, terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
+    def _collect(self, terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
         total: Poly = {}
         for names, c in terms:
             key = tuple(sorted(names))
             self.work += len(names) // 8
-            total[key] = self._counted(total.get(key, Fraction(0)) + c)
+            total[key] = self._count_work(total.get(key, Fraction(0)) + c)
         return {names: c for names, c in total.items() if c}
 
-    def _counted(self, c: Fraction) -> Fraction:
+    def _count_work(self, c: Fraction) -> Fraction:
         bits = bits_of(c)
         self.work += 1 + bits // 64
         need(bits <= _MOST_BITS and self.work <= _MOST_WORK, "is too large to be checked here")

@@ -23,16 +23,17 @@ from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 
-def of_one(proof: Proof, potential: Potential | None = None) -> Certificate:
-    """The certificate of a proof for one H; `potential`: of ΔJ's leading coefficient in the plane.
+def certify_one(proof: Proof, potential: Potential | None = None) -> Certificate:
+    """Write the certificate of a proof for one H.
 
-    Raises InputError where nothing is proved, where the map is no polynomial in h that is written
-    out, and where H needs other functions than sin, cos, exp and denominators.
+    `potential`: of ΔJ's leading coefficient in the plane. Raises InputError where nothing is
+    proved, where the map has no closed form that is a polynomial in h, and where H needs other
+    functions than sin, cos, exp and denominators.
     """
     if proof.verdict is not Verdict.PROVED or proof.convergence_order is None:
         raise InputError("proof", proof.verdict.value, "there is nothing to certify")
-    made = {AREA: _in_plane, SYMPLECTIC: _in_degrees}[proof.structure]
-    field, statement = made(proof, potential or Potential(None, ""))
+    make = {AREA: _in_plane, SYMPLECTIC: _in_degrees}[proof.structure]
+    field, statement = make(proof, potential or Potential(None, ""))
     return certificate_of_one(statement, field, proof.witness)
 
 
@@ -44,6 +45,7 @@ def _in_plane(proof: Proof, potential: Potential) -> tuple[CanonicalField, State
     field, (*after, leading, telescoping) = canonical_field(step.hamiltonian, *others)
     last = max(order, agreed) + 1 if order else None
     has_potential = order is not None and potential.potential is not None
+    # X·c = 0 for a constant c, so G is written without constants.
     without = without_constants(field.ring, telescoping, (*PLANE, "t"))
     return field, Statement(
         layout_of(field.names),
@@ -56,13 +58,13 @@ def _in_plane(proof: Proof, potential: Potential) -> tuple[CanonicalField, State
 
 
 def _coefficients(ring: Ring, x: Poly) -> list[Poly]:
-    """Those of h⁰, h¹, … of a polynomial in h."""
+    """Return the coefficients of h⁰, h¹, … of a polynomial in h."""
     powers = ring.powers(x, "h")
     return [powers.get(n, ring.zero) for n in range(max(powers, default=0) + 1)]
 
 
 def _form(x: Poly) -> Form:
-    """x dp∧dq."""
+    """Return x dp∧dq as a form."""
     return {} if x.is_zero() else {PLANE: x}
 
 
@@ -72,8 +74,8 @@ def _in_degrees(proof: Proof, _: Potential) -> tuple[CanonicalField, Statement]:
     if order is None:
         most = step.closed.degree if step.formulas is not None and step.closed else None
     if most is None:
-        shown = step.hamiltonian.formula
-        raise InputError("map", shown, "is not written out as a polynomial in h")
+        formula = step.hamiltonian.formula
+        raise InputError("map", formula, "is not written out as a polynomial in h")
     form = None if order is None else proof.first.form
     series, entries = series_of(step, most), entries_of(form)
     if isinstance(series, ClosedSeries):

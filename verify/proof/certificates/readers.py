@@ -1,4 +1,4 @@
-"""How a certificate's JSON is read: a value of each kind, or a ValueError that names its entry."""
+"""Readers of a certificate's JSON: each returns a value of a kind, or raises ValueError."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -18,17 +18,17 @@ _NUMBER = re.compile(r"(-?[0-9]{1,2000})(?:/([1-9][0-9]{0,1999}))?")
 
 
 def need(holds: object, what: str) -> None:
-    """ValueError with these words, unless it holds."""
+    """Raise ValueError with these words unless the condition holds."""
     if not holds:
         raise ValueError(what)
 
 
 @dataclass(frozen=True)
 class Layout:
-    """How a certificate has p and q, or with `degrees` p1 … pn, q1 … qn.
+    """The names in a certificate for p and q, or with `degrees` for p1 … pn, q1 … qn.
 
     `single`: a 2-form is its one entry, and else a list. `maps`: the entries of the map; `defect`,
-    `potential`: what each has to be 0 is called.
+    `potential`: patterns of the names of the identities.
     """
 
     degrees: int
@@ -40,68 +40,68 @@ class Layout:
 
 
 def layout_in(degrees: int | None) -> Layout:
-    """That of so many degrees of freedom; None: of p and q."""
+    """Return the layout for so many degrees of freedom; None: for p and q."""
     if degrees is None:
         return Layout(1, PLANE, True, "p_next, q_next", "det {}", "potential")
     names = tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
     return Layout(degrees, names, False, "next", "S {} {} {}", "potential {} {}")
 
 
-class Left:
-    """The entries that have not been read yet, and what every certificate may have.
+class UnreadEntries:
+    """The entries that have not been read yet, and those that every certificate may have.
 
-    `timed`: H depends on t; `layout`: that of the plane, or of so many degrees of freedom.
+    `timed`: H depends on t; `layout`: of the plane, or of several degrees of freedom.
     """
 
     def __init__(self, data: object) -> None:
-        self.left = dict(object_of(data, "the certificate"))
-        self.left.pop("format", None)  # which who opens the file looks at
-        self.timed = "time_dependent" in self.left and self.flag("time_dependent")
-        several = "degrees" in self.left
+        self.unread = dict(object_of(data, "the certificate"))
+        self.unread.pop("format", None)  # checked when the file is opened
+        self.timed = "time_dependent" in self.unread and self.flag("time_dependent")
+        several = "degrees" in self.unread
         self.layout = layout_in(self.whole("degrees", 1, MOST_DEGREES) if several else None)
 
     def take(self, name: str) -> object:
-        """The entry, which is then read."""
-        need(name in self.left, f"{name} is missing")
-        return self.left.pop(name)
+        """Return the entry and mark it as read; ValueError where it is missing."""
+        need(name in self.unread, f"{name} is missing")
+        return self.unread.pop(name)
 
     def flag(self, name: str) -> bool:
-        """true or false."""
+        """Read true or false."""
         value = self.take(name)
         need(isinstance(value, bool), f"{name}: {short(value)} is not true or false")
         return value is True
 
     def whole(self, name: str, least: int, most: int = MOST_ORDERS) -> int:
-        """A whole number in this range."""
+        """Read a whole number in this range."""
         value = self.take(name)
         whole = isinstance(value, int) and not isinstance(value, bool)
-        said = f"{name}: {short(value)} is no whole number from {least} to {most}"
-        need(whole and least <= value <= most, said)  # type: ignore[operator]
+        problem = f"{name}: {short(value)} is no whole number from {least} to {most}"
+        need(whole and least <= value <= most, problem)  # type: ignore[operator]
         return value  # type: ignore[return-value]
 
 
-def poly_of(data: object, what: str, known: Callable[[str], bool]) -> Poly:
-    """A list of terms in names that are known."""
+def poly_of(data: object, what: str, is_name: Callable[[str], bool]) -> Poly:
+    """Read a polynomial: a list of terms in names that `is_name` accepts."""
     total: Poly = {}
     for term in array_of(data, what):
         number, *names = array_of(term, what) or [None]
         need(len(names) <= MOST_FACTORS, f"{what}: has more than {MOST_FACTORS} factors")
         for name in names:
-            need(known(text_of(name, what)), f"{what}: {short(name)} stands for nothing")
+            need(is_name(text_of(name, what)), f"{what}: {short(name)} stands for nothing")
         key = tuple(sorted(map(str, names)))
         total[key] = total.get(key, Fraction(0)) + number_of(number, what)
-        # Each of many denominators would make the sum longer, and the next one slower.
+        # With many different denominators the sum would grow, and each addition be slower.
         need(bits_of(total[key]) <= _MOST_BITS, f"{what}: a coefficient grows too long")
     return {names: c for names, c in total.items() if c}
 
 
 def bits_of(x: Fraction) -> int:
-    """Of numerator and denominator together."""
+    """Return the number of bits of numerator and denominator together."""
     return x.numerator.bit_length() + x.denominator.bit_length()
 
 
-def collected(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
-    """The sum of the terms."""
+def collect_terms(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
+    """Sum the terms, with names in order and without terms that cancel."""
     total: Poly = {}
     for names, c in terms:
         key = tuple(sorted(names))
@@ -110,32 +110,32 @@ def collected(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
 
 
 def object_of(data: object, what: str) -> dict[str, object]:
-    """The data, if they are an object."""
+    """Return the data if they are an object, else raise ValueError."""
     need(isinstance(data, dict), f"{what}: {short(data)} is no object")
     return data  # type: ignore[return-value]
 
 
 def array_of(data: object, what: str) -> list[object]:
-    """The data, if they are a list."""
+    """Return the data if they are a list, else raise ValueError."""
     need(isinstance(data, list), f"{what}: {short(data)} is no list")
     return data  # type: ignore[return-value]
 
 
 def text_of(data: object, what: str) -> str:
-    """The data, if they are a text."""
+    """Return the data if they are a text, else raise ValueError."""
     need(isinstance(data, str), f"{what}: {short(data)} is no text")
     return data  # type: ignore[return-value]
 
 
 def number_of(data: object, what: str) -> Fraction:
-    """A rational number, which is a text."""
-    found = _NUMBER.fullmatch(data) if isinstance(data, str) else None
-    need(found, f"{what}: {short(data)} is no rational number such as '-3/2'")
-    above, below = found.groups()  # type: ignore[union-attr]
+    """Read a rational number, which is a text such as "-3/2"."""
+    match = _NUMBER.fullmatch(data) if isinstance(data, str) else None
+    need(match, f"{what}: {short(data)} is no rational number such as '-3/2'")
+    above, below = match.groups()  # type: ignore[union-attr]
     return Fraction(int(above), int(below or 1))
 
 
 def short(data: object) -> str:
-    """The data as a message shows them."""
-    shown = ascii(data) if not isinstance(data, list | dict) else type(data).__name__
-    return shown if len(shown) <= 40 else f"{shown[:40]}…"
+    """Shorten the data for a message."""
+    text = ascii(data) if not isinstance(data, list | dict) else type(data).__name__
+    return text if len(text) <= 40 else f"{text[:40]}…"

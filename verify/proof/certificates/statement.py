@@ -1,7 +1,8 @@
-"""What a certificate says of a map, as its JSON has it, and why that is so.
+"""The statement of a certificate about a map, in its JSON, with the cofactors that prove it.
 
-The formats are told in `every`. What has to be zero is made by the checker's own identities, of the
-certificate as it is read: nothing in them is reduced, and what reduces them to 0 is written down.
+The format is described in `every`. The polynomials that must be zero come from the checker's own
+identities, for the certificate as it is read: they are not reduced there, and the cofactors that
+reduce them to 0 are written into the certificate.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,33 +22,36 @@ from verify.proof.certificates.readers import PLANE, Layout, layout_in
 from verify.proof.certificates.readers import Poly as Read
 from verify.schemes.steps.two_form import TwoForm
 
-_TRIED = 20  # points
+_MOST_TRIED = 20  # points
 Form = Mapping[tuple[str, str], Poly]  # entries above the diagonal
 Names = Mapping[int, str]
 
 
 def entries_of(form: TwoForm | None) -> Form:
-    """Its entries by the names of their coordinates; of None, which is 0, none."""
+    """Return the form's entries by the names of their coordinates; none for None, which is 0."""
     if form is None:
         return {}
     return {(form.names[a], form.names[b]): x for (a, b), x in form.entries.items()}
 
 
 def layout_of(coordinates: tuple[str, ...]) -> Layout:
-    """That of a certificate with these coordinates."""
+    """Return the layout of a certificate with these coordinates."""
     return layout_in(None if coordinates == PLANE else len(coordinates) // 2)
 
 
 def degrees_of(layout: Layout) -> dict[str, int]:
-    """The entry that says of which it is."""
+    """Return the entry `degrees`; none in the plane."""
     return {} if layout.single else {"degrees": layout.degrees}
 
 
 @dataclass(frozen=True)
 class Statement:
-    """`rows`: the coefficients of h⁰, h¹, … in each coordinate's new value, as far as they are
+    """The statement about a map.
+
+    `rows`: the coefficients of h⁰, h¹, … in each coordinate's new value, as far as they are
     needed. `order`, `leading`: of S, or in the plane of det J − 1, None and no entry where it is
-    0; `potential`: None where there is none."""
+    0; `potential`: None where there is none.
+    """
 
     layout: Layout
     rows: Sequence[Sequence[Poly]]
@@ -56,8 +60,8 @@ class Statement:
     leading: Form
     potential: Form | None = None
 
-    def written(self, names: Names) -> Certificate:
-        """As the certificate's entries; `names`: of the variables by their index."""
+    def entries(self, names: Names) -> Certificate:
+        """Return the certificate's entries; `names`: of the variables by their index."""
         after = [[terms(x, names) for x in row] for row in self.rows]
         new = dict(zip(self.layout.coordinates, after, strict=True))
         return {
@@ -79,12 +83,11 @@ class Statement:
 
 
 def certificate_of_one(
-    statement: Statement, field: CanonicalField, known: Mapping[str, Fraction]
+    statement: Statement, field: CanonicalField, point: Mapping[str, Fraction]
 ) -> Certificate:
-    """The certificate of what is said for the H of this field; `known`: a point that the proof
-    has."""
+    """Write the certificate of the statement for the H of this field; `point`: the proof's."""
     ring = field.ring
-    made = [g for g in ring.generators if g.kind != "variable"]
+    functions = [g for g in ring.generators if g.kind != "variable"]
     names = {g.index: g.name or f"#{g.index}" for g in ring.generators}
     parameters = [name for name in ring.variables if name not in (*field.names, "h", "t")]
     data = {
@@ -93,15 +96,19 @@ def certificate_of_one(
         "hamiltonian": terms(without_constants(ring, field.energy, field.names), names),
         **({"time_dependent": True} if field.timed else {}),
         "parameters": parameters,
-        "functions": [_function(ring, g, names) for g in made],
-        **statement.written(names),
+        "functions": [_function(ring, g, names) for g in functions],
+        **statement.entries(names),
         "cofactors": {},
     }
     points = (*field.names, *("t",) * field.timed, *parameters)
-    data["witness"] = _witness(data, points, known)
+    # The checker itself runs on the data, once to find a witness and once to list the residuals:
+    # so the certificate is written for exactly the polynomials that the checker will form.
+    data["witness"] = _witness(data, points, point)
     places = {name: index for index, name in names.items()}
-    gaps = ((what, polynomial(ring.context, places, x)) for what, x in _gaps(data))
-    data["cofactors"] = {what: _cofactors(ring, x, names) for what, x in gaps if not x.is_zero()}
+    residuals = ((what, polynomial(ring.context, places, x)) for what, x in _residuals(data))
+    data["cofactors"] = {
+        what: _cofactors(ring, x, names) for what, x in residuals if not x.is_zero()
+    }
     return data
 
 
@@ -116,20 +123,21 @@ def _function(ring: Ring, g: Generator, names: Names) -> list[Any]:
 
 
 def without_constants(ring: Ring, x: Poly, variables: Sequence[str]) -> Poly:
-    """Without the terms that depend on none of these variables."""
+    """Drop the terms that depend on none of these variables."""
     single = ((m, c, ring.context.from_dict({m: 1})) for m, c in terms_of(x))
-    kept = {m: c for m, c, term in single if any(ring.depends(term, by) for by in variables)}
-    return ring.context.from_dict(kept)
+    dependent = {m: c for m, c, term in single if any(ring.depends(term, by) for by in variables)}
+    return ring.context.from_dict(dependent)
 
 
 def _witness(
-    data: Certificate, names: Sequence[str], known: Mapping[str, Fraction]
+    data: Certificate, names: Sequence[str], point: Mapping[str, Fraction]
 ) -> dict[str, str]:
-    """A point at which the checker sees what is not 0: the proof's own, or one that is tried."""
-    for k in range(_TRIED):
-        tried = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
-        at = {name: str(known.get(name, value)) for name, value in tried.items()}
-        for witness in ({}, at):
+    """Find a point at which the checker sees that L is not 0: the proof's own, or another."""
+    for k in range(_MOST_TRIED):
+        # Fractions without a pattern that the zeros of a formula could share.
+        candidate = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
+        point_as_text = {name: str(point.get(name, value)) for name, value in candidate.items()}
+        for witness in ({}, point_as_text):
             try:
                 _identities(data | {"witness": witness}).check_witness()
             except ValueError:
@@ -140,10 +148,10 @@ def _witness(
     )
 
 
-def _gaps(data: Certificate) -> Iterator[tuple[str, Read]]:
-    """What has to be zero, as far as the checker goes, which says itself where it is too large."""
+def _residuals(data: Certificate) -> Iterator[tuple[str, Read]]:
+    """Yield the polynomials that must be 0, until the checker finds the certificate too large."""
     try:
-        yield from _identities(data).gaps()
+        yield from _identities(data).residuals()
     except ValueError:
         return
 
@@ -155,12 +163,14 @@ def _identities(data: Certificate) -> Identities:
 
 
 def _cofactors(ring: Ring, x: Poly, names: Names) -> dict[str, list[list[str]]]:
-    """By which Σ cofactor·relation is x; InputError where reducing does not end at 0."""
-    found: dict[int, Poly] = {}
+    """Find the cofactors with x = Σ cofactor·relation; InputError where x is not reduced to 0."""
+    cofactors: dict[int, Poly] = {}
+    # Relations of newer generators bring in older ones and not the other way round, so one pass
+    # from the newest to the oldest reduces x completely.
     for index, power, relation in reversed(ring.relations):
         if x.degrees()[index] >= power:
             quotient, x = divmod(x, relation)
-            found[index] = found.get(index, ring.zero) + quotient
+            cofactors[index] = cofactors.get(index, ring.zero) + quotient
     if not x.is_zero():
         raise InputError("proof", str(x)[:60], "no certificate: zero is not seen by reducing")
-    return {names[index]: terms(c, names) for index, c in found.items()}
+    return {names[index]: terms(c, names) for index, c in cofactors.items()}

@@ -1,12 +1,12 @@
-"""Who checked what is proved of a scheme: the small checker, Rocq, or only who reads it."""
+"""Marks of who checked a proof about a scheme: the small checker, Rocq, or only its readers."""
 
 from verify.proof.checked import in_theory, small_checker
-from verify.proof.checked.proved import Proved
+from verify.proof.checked.proved import ProvedStatement
 from verify.prose import Prose
 
-__all__ = ["Proved", "marks"]
+__all__ = ["ProvedStatement", "marks"]
 
 
-def marks(proved: Proved) -> tuple[Prose, ...]:
-    """One text for each that checked it, in this run or once for all; none where nobody did."""
+def marks(proved: ProvedStatement) -> tuple[Prose, ...]:
+    """Return a text for each checker, in this run or once for all; none where nobody checked."""
     return (*small_checker.marks(proved), *in_theory.marks(proved))

@@ -1,13 +1,13 @@
-"""What a proof says of a scheme, as those ask for it that say who checked it."""
+"""The content of a proof about a scheme, in the form that the marks of checkers use."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.every import certify_every
 from verify.proof.certificates.file import Certificate
-from verify.proof.certificates.one import of_one
+from verify.proof.certificates.one import certify_one
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.proof.plane.potential import Potential
@@ -24,14 +24,14 @@ _LONGEST = 25_000  # characters of a leading coefficient whose certificate takes
 
 
 @dataclass(frozen=True)
-class Proved:
-    """What is proved of a scheme, and what of it is asked about.
+class ProvedStatement:
+    """A proof about a scheme, and the parts of it whose checkers are sought.
 
     `about`: the order of ΔJ (of S in n degrees of freedom) or that it is 0, `defect`; in n degrees
     of freedom that of det J − 1, `volume`; the order of the `map`; whether the leading coefficient
-    `telescopes`; what small ΔJ make of Λ, `product`. `preserves`: whether ΔJ ≡ 0, or S ≡ 0.
-    `every`: for every H, else for one. `timed`: H depends on time. `certificates`: what makes a
-    certificate of it, each tried after the one before; none where it would take long.
+    `telescopes`; the bound of Λ by small ΔJ, `product`. `preserves`: whether ΔJ ≡ 0, or S ≡ 0.
+    `every`: for every H, else for one. `timed`: H depends on time. `certificates`: functions that
+    make a certificate of it, tried in turn; none where it would take long.
     """
 
     scheme: Scheme
@@ -44,46 +44,50 @@ class Proved:
 
     @property
     def structure(self) -> Structure:
-        """What a canonical step of it keeps."""
+        """The structure that a canonical step preserves: area, or the symplectic form."""
         return structure_in(self.degrees)
 
 
-def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[About]) -> Proved:
-    """By a proof for every H."""
+def proved_for_every(proof: EveryProof, scheme: Scheme, about: frozenset[About]) -> ProvedStatement:
+    """Return what a proof for every H proves of the scheme."""
     short = len(proof.leading) <= _LONGEST
-    return Proved(
-        scheme, _asked(about, proof.degrees), proof.symplectic, every=True, timed=proof.timed,
-        degrees=proof.degrees,
-        certificates=(lambda: of_every(proof),) if short else (),
+    return ProvedStatement(
+        scheme, _parts_in_plane(about, proof.degrees), proof.symplectic, every=True,
+        timed=proof.timed, degrees=proof.degrees,
+        certificates=(lambda: certify_every(proof),) if short else (),
     )  # fmt: skip
 
 
-def of_one_hamiltonian(
+def proved_for_one(
     proof: Proof,
     hamiltonian: Hamiltonian,
     scheme: Scheme,
     about: frozenset[About],
-) -> Proved:
-    """By a proof for this H.
+) -> ProvedStatement:
+    """Return what a proof for this H proves of the scheme.
 
-    Where its own map has no certificate, that of every H tells as much if the map is symplectic.
+    Where its own map has no certificate, that for every H serves if the map is symplectic.
     """
     timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
 
-    def own() -> Certificate:
-        return of_one(proof, _NOT_LOOKED_FOR)
+    def certificate_for_this() -> Certificate:
+        return certify_one(proof, _NOT_LOOKED_FOR)
 
-    def every() -> Certificate:
-        return of_every(prove_every(scheme.name, timed=timed, degrees=degrees))
+    def certificate_for_every() -> Certificate:
+        return certify_every(prove_every(scheme.name, timed=timed, degrees=degrees))
 
+    # For a symplectic map the statement is S = 0, which the certificate for every H implies.
     fallback = proof.symplectic and scheme.every_h is not None
     short = proof.symplectic or len(proof.leading_text) <= _LONGEST
-    return Proved(
-        scheme, _asked(about, degrees), proof.symplectic, every=False, timed=timed, degrees=degrees,
-        certificates=(own, *(every,) * bool(fallback)) if short else (),
+    return ProvedStatement(
+        scheme, _parts_in_plane(about, degrees), proof.symplectic, every=False,
+        timed=timed, degrees=degrees,
+        certificates=(
+            (certificate_for_this, *(certificate_for_every,) * bool(fallback)) if short else ()
+        ),
     )  # fmt: skip
 
 
-def _asked(about: frozenset[About], degrees: int) -> frozenset[About]:
-    """In the plane S is ΔJ, and one certificate tells of both."""
+def _parts_in_plane(about: frozenset[About], degrees: int) -> frozenset[About]:
+    """Ask for the defect in place of the volume in the plane, where S is ΔJ dp∧dq."""
     return (about - {"volume"}) | DEFECT if degrees == 1 and "volume" in about else about

@@ -3,40 +3,39 @@
 import re
 from collections.abc import Iterator
 
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import InputError
-from verify.proof.certificates.established import Established, accepted
-from verify.proof.checked.proved import Proved
+from verify.proof.certificates.established import EstablishedStatement, check_certificate
+from verify.proof.checked.proved import ProvedStatement
 from verify.prose import Formula, Prose, prose, read_prose
 
 _POWER = re.compile(r"h\^[0-9]+")
 _CERTIFIED = {"defect", "map", "telescopes"}
-_SHORT = 60  # characters of a leading coefficient that is told
+_SHORT = 60  # characters of a leading coefficient that is quoted
 
 
-def marks(proved: Proved) -> Iterator[Prose]:
-    """What the first certificate that can be made establishes; nothing where none can, and nothing
-    where the checker refuses it."""
+def marks(proved: ProvedStatement) -> Iterator[Prose]:
+    """Yield the statement of the first certificate that can be made, if the checker accepts it."""
     if not (_CERTIFIED & proved.about) and not ("volume" in proved.about and proved.preserves):
         return
-    for made in proved.certificates:
+    for make in proved.certificates:
         try:
-            with limited("proof", proved.scheme.name, "to certify it"):
-                found = accepted(made())
+            with limit_effort("proof", proved.scheme.name, "to certify it"):
+                result = check_certificate(make())
         except InputError:  # of this proof there is none
             continue
-        if isinstance(found, Established):
-            yield prose("small checker: ", read_prose(_statement(found)), _leading(found))
+        if isinstance(result, EstablishedStatement):
+            yield prose("small checker: ", read_prose(_statement(result)), _leading(result))
         return
 
 
-def _statement(found: Established) -> str:
-    """Its own words, with the powers of h as formulas."""
-    return _POWER.sub(r"`\g<0>`", found.statement)
+def _statement(result: EstablishedStatement) -> str:
+    """Return the statement with the powers of h marked as formulas."""
+    return _POWER.sub(r"`\g<0>`", result.statement)
 
 
-def _leading(found: Established) -> Prose:
-    """L itself, where it is short."""
-    if found.leading is None or len(found.leading) > _SHORT:
+def _leading(result: EstablishedStatement) -> Prose:
+    """Quote L where it is short; else nothing."""
+    if result.leading is None or len(result.leading) > _SHORT:
         return Prose()
-    return prose("; L = ", Formula(found.leading))
+    return prose("; L = ", Formula(result.leading))

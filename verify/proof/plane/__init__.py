@@ -1,5 +1,6 @@
-"""What is known in the plane alone: telescoping in general, the growth law of Λ, modified fields.
+"""Results for the plane alone: telescoping in general, the growth law of Λ, modified fields.
 
-A leading coefficient of ΔJ is looked for as X·G among the functions that it is made of; in n
-degrees of freedom that of lieη alone is known to telescope, by its formula (`proof.telescoping`).
+A G with X·G equal to the leading coefficient of ΔJ is sought among polynomials in the coefficient's
+own functions; in n degrees of freedom only lieη is shown to telescope, by a formula
+(`proof.telescoping`).
 """

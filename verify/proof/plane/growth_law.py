@@ -1,4 +1,4 @@
-"""The growth law of Λ: what of log(1 + Λ) is bounded, what grows with T, and what remains.
+"""The growth law of Λ: the bounded part of log(1 + Λ), the part that grows with T, the remainder.
 
 Setting. Φ is one step of size h of a scheme of order η ≥ 1 for a smooth H, z_k = Φᵏ(z₀), T = N h,
 log(1 + Λ) = Σ_{k<N} log(1 + ΔJ(z_k)), and log(1 + ΔJ) = h^r c_r + h^(r+1) c_(r+1) + … with r ≥ 2
@@ -67,16 +67,16 @@ Element = tuple[Ring, Poly]
 
 
 class NoLawError(Exception):
-    """There is no growth law; `said` is why, with formulas quoted, the message its plain text."""
+    """There is no growth law; `reason` says why, with formulas, and the message is plain text."""
 
-    def __init__(self, said: str) -> None:
-        self.said = read_prose(said)
-        super().__init__(str(self.said))
+    def __init__(self, reason: str) -> None:
+        self.reason = read_prose(reason)
+        super().__init__(str(self.reason))
 
 
 @dataclass(frozen=True)
 class GrowthLaw:
-    """log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
+    """The law log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
 
     `potential` is G, and `leading` X G, of `lieη` of even η; both are None for other schemes, whose
     law has no G. `telescoping`: whether the leading coefficient is X·G, which it may be there too.
@@ -91,7 +91,7 @@ class GrowthLaw:
 
 @lru_cache(maxsize=64)
 def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
-    """The law of one H without symbols.
+    """Derive the growth law of a scheme for one H without symbols.
 
     Raises InputError for a parameter without a value, NoLawError where ΔJ ≡ 0 or its leading order
     in h is not known.
@@ -106,21 +106,23 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
     if step_map.preserves_area:
         raise NoLawError("ΔJ ≡ 0 is proved: Λ is exactly 0")
     eta = eta_of(scheme)
+    # Only lieη of even η has the potential G in closed form for every H.
     if eta is None or eta % 2:
         return _plain_law(prove(step_map, chosen), chosen)
     step = step_map.flat
     ring, potential = step.ring, potential_of_lie(step.field, eta).divergence
-    leading, g = (step.form(n).at(0, 1) for n in (eta + 1, eta + 2))
+    leading, g = (step.form(n).entry(0, 1) for n in (eta + 1, eta + 2))
     return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
 
 
 def _plain_law(proof: Proof, scheme: Scheme) -> GrowthLaw:
-    """By the first coefficient of ΔJ that does not vanish."""
+    """Derive the law without G, from the leading coefficient of ΔJ."""
     n, g = proof.first.power, proof.first.element
     if n is None or g is None:
         raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{MOST_ORDERS}`")
     if proof.first.decision.zero is None:
         raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
+    # The theorem needs r ≥ 2: with r = 1 even T ⟨g⟩ has no factor h.
     if n < 2:
         raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
     return GrowthLaw(n - 1, g, None, None, potential_of(proof, scheme))

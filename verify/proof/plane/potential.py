@@ -1,10 +1,10 @@
-"""Whether the leading coefficient L of ΔJ is X·G for one given H, whose structure may help.
+"""The search for a G with X·G = L, the leading coefficient of ΔJ, for one H.
 
-Where H depends on time it is D·G, D = ∂_t + X, that is looked for.
+Where H depends on time, D·G = L is solved instead, D = ∂_t + X.
 
-True: G is given, and X·G − L is decided to be zero. False: at an equilibrium X·G = 0 for every
-smooth G, and L is not zero there. None: neither is found. G is looked for by the formula for even
-η, and else among the polynomials in what H and L are made of (p, q, parameters, sin, cos, …).
+True: there is a G, and X·G − L is decided to be zero. False: at an equilibrium X·G = 0 for every
+smooth G, and L is not zero there. None: neither is shown. G is sought by the formula for even η,
+and else among the polynomials in the generators of H and L (p, q, parameters, sin, cos, …).
 """
 
 import math
@@ -18,10 +18,10 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose, points
-from verify.algebra.linear_combination import combination, may_combine
+from verify.algebra.linear_combination import may_combine, solve_combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import P, Q
-from verify.effort import unless_long
+from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.proof import Proof
@@ -35,7 +35,7 @@ _PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
 
 @dataclass(frozen=True)
 class Potential:
-    """`holds`: whether L = X·G; `element`: that G in a ring; `reason`: how it is known."""
+    """The answer whether L = X·G: `holds`, with G as `element` of a ring and the `reason`."""
 
     holds: bool | None
     reason: str
@@ -43,15 +43,15 @@ class Potential:
 
     @cached_property
     def potential(self) -> sympy.Expr | None:
-        """G as an expression."""
+        """The potential G as an expression; None where there is none."""
         if self.element is None:
             return sympy.S.Zero if self.holds else None
         ring, x = self.element
-        return ring.factored(x)
+        return ring.as_product(x)
 
     @property
     def text(self) -> str | None:
-        """G as a formula."""
+        """The potential G as a formula; None where there is none."""
         if self.element is None:
             return "0" if self.holds else None
         ring, x = self.element
@@ -59,13 +59,16 @@ class Potential:
 
 
 def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
-    """Whether the leading coefficient that was proved telescopes; `scheme`: where it is known."""
+    """Decide whether the leading coefficient of a proof telescopes.
+
+    `scheme`: the map's scheme, if it has one; for lieη of even η the formula gives G.
+    """
     proof.step_map.hamiltonian.check_planar()
     if proof.area_preserving:
         return Potential(True, "ΔJ ≡ 0")
     if proof.order is None or proof.first.element is None:
         return Potential(None, "the leading coefficient is not known")
-    field, leading = _in_a_field(proof)
+    field, leading = _in_one_ring(proof)
     # D·G need not vanish where the motion rests: there it is ∂G/∂t.
     where = None if field.timed else _equilibrium_against(field, leading)
     if where is not None:
@@ -74,53 +77,55 @@ def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
         )
     every_h = scheme and scheme.every_h
     if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
-        found: Poly | None = potential_of_lie(field, every_h.eta).divergence
-        how = "by the formula for every H"
+        candidate: Poly | None = potential_of_lie(field, every_h.eta).divergence
+        reason = "by the formula for every H"
     else:
-        used = *field.slopes, leading
-        found = among_polynomials(field.ring, used, field.derive, leading)
-        how = "by linear algebra over monomials"
-    if found is not None and field.ring.decide(field.derive(found) - leading).zero is True:
-        return Potential(True, how, (field.ring, found))
+        elements = *field.slopes, leading
+        candidate = among_polynomials(field.ring, elements, field.derive, leading)
+        reason = "by linear algebra over monomials"
+    if candidate is not None and field.ring.decide(field.derive(candidate) - leading).zero is True:
+        return Potential(True, reason, (field.ring, candidate))
     return Potential(None, "no G is found, and no equilibrium at which L is not zero")
 
 
-def _in_a_field(proof: Proof) -> tuple[CanonicalField, Poly]:
-    """The vector field of H and the leading coefficient, as elements of one ring."""
+def _in_one_ring(proof: Proof) -> tuple[CanonicalField, Poly]:
+    """Return the vector field of H and the leading coefficient, as elements of one ring."""
     assert proof.first.element is not None  # noqa: S101 - the caller's condition
     ring, leading = proof.first.element
-    for own in (proof.step_map.field, *(x.field for x in (proof.step_map.closed,) if x)):
-        if own.ring is ring:
-            return own, leading
+    for candidate in (proof.step_map.field, *(x.field for x in (proof.step_map.closed,) if x)):
+        if candidate.ring is ring:
+            return candidate, leading
     field, (leading,) = canonical_field(proof.step_map.hamiltonian, proof.leading)
     return field, leading
 
 
 def _equilibrium_against(field: CanonicalField, leading: Poly) -> str | None:
-    """An equilibrium at which L is shown not to vanish (for some values of the parameters)."""
+    """Find an equilibrium at which L does not vanish (for some values of the parameters)."""
     ring = field.ring
     force = [ring.expression(x) for x in field.slopes]
     for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
-        put = {P: p, Q: q}
+        values = {P: p, Q: q}
         try:
-            if not unless_long(partial(_rests, force, put), otherwise=False):
+            if not answer_unless_long(partial(_rests, force, values), otherwise=False):
                 continue
             if p.is_Rational and q.is_Rational:
-                there = _not_zero_at(ring, leading, Fraction(int(p)), Fraction(int(q)))
+                nonzero = _not_zero_at(ring, leading, Fraction(int(p)), Fraction(int(q)))
             else:
-                there = len(leading) <= _MOST_MONOMIALS and _not_zero(
-                    unless_long(partial(ring.expression(leading).subs, put), sympy.S.Zero),
+                nonzero = len(leading) <= _MOST_MONOMIALS and _not_zero(
+                    answer_unless_long(
+                        partial(ring.expression(leading).subs, values), sympy.S.Zero
+                    ),
                     ring.variables,
                 )
         except (InputError, ZeroDivisionError):
             continue  # H is not defined there
-        if there:
+        if nonzero:
             return f"p = {p}, q = {q}"
     return None
 
 
-def _rests(force: Sequence[sympy.Expr], at: Mapping[sympy.Expr, sympy.Expr]) -> bool:
-    return all(sympy.expand(x.subs(at)) == 0 for x in force)
+def _rests(force: Sequence[sympy.Expr], point: Mapping[sympy.Expr, sympy.Expr]) -> bool:
+    return all(sympy.expand(x.subs(point)) == 0 for x in force)
 
 
 def _not_zero_at(ring: Ring, x: Poly, p: Fraction, q: Fraction) -> bool:
@@ -140,32 +145,35 @@ def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
 
 
 def among_polynomials(
-    ring: Ring, used: Sequence[Poly], derive: Callable[[Poly], Poly], wanted: Poly
+    ring: Ring, elements: Sequence[Poly], derive: Callable[[Poly], Poly], target: Poly
 ) -> Poly | None:
-    """A polynomial G with derive(G) = wanted in normal form, of the least degree that has one.
+    """Find a polynomial G of least degree with derive(G) = wanted in normal form.
 
-    `used`: G is made of what these elements are made of, and of p and q. `derive` is linear.
+    G is a polynomial in p, q and the generators of the elements `used`; `derive` is linear. None
+    where there is none of moderate degree.
     """
-    indices = [g.index for g in ring.generators_in(*used, ring.variable("p"))]
+    indices = [g.index for g in ring.generators_in(*elements, ring.variable("p"))]
+    # h is no function of p and q, and G is a coefficient of a series in h.
     gens = [
         x for k, x in enumerate(ring.context.gens()) if k in indices and x != ring.variable("h")
     ]
     if ring.variable("q") not in gens:
         gens.append(ring.variable("q"))
     degrees = list(_by_degree(gens, ring.one))
-    moved = [[derive(m) for m in monomials] for monomials in degrees]
-    if not may_combine(list(chain(*moved)), wanted):
+    images = [[derive(m) for m in monomials] for monomials in degrees]
+    # A test modulo a prime rules out most cases without the cost of rational elimination.
+    if not may_combine(list(chain(*images)), target):
         return None
     for most in range(1, len(degrees) + 1):
-        found, _ = combination(list(chain(*moved[:most])), wanted)
-        if found is not None:
+        coefficients, _ = solve_combination(list(chain(*images[:most])), target)
+        if coefficients is not None:
             monomials = list(chain(*degrees[:most]))
-            return sum((c * monomials[k] for k, c in found.items()), ring.zero)
+            return sum((c * monomials[k] for k, c in coefficients.items()), ring.zero)
     return None
 
 
 def _by_degree(gens: list[Poly], one: Poly) -> Iterator[list[Poly]]:
-    """The monomials of degree 1, 2, …, up to where they are too many in all."""
+    """Yield the monomials of degree 1, 2, …, until they are too many in all."""
     for degree in range(1, _MOST_DEGREE):
         if math.comb(len(gens) + degree, degree) > _MOST_MONOMIALS:
             return

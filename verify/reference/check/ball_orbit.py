@@ -1,4 +1,4 @@
-"""A scheme's orbit in balls, with the sums and products over its steps that a row has."""
+"""A scheme's orbit in balls, with the sums and products over its steps that a row contains."""
 
 from fractions import Fraction
 from functools import reduce
@@ -11,64 +11,68 @@ from verify.reference.make.models import AnyRun
 
 
 class TooWideError(Exception):
-    """A ball too wide to tell."""
+    """A ball is too wide to decide a question."""
 
 
 class Orbit:
-    """The run's, at its start: with det J and S of its steps, and the Jacobian of them all."""
+    """The orbit of a run, from its start: with det J and S of its steps, and the product of all
+    Jacobians."""
 
-    def __init__(self, known: Field, step: Step, run: AnyRun) -> None:
+    def __init__(self, field: Field, step: Step, run: AnyRun) -> None:
         start, self._size = run.start, Fraction(run.step_size)
-        self.known, self.step, self.h = known, step, flint.arb(number(self._size))
-        self.z: Vector = [flint.arb(number(start[name])) for name in known.names]
+        self.field, self.step, self.h = field, step, flint.arb(number(self._size))
+        self.z: Vector = [flint.arb(number(start[name])) for name in field.names]
         self._t0 = start.get("t", Fraction(0))
         self.done, self.lam, self.squares, self.largest = 0, *(flint.arb(0) for _ in range(3))
-        self._square = len(known.names), len(known.names)
-        self.matrix = flint.arb_mat(*self._square, identity(len(known.names)))
+        self._square = len(field.names), len(field.names)
+        self.matrix = flint.arb_mat(*self._square, identity(len(field.names)))
         self._next: tuple[Vector, flint.arb_mat] | None = None
 
     @property
     def t(self) -> Number:
-        """When it is."""
+        """The time of the present state."""
         return flint.arb(number(self._t0 + self.done * self._size))
 
-    def ahead(self) -> tuple[Vector, flint.arb_mat]:
-        """The state after the next step, and that step's Jacobian."""
+    def look_ahead(self) -> tuple[Vector, flint.arb_mat]:
+        """Return the state after the next step, and that step's Jacobian."""
         if self._next is None:
             after, jacobian = self.step(self.z, self.h, self.t)
             self._next = after, flint.arb_mat(*self._square, jacobian)
         return self._next
 
-    def to(self, count: int) -> None:
-        """Goes on to the state after so many steps; TooWideError where a ball is not finite."""
+    def advance_to(self, count: int) -> None:
+        """Advance to the state after `count` steps; TooWideError where a ball is not finite."""
         while self.done < count:
-            self.z, jacobian = self.ahead()
+            self.z, jacobian = self.look_ahead()
             change = jacobian.det() - 1
             self.squares += change * change
+            # Λ = Π (1 + ΔJ_k) − 1 by the recurrence Λ ← Λ + ΔJ + Λ ΔJ: forming the product first
+            # would lose the digits of a small Λ.
             self.lam += change + self.lam * change
             self.largest = self.largest.max(self._greatest_defect(jacobian))
+            # The chain rule: the newest Jacobian stands on the left.
             self.matrix = jacobian * self.matrix
             self.done, self._next = self.done + 1, None
             if not _finite(self.z):
                 raise TooWideError
 
     def _greatest_defect(self, jacobian: flint.arb_mat) -> Number:
-        entries = defect(jacobian.entries(), self.known.degrees).values()
+        entries = defect(jacobian.entries(), self.field.degrees).values()
         return reduce(flint.arb.max, map(abs, entries), flint.arb(0))
 
     def values(self) -> dict[str, Number]:
-        """The state, and what is defined beside it, by the names of their columns."""
-        values = dict(zip(self.known.names, self.z, strict=True)) | {
+        """Return the state, and what is computed from it, by the names of their columns."""
+        values = dict(zip(self.field.names, self.z, strict=True)) | {
             "lambda": self.lam,
             "mse": self.squares / max(self.done, 1),
             "symplectic_defect_max": self.largest,
             "symplectic_defect": self._greatest_defect(self.matrix),
         }
-        after, jacobian = self.ahead()
-        beside = {"energy": self.known.energy(self.z, self.t)}
+        after, jacobian = self.look_ahead()
+        extra = {"energy": self.field.energy(self.z, self.t)}
         if _finite(after):
-            beside["delta_j"] = jacobian.det() - 1
-        return values | {name: x for name, x in beside.items() if x.is_finite()}
+            extra["delta_j"] = jacobian.det() - 1
+        return values | {name: x for name, x in extra.items() if x.is_finite()}
 
 
 def _finite(z: Vector) -> bool:

@@ -1,4 +1,8 @@
-"""A folder of reference data against itself, its manifest and its schemas; and some of it again.
+"""A check of a folder of reference data against its manifest, its schemas and its scenes; a share
+of the data is computed again.
+
+A file that cannot be read is an InputError. One that can be read and is not as it must be is a
+difference.
 
 What cannot be read is an InputError. What can be read and is not as it must be is a difference.
 """
@@ -29,7 +33,7 @@ from verify.files import MOST_BYTES, read_bytes, text_of
 from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Findings, Place
-from verify.reference.check.recompute import recomputed
+from verify.reference.check.recompute import recompute_unit
 from verify.reference.make.models import (
     MANIFEST_FORMAT,
     MODELS,
@@ -43,9 +47,9 @@ from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
+    describe_file,
     digest,
     json_text,
-    listed,
     names_of,
     schema_text,
     tables,
@@ -61,8 +65,9 @@ _NO_MORE = ("numba",)  # what data may name that were made with it, and is not u
 
 
 @dataclass
-class Checked(Findings):
-    """What a check found. `rows`: of all data; `not_compared`: files, each with the reason."""
+class CheckResult(Findings):
+    """The result of a check. `rows` counts those of all data; `not_compared` names files, each with
+    the reason."""
 
     files: int = 0
     rows: int = 0
@@ -75,12 +80,18 @@ def check(
     *,
     share: float,
     seed: int,
-    own: Path | None = None,
+    scenes_folder: Path | None = None,
     most_steps: int | None = None,
     where: Placement = ANYWHERE,
     done: Callable[[int, int], None] | None = None,
-) -> Checked:
-    """Everything of the folder by itself, and a random share of its data computed again.
+) -> CheckResult:
+    """Check all files of the folder, and compute a random share of its data again.
+
+    `share`: from 0 to 1, of all runs, flows and proofs; `seed` chooses which. `scenes_folder`: the
+    folder of the scenes that the data must have been made from, if it exists. `most_steps`: how
+    many steps are computed again at most; runs that need more are named. `done` is called with the
+    number of finished recomputations and the number of all. Raises InputError where a file cannot
+    be read: it is missing, too large, of another format or version, not UTF-8, not JSON or not CSV.
 
     `share`: from 0 to 1, of all runs, flows and proofs; `seed` chooses which.
     `own`: the folder of the scenes that it must have been made from, where that is known.
@@ -88,151 +99,169 @@ def check(
     is called with how many recomputations are finished, of how many. InputError where a file cannot
     be read: it is missing, too large, of another format or version, no UTF-8, no JSON, no CSV.
     """
-    found = Checked(seed=seed)
+    findings = CheckResult(seed=seed)
     units = []
-    for data, file in _by_itself(folder, own, found):
-        found.rows += data.count
+    for data, file in _check_files(folder, scenes_folder, findings):
+        findings.rows += data.count
         kinds = ("proof", data.proofs), ("run", data.runs), ("flow", data.flow)
         units += [(data, file, kind, k) for kind, items in kinds for k in range(len(items))]
-    if found.differences:  # what is asked for may not even be known
-        return found
-    chosen = _affordable(_chosen(units, share, seed), most_steps, found)
-    calls = [FunctionCall(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
+    # Recomputing from inconsistent files would only repeat their errors in another form.
+    if findings.differences:  # what is asked for may not even be known
+        return findings
+    chosen = _select_affordable(_choose(units, share, seed), most_steps, findings)
+    calls = [FunctionCall(str(k), recompute_unit, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Findings] = {}
-    few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
-    with open_place(THIS_PROCESS if few else where, [recomputed.__module__]) as place:
+    serial = where == ANYWHERE and len(calls) < _WORTH_A_POOL
+    with open_place(THIS_PROCESS if serial else where, [recompute_unit.__module__]) as place:
         for name, part in results_of(place, calls):
             parts[name] = part
             if done:
                 done(len(parts), len(calls))
+    # Workers finish in any order; the report must not depend on it.
     for call in calls:  # in the order of the files, whoever was first
-        found.add(parts[call.name])
-    return found
+        findings.add(parts[call.name])
+    return findings
 
 
-def _chosen(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:
-    """A share of the units, at least one where it is not 0, in their order."""
+def _choose(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:
+    """Choose a share of the units, at least one where it is not 0, and keep their order."""
+    # The seed is reported, so that a failing sample can be drawn again.
     count = min(len(units), math.ceil(share * len(units)))
     chosen = random.Random(seed).sample(range(len(units)), count)  # noqa: S311 - no secret
     return [units[k] for k in sorted(chosen)]
 
 
-def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -> list[Unit]:
-    """The units without the runs that would make more steps than that, which are named."""
-    left, kept = most_steps, []
+def _select_affordable(
+    units: Sequence[Unit], most_steps: int | None, findings: CheckResult
+) -> list[Unit]:
+    """Return the units without the runs that exceed the limit of steps; these are named in the
+    findings."""
+    steps_left, selected = most_steps, []
     for unit in units:
         data, file, kind, index = unit
-        if left is not None and kind == "run":
+        if steps_left is not None and kind == "run":
             run = data.runs[index]
             steps = run.rows[-1].step
-            if steps > left:
+            if steps > steps_left:
                 why = f"with it, more than {most_steps} steps; see --most-steps"
-                Place(found, file, f"{run.label}, step {steps}").is_left_out(why)
+                Place(findings, file, f"{run.label}, step {steps}").is_left_out(why)
                 continue
-            left -= steps
-        kept.append(unit)
-    return kept
+            steps_left -= steps
+        selected.append(unit)
+    return selected
 
 
 # -- by itself ------------------------------------------------------------------------------------
 
 
-def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[AnyData, str]]:
+def _check_files(
+    folder: Path, scenes_folder: Path | None, findings: CheckResult
+) -> Iterator[tuple[AnyData, str]]:
     if not folder.is_dir():
         raise InputError(
             "DIR", str(folder), "is no folder; give one that `verify reference make` wrote"
         )
-    manifest = _model(Manifest, MANIFEST_FORMAT, read_bytes(folder / MANIFEST), MANIFEST, found)
+    manifest = _parse_model(
+        Manifest, MANIFEST_FORMAT, read_bytes(folder / MANIFEST), MANIFEST, findings
+    )
     if manifest is None:
         return
     contents: dict[str, bytes] = {}
-    for name in _listed(folder, manifest, found):
+    for name in _list_present_files(folder, manifest, findings):
         contents[name] = read_bytes(folder / name)
         if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
+            # The sum is checked after every file, so that a folder of many files cannot exhaust the
+            # memory.
             raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
-    read: dict[str, AnyData | None] = {}
+    data_by_file: dict[str, AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
             form = format_at(folder / name)
-            read[name] = _model(MODELS[form], form, content, name, found)
+            data_by_file[name] = _parse_model(MODELS[form], form, content, name, findings)
         elif name.endswith(".csv"):
             rows_of(content, name)
     for each in manifest.files:
         if each.name in contents:
-            there = listed(each.name, contents[each.name])
+            actual = describe_file(each.name, contents[each.name])
             for column in ("bytes", "sha256"):
-                said, is_so = str(getattr(each, column)), str(getattr(there, column))
-                place = Place(found, each.name)
-                place.must(said == is_so, column, f"{said} (manifest)", is_so)
+                stated, actual_value = str(getattr(each, column)), str(getattr(actual, column))
+                place = Place(findings, each.name)
+                place.require(stated == actual_value, column, f"{stated} (manifest)", actual_value)
     for name in SCHEMAS.keys() & contents.keys():
         text = text_of(contents[name], name)
-        consistency.of_text(schema_text(name), text, Place(found, name))
-    scenes = _scenes(manifest, own, found)
-    _check_provenance(manifest, scenes, found)
-    _complete(manifest, scenes, found)
+        consistency.compare_texts(schema_text(name), text, Place(findings, name))
+    scenes = _read_scenes(manifest, scenes_folder, findings)
+    _check_provenance(manifest, scenes, findings)
+    _check_completeness(manifest, scenes, findings)
     for name, scene in scenes.items():
-        data = read.get(f"{name}.json")
+        data = data_by_file.get(f"{name}.json")
         if data is not None:
-            yield from _of_scene(data, f"{name}.json", scene, contents, found)
+            yield from _check_scene(data, f"{name}.json", scene, contents, findings)
 
 
-def _of_scene(
-    data: AnyData, file: str, scene: Scene, contents: dict[str, bytes], found: Checked
+def _check_scene(
+    data: AnyData, file: str, scene: Scene, contents: dict[str, bytes], findings: CheckResult
 ) -> Iterator[tuple[AnyData, str]]:
-    consistency.of_data(data, scene, Place(found, file))
+    consistency.check_data(data, scene, Place(findings, file))
     for name, rows in tables(data).items():
         content = contents.get(f"{name}.csv")
         if content is not None:
-            consistency.of_csv(rows, content, Place(found, f"{name}.csv"))
+            consistency.compare_csv(rows, content, Place(findings, f"{name}.csv"))
         content = contents.get(f"{name}.parquet")
         if content is not None:
-            from verify.reference.make.parquet import installed, parquet_rows
+            from verify.reference.make.parquet import is_installed, parquet_rows
 
-            if installed():
-                again = parquet_rows(content, f"{name}.parquet")
-                consistency.of_table(rows, again, Place(found, f"{name}.parquet"))
+            if is_installed():
+                parquet_table = parquet_rows(content, f"{name}.parquet")
+                consistency.compare_tables(rows, parquet_table, Place(findings, f"{name}.parquet"))
             else:
-                found.not_compared.append(f"{name}.parquet: pyarrow is not installed")
+                findings.not_compared.append(f"{name}.parquet: pyarrow is not installed")
     yield data, file
 
 
-def _model(model: type[M], form: str, content: bytes, name: str, found: Checked) -> M | None:
-    """The model in a file; None, and a difference, where it is not as the schema says."""
+def _parse_model(
+    model: type[M], form: str, content: bytes, name: str, findings: CheckResult
+) -> M | None:
+    """Return the model in a file; None, with a difference, where the content violates the
+    schema."""
     raw = check_format(json_of(content, name), form, name)
     try:
-        made = model.model_validate(raw)
+        parsed = model.model_validate(raw)
     except ValidationError as error:
-        told = error.errors(include_url=False)[0]
-        where, what = ".".join(map(str, told["loc"])), f"as the schema says ({told['msg']})"
-        Place(found, name, where).differs("", what, str(told["input"]))
+        first_error = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first_error["loc"]))
+        what = f"as the schema says ({first_error['msg']})"
+        Place(findings, name, where).differs("", what, str(first_error["input"]))
         return None
-    consistency.of_text(json_text(made), text_of(content, name), Place(found, name))
-    return made
+    consistency.compare_texts(json_text(parsed), text_of(content, name), Place(findings, name))
+    return parsed
 
 
-def _listed(folder: Path, manifest: Manifest, found: Checked) -> Iterator[str]:
-    """The files that are listed and there; the others are differences."""
-    there = {path.name for path in folder.iterdir()} - {MANIFEST}
+def _list_present_files(folder: Path, manifest: Manifest, findings: CheckResult) -> Iterator[str]:
+    """Yield the files that are listed and present; all others are differences."""
+    present = {path.name for path in folder.iterdir()} - {MANIFEST}
     names = [each.name for each in manifest.files]
-    for name in sorted({*there, *names}):
-        if name not in there:
-            Place(found, name).differs("", "a file", "missing")
+    for name in sorted({*present, *names}):
+        if name not in present:
+            Place(findings, name).differs("", "a file", "missing")
         elif name not in names:
-            Place(found, name).differs("", "in the manifest, or not there", "extra")
+            Place(findings, name).differs("", "in the manifest, or not there", "extra")
         elif names.count(name) > 1:
-            Place(found, MANIFEST, name).differs("", "listed once", "listed twice")
+            Place(findings, MANIFEST, name).differs("", "listed once", "listed twice")
         else:
-            found.files += 1
+            findings.files += 1
             yield name
 
 
-def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, Scene]:
-    """The manifest's scenes by name, each from its own text."""
+def _read_scenes(
+    manifest: Manifest, scenes_folder: Path | None, findings: CheckResult
+) -> dict[str, Scene]:
+    """Return the manifest's scenes by name, each read from its own text."""
     scenes = {}
     for each in manifest.scenes:
-        place = Place(found, MANIFEST, f"scene {each.name}")
+        place = Place(findings, MANIFEST, f"scene {each.name}")
         actual = digest(each.toml.encode())
-        place.must(each.sha256 == actual, "sha256", actual, each.sha256)
+        place.require(each.sha256 == actual, "sha256", actual, each.sha256)
         try:
             scene = scene_from_toml(each.toml, each.name)
         except InputError as error:
@@ -242,29 +271,31 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
             place.differs("toml", "a scene whose data can be read", each.toml)
             continue
         scenes[each.name] = scene
-    if own is not None:
-        wanted = {path.stem: path.read_text(encoding="utf-8") for path in own.glob("*.toml")}
-        given = {each.name: each.toml for each in manifest.scenes}
-        for name in sorted({*wanted, *given}):
-            mine, theirs = wanted.get(name, ""), given.get(name, "")
-            consistency.of_text(mine, theirs, Place(found, f"{MANIFEST}: scene {name}"))
+    if scenes_folder is not None:
+        expected_scenes = {
+            path.stem: path.read_text(encoding="utf-8") for path in scenes_folder.glob("*.toml")
+        }
+        manifest_scenes = {each.name: each.toml for each in manifest.scenes}
+        for name in sorted({*expected_scenes, *manifest_scenes}):
+            mine, theirs = expected_scenes.get(name, ""), manifest_scenes.get(name, "")
+            consistency.compare_texts(mine, theirs, Place(findings, f"{MANIFEST}: scene {name}"))
     return scenes
 
 
-def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
-    """The command and the versions, as far as they can be told to be wrong."""
-    wanted = _other_command(manifest, scenes)
-    if wanted is not None:
-        Place(found, MANIFEST, "command").differs("", wanted, manifest.command)
-    place = Place(found, MANIFEST, "versions")
-    given = [name for name in manifest.versions if name not in _NO_MORE]
-    place.must(given == list(versions()), "", ", ".join(versions()), ", ".join(given))
+def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], findings: CheckResult) -> None:
+    """Check the command and the versions, as far as they can be shown to be wrong."""
+    expected = _expected_command(manifest, scenes)
+    if expected is not None:
+        Place(findings, MANIFEST, "command").differs("", expected, manifest.command)
+    place = Place(findings, MANIFEST, "versions")
+    names = [name for name in manifest.versions if name not in _NO_MORE]
+    place.require(names == list(versions()), "", ", ".join(versions()), ", ".join(names))
     for name, version in manifest.versions.items():
-        place.must(_VERSION.fullmatch(version), name, "a version", version)
+        place.require(_VERSION.fullmatch(version), name, "a version", version)
 
 
-def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
-    """What should stand there for the command; None where that may have made the files."""
+def _expected_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
+    """Return the command that should be named; None where the one named may have made the files."""
     try:
         words = shlex.split(manifest.command)
     except ValueError:
@@ -272,6 +303,8 @@ def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
     files = [x for x in words[3:] if x != "--parquet"]
     if words[:3] != ["verify", "reference", "make"] or not all(x.endswith(".toml") for x in files):
         return "verify reference make, and scenes"
+    # The command names files in the order of the scenes; a path before the name is not compared,
+    # since the data may have been made in another folder.
     if files and len(scenes) == len(manifest.scenes):
         for file, each in zip_longest(files, manifest.scenes):
             stem = (file or "").removesuffix(".toml")
@@ -280,15 +313,17 @@ def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
     return None
 
 
-def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
-    """Whether each scene has its files, and each file its scene."""
+def _check_completeness(
+    manifest: Manifest, scenes: dict[str, Scene], findings: CheckResult
+) -> None:
+    """Check that each scene has its files, and each file its scene."""
     formats = {name: format_of(x.exact_hamiltonian().degrees) for name, x in scenes.items()}
-    wanted = names_of(formats, parquet="--parquet" in manifest.command.split())
+    expected = names_of(formats, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     one_each = len(scenes) == len(manifest.scenes)
-    Place(found, MANIFEST, "scenes").must(one_each, "", "one of each name", "two")
-    files = Place(found, MANIFEST, "files")
-    for name in sorted(wanted ^ set(names)):
-        given = ("listed", "not listed") if name in wanted else ("not listed", "listed")
-        files.differs(name, *given)
-    files.must(names == sorted(names), "", "in the order of names", "not")
+    Place(findings, MANIFEST, "scenes").require(one_each, "", "one of each name", "two")
+    files = Place(findings, MANIFEST, "files")
+    for name in sorted(expected ^ set(names)):
+        states = ("listed", "not listed") if name in expected else ("not listed", "listed")
+        files.differs(name, *states)
+    files.require(names == sorted(names), "", "in the order of names", "not")

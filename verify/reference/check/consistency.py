@@ -1,4 +1,13 @@
-"""What the files must be by themselves: complete, alike in each form, and printed in one way only.
+"""Rules that the files must obey by themselves: complete, alike in each form, and printed in one
+way only.
+
+Nothing is computed again here. Since a value is the correct rounding of its number, its radius
+follows from it; since the scene says what is requested, every name and input follows from that; and
+since the same data always give the same bytes, every file follows from its scene's JSON.
+
+Nothing is computed again here. Since a value is the correct rounding of its number, its radius
+follows from it; since the scene says what is requested, every name and input follows from that; and
+since the same data always give the same bytes, every file follows from its scene's JSON.
 
 Here nothing is computed again. Since a value is the correct rounding of its number, its radius
 follows from it; since the scene says what is asked for, every name and input follows from that; and
@@ -40,198 +49,216 @@ _NUMBER = re.compile(r"-?([1-9](?:\.[0-9]+)?)e([+-][0-9]{2,9})")
 # -- one scene's data -----------------------------------------------------------------------------
 
 
-def of_data(data: AnyData, scene: Scene, file: Place) -> None:
-    """What in the data is not what the scene asks for, or is not printed as it must be.
+def check_data(data: AnyData, scene: Scene, file: Place) -> None:
+    """Report what in the data differs from the scene's request, or is not printed as it must be.
+
+    The rows are checked only where their inputs are those of the scene, and so of bounded size.
 
     The rows are looked at only where their inputs are those of the scene, and so of bounded size.
     """
     before = len(file.findings.differences)
-    _inputs(data, scene, file)
+    _check_inputs(data, scene, file)
+    # Rows may be as many as a hostile file wishes; their number is bounded only once the inputs are
+    # those of the scene.
     if len(file.findings.differences) > before:
         return
     for proof in data.proofs:
-        _proof(data, proof, file.at(f"proof of {proof.scheme}"))
+        _check_proof(data, proof, file.at_row(f"proof of {proof.scheme}"))
     state = coordinates_in(data.degrees)
-    for of in (*data.runs, *data.flow):
-        start = {name: x for name, x in of.start.items() if name != "t"}
-        for row in of.rows:
-            at, values = file.at(f"{of.label}, step {row.step}"), values_of(row, data.degrees)
+    for item in (*data.runs, *data.flow):
+        start = {name: x for name, x in item.start.items() if name != "t"}
+        for row in item.rows:
+            place = file.at_row(f"{item.label}, step {row.step}")
+            values = values_of(row, data.degrees)
             lengths = [x for x in values if x[0] in "pq"]
-            at.must(lengths == list(state), "p, q", ", ".join(state), ", ".join(lengths))
-            _row(row, values, start, of.digits, at)
+            place.require(lengths == list(state), "p, q", ", ".join(state), ", ".join(lengths))
+            _check_row(row, values, start, item.digits, place)
 
 
-def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
-    """Names and inputs, against those of the scene."""
-    written = heading(scene.exact_hamiltonian())
-    wanted: dict[str, Any] = {"name": scene.name, **written}
-    wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
-    wanted["runs"] = [(t.scheme, *t.inputs.values(), t.steps) for t in orbit_tasks(scene)]
-    wanted["flow"] = [
+def _check_inputs(data: AnyData, scene: Scene, file: Place) -> None:
+    """Compare names and inputs with those of the scene."""
+    fields = heading(scene.exact_hamiltonian())
+    expected: dict[str, Any] = {"name": scene.name, **fields}
+    expected["proofs"] = [task.scheme for task in proof_tasks(scene)]
+    expected["runs"] = [(t.scheme, *t.inputs.values(), t.steps) for t in orbit_tasks(scene)]
+    expected["flow"] = [
         (*t.inputs.values(), tuple((n, text(n * t.step_size)) for n in t.steps))
         for t in solution_tasks(scene)
     ]
-    found: dict[str, Any] = {name: getattr(data, name, None) for name in ("name", *written)}
-    found["proofs"] = [proof.scheme for proof in data.proofs]
-    found["runs"] = [(r.scheme, *_given(r), tuple(x.step for x in r.rows)) for r in data.runs]
-    found["flow"] = [(*_given(f), tuple((x.step, x.time) for x in f.rows)) for f in data.flow]
-    for name, value in wanted.items():
+    actual: dict[str, Any] = {name: getattr(data, name, None) for name in ("name", *fields)}
+    actual["proofs"] = [proof.scheme for proof in data.proofs]
+    actual["runs"] = [(r.scheme, *_inputs_of(r), tuple(x.step for x in r.rows)) for r in data.runs]
+    actual["flow"] = [(*_inputs_of(f), tuple((x.step, x.time) for x in f.rows)) for f in data.flow]
+    for name, value in expected.items():
         lists = isinstance(value, list)
-        pairs = zip_longest(value, found[name]) if lists else [(value, found[name])]
+        pairs = zip_longest(value, actual[name]) if lists else [(value, actual[name])]
         for k, (mine, theirs) in enumerate(pairs):
-            row = file.at(f"{name} no. {k + 1}" if lists else name)
-            row.must(mine == theirs, "what is asked for", str(mine), str(theirs))
+            row = file.at_row(f"{name} no. {k + 1}" if lists else name)
+            row.require(mine == theirs, "what is asked for", str(mine), str(theirs))
             if mine is None or theirs is None:
                 break
 
 
-def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
-    """Its inputs, in the order of a task's; in the plane t0 only of an H that depends on time."""
+def _inputs_of(item: AnyRun | AnyFlow) -> tuple[Any, ...]:
+    """Return the inputs in the order of a task's; in the plane t0 only of an H that depends on
+    time."""
     names = ("step_size", "q", "p", "t0", "digits")
-    return tuple(getattr(of, name) for name in names if hasattr(of, name))
+    return tuple(getattr(item, name) for name in names if hasattr(item, name))
 
 
-def _proof(data: AnyData, proof: AnyProof, row: Place) -> None:
-    """What is said of S at odds with itself, or not written as it must be; in the plane S is ΔJ."""
+def _check_proof(data: AnyData, proof: AnyProof, row: Place) -> None:
+    """Report where statements on S contradict each other or are not written as they must be; in the
+    plane S is ΔJ."""
     plane, state = data.degrees == 1, coordinates_in(data.degrees)
     column, nothing = ("area_preserving", "leading 0") if plane else _OF_ENTRIES
-    keeps, told = proof.symplectic, f"order {proof.order}, leading {proof.leading}"
+    keeps, stated = proof.symplectic, f"order {proof.order}, leading {proof.leading}"
     zero = proof.order is None and proof.leading in ("0", {})
-    row.must(zero or not keeps, column, f"no order, and {nothing}", told)
+    row.require(zero or not keeps, column, f"no order, and {nothing}", stated)
     why = ", since ΔJ is not 0" if plane else ""
-    row.must(keeps is not False or proof.order is not None, "order", f"a number{why}", "null")
+    row.require(keeps is not False or proof.order is not None, "order", f"a number{why}", "null")
     weaker = not (keeps and proof.area_preserving is False)
-    row.must(weaker, "area_preserving", "true, since S is 0", "false")
+    row.require(weaker, "area_preserving", "true, since S is 0", "false")
     entries = {f"d{a}∧d{b}" for a, b in combinations(state, 2)}
     for entry, formula in proof.entries.items():
-        row.must(plane or entry in entries, "leading", "entries such as dp1∧dq1", entry)
-        of_formula(formula, _names(data), f"leading {entry}".strip(), row)
+        row.require(plane or entry in entries, "leading", "entries such as dp1∧dq1", entry)
+        check_formula(formula, _names_in_formulas(data), f"leading {entry}".strip(), row)
 
 
-def _names(data: AnyData) -> list[str]:
-    """What a formula of the data may be in."""
+def _names_in_formulas(data: AnyData) -> list[str]:
+    """Return the names that a formula of the data may contain."""
     return [*coordinates_in(data.degrees), *(["t"] if data.timed else []), *data.parameters]
 
 
-def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
-    """A formula in these names that is not one, or not written as it must be."""
+def check_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
+    """Report a text that is no formula in these names, or is not written as it must be."""
     try:
         parse(formula, names)
+        # Python's own parser and printer define the canonical form: a formula written otherwise was
+        # not printed by the toolkit.
         tight = ast.unparse(ast.parse(formula, mode="eval")).replace(" ", "")
     except InputError as error:
         row.differs(column, f"a formula ({error.problem})", formula)
         return
     spaced = re.sub(r" [+-] ", "", formula)  # the only place where a formula has spaces
-    written = tight == formula.replace(" ", "") and " " not in spaced
-    row.must(written, column, tight, formula)
+    is_canonical = tight == formula.replace(" ", "") and " " not in spaced
+    row.require(is_canonical, column, tight, formula)
 
 
 _AT_FIRST = {"lambda": Fraction(0), "symplectic_defect": Fraction(0)}
 
 
-def _row(
+def _check_row(
     row: OrbitRow | FlowRow,
     values: Mapping[str, Rounded | None],
     start: Mapping[str, Fraction],
     digits: int,
-    at: Place,
+    place: Place,
 ) -> None:
-    """What of a row is not as it must be, by its values and its run's initial values by column."""
+    """Report errors of a row, from its values and from its run's initial values by column."""
     size = max(map(abs, start.values()))
     finished = row.status == "finished"
     for name, value in values.items():
         must = finished and not (name in AFTER_A_STEP and row.step == 0)
         if value is None:
-            at.must(not must or name in MAY_LACK, name, "a number", "null")
+            place.require(not must or name in MAY_LACK, name, "a number", "null")
         else:
-            at.must(must, name, "null", value.value)
-            _cell(name, value, digits, size if name in start else Fraction(1), at)
-    wanted = "enclosed or estimated" if row.kind is None else "null"
-    at.must((row.kind is not None) == finished, "kind", wanted, str(row.kind))
+            place.require(must, name, "null", value.value)
+            _check_cell(name, value, digits, size if name in start else Fraction(1), place)
+    expected = "enclosed or estimated" if row.kind is None else "null"
+    place.require((row.kind is not None) == finished, "kind", expected, str(row.kind))
     if isinstance(row, OrbitRow):
-        _failed_step(row, at)
+        _check_failed_step(row, place)
     if row.step == 0:  # the initial value
-        known = finished and row.kind == "enclosed"
-        at.must(known, "status", "finished, enclosed", f"{row.status}, {row.kind}")
+        is_exact = finished and row.kind == "enclosed"
+        place.require(is_exact, "status", "finished, enclosed", f"{row.status}, {row.kind}")
         for name, exact in (dict(start) | _AT_FIRST).items():
             value, rounded = values.get(name), correctly_rounded(exact, Fraction(0), digits)
             if value and rounded:
-                at.must(value.value == rounded.value, name, rounded.value, value.value)
+                place.require(value.value == rounded.value, name, rounded.value, value.value)
 
 
-def _failed_step(row: OrbitRow, at: Place) -> None:
-    left, step = row.status == "left range", row.failed_step
-    at.must((step is not None) == left, "failed_step", "a step" if left else "null", str(step))
-    within = step is None or 1 <= step <= row.step
-    at.must(within, "failed_step", f"1 … {row.step}", str(step))
+def _check_failed_step(row: OrbitRow, place: Place) -> None:
+    escaped, step = row.status == "left range", row.failed_step
+    place.require(
+        (step is not None) == escaped, "failed_step", "a step" if escaped else "null", str(step)
+    )
+    in_range = step is None or 1 <= step <= row.step
+    place.require(in_range, "failed_step", f"1 … {row.step}", str(step))
 
 
-def _cell(name: str, cell: Rounded, digits: int, size: Fraction, at: Place) -> None:
-    """A value that is not printed as it must be, and a radius that is not the value's."""
+def _check_cell(name: str, cell: Rounded, digits: int, size: Fraction, place: Place) -> None:
+    """Report a value that is not printed as it must be, and a radius that is not the value's."""
     radius = cell.radius
     if re.fullmatch(r"-?0(\.0*)?(e.*)?", cell.value):
         near = f"1e{(magnitude(size) if size else 0) - 2 * digits:+03d}"
-        at.must(cell.value == "0", name, "0", cell.value)
-        at.must(radius in ("0", near), f"{name}_radius", f"0 or {near}", radius)
+        place.require(cell.value == "0", name, "0", cell.value)
+        place.require(radius in ("0", near), f"{name}_radius", f"0 or {near}", radius)
         return
     match = _NUMBER.fullmatch(cell.value)
     if match is None or match[2] != f"{int(match[2]):+03d}":
-        wanted = "a digit that is not 0, a point, digits, e, a sign and the exponent"
-        at.differs(name, wanted, cell.value)
+        expected = "a digit that is not 0, a point, digits, e, a sign and the exponent"
+        place.differs(name, expected, cell.value)
         return
     mantissa, exponent = match[1], int(match[2])
     count = len(mantissa.replace(".", ""))
     if radius == "0":
         short = count <= digits and (count == 1 or not mantissa.endswith("0"))
-        wanted = f"at most {digits} digits, since it is exact, and no 0 at the end"
-        at.must(short, name, wanted, cell.value)
+        expected = f"at most {digits} digits, since it is exact, and no 0 at the end"
+        place.require(short, name, expected, cell.value)
         return
+    # A number halfway between two decimals is printed with one digit more (see
+    # `verify.reference.make.correct_rounding`).
     tie = count == digits + 1 and mantissa.endswith("5")
-    at.must(count == digits or tie, name, f"{digits} digits", cell.value)
+    place.require(count == digits or tie, name, f"{digits} digits", cell.value)
+    # A correctly rounded decimal is off by at most half a unit of its last place, so the radius
+    # carries no information of its own and must be exactly that half.
     half = f"5e{exponent - count:+03d}"
-    at.must(radius == half, f"{name}_radius", half, radius)
+    place.require(radius == half, f"{name}_radius", half, radius)
 
 
 # -- the same in another form ---------------------------------------------------------------------
 
 
-def of_table(wanted: Sequence[Row], found: Sequence[Row], file: Place) -> None:
-    """Cells of a table that are not those of the scene's JSON, up to a line of another length."""
-    names = wanted[0]
-    for k, (mine, theirs) in enumerate(zip_longest(wanted, found), start=1):
+def compare_tables(expected: Sequence[Row], actual: Sequence[Row], file: Place) -> None:
+    """Report cells of a table that differ from the scene's JSON, up to a line of another length."""
+    names = expected[0]
+    for k, (mine, theirs) in enumerate(zip_longest(expected, actual), start=1):
         if mine == theirs:
             continue
-        line = file.at(f"line {k}")
+        line = file.at_row(f"line {k}")
         if mine is None or theirs is None or len(mine) != len(theirs):
-            line.differs("", _joined(mine), _joined(theirs))
+            line.differs("", _join_cells(mine), _join_cells(theirs))
             return
         for name, x, y in zip(names, mine, theirs, strict=True):
-            line.must(x == y, name, x, y)
+            line.require(x == y, name, x, y)
 
 
-def _joined(row: Row | None) -> str:
+def _join_cells(row: Row | None) -> str:
     return "no line" if row is None else ",".join(row)
 
 
-def of_text(wanted: str, found: str, file: Place) -> None:
-    """The first line that is not as it must be written, where two texts differ."""
-    if wanted == found:
+def compare_texts(expected: str, actual: str, file: Place) -> None:
+    """Report the first line in which two texts differ."""
+    if expected == actual:
         return
-    lines = zip_longest(wanted.split("\n"), found.split("\n"))
+    lines = zip_longest(expected.split("\n"), actual.split("\n"))
     k, (mine, theirs) = next((k, pair) for k, pair in enumerate(lines, 1) if pair[0] != pair[1])
-    at = next((i for i, (a, b) in enumerate(zip(mine or "", theirs or "", strict=False)) if a != b),
-              min(len(mine or ""), len(theirs or "")))  # fmt: skip
-    cut = max(0, at - 40)
-    shown = (repr(x[cut : at + 40]) if x is not None else "no line" for x in (mine, theirs))
-    file.at(f"line {k}").differs(f"character {at + 1}", *shown)
+    pairs = enumerate(zip(mine or "", theirs or "", strict=False))
+    shorter = min(len(mine or ""), len(theirs or ""))
+    column = next((i for i, (a, b) in pairs if a != b), shorter)
+    cut = max(0, column - 40)
+    excerpts = (repr(x[cut : column + 40]) if x is not None else "no line" for x in (mine, theirs))
+    file.at_row(f"line {k}").differs(f"character {column + 1}", *excerpts)
 
 
-def of_csv(wanted: Sequence[Row], content: bytes, file: Place) -> None:
-    """A CSV file against the scene's JSON, cell by cell, then character by character.
+def compare_csv(expected: Sequence[Row], content: bytes, file: Place) -> None:
+    """Compare a CSV file with the scene's JSON, cell by cell, then character by character.
+
+    Raises InputError where it is not CSV.
 
     InputError where it is not CSV.
     """
     before = len(file.findings.differences)
-    of_table(wanted, rows_of(content, file.file), file)
+    compare_tables(expected, rows_of(content, file.file), file)
     if len(file.findings.differences) == before:
-        of_text(csv_text(list(wanted)), text_of(content, file.file), file)
+        compare_texts(csv_text(list(expected)), text_of(content, file.file), file)

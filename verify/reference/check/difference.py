@@ -1,4 +1,4 @@
-"""What a check finds: one place in the files, what should stand there, and what does."""
+"""The findings of a check: one place in the files, what should stand there, and what does."""
 
 from dataclasses import asdict, dataclass, field
 
@@ -9,7 +9,7 @@ _MOST_SHOWN = 120
 
 @dataclass(frozen=True)
 class Difference:
-    """`wanted` is what the check has, `found` what stands in the file."""
+    """A place in a file where `found` stands and the check expects `wanted`."""
 
     file: str
     row: str
@@ -22,7 +22,7 @@ class Difference:
         return f"{where}: should be {_short(self.wanted)}, is {_short(self.found)}"
 
     def as_json(self) -> dict[str, str]:
-        """The same for JSON, with marks for what in a file's name is no UTF-8."""
+        """Return the same for JSON, with marks for bytes in a file's name that are not UTF-8."""
         return {k: v.encode(errors="replace").decode() for k, v in asdict(self).items()}
 
 
@@ -33,14 +33,15 @@ def _short(text: str) -> str:
 
 @dataclass
 class Findings:
-    """What was found: rows `recomputed`, differences, what could not be recomputed, and why."""
+    """The findings of a check: the number of rows `recomputed`, the differences, and what could not
+    be recomputed, with the reason."""
 
     recomputed: int = 0
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
 
     def add(self, other: "Findings") -> None:
-        """Takes up what another one found."""
+        """Add the findings of another check to these."""
         self.recomputed += other.recomputed
         self.differences += other.differences
         self.not_recomputed += other.not_recomputed
@@ -48,25 +49,25 @@ class Findings:
 
 @dataclass(frozen=True)
 class Place:
-    """A file, or a row of it; what is found there is taken up among the findings."""
+    """A file, or a row of it; differences in it are added to `findings`."""
 
     findings: Findings
     file: str
     row: str = ""
 
-    def at(self, row: str) -> "Place":
-        """A row of the file."""
+    def at_row(self, row: str) -> "Place":
+        """Return the place of a row of the file."""
         return Place(self.findings, self.file, row)
 
-    def must(self, right: object, column: str, wanted: str, found: str) -> None:
-        """Takes up a difference unless it is right."""
+    def require(self, right: object, column: str, expected: str, actual: str) -> None:
+        """Add a difference unless `right` is true."""
         if not right:
-            self.differs(column, wanted, found)
+            self.differs(column, expected, actual)
 
-    def differs(self, column: str, wanted: str, found: str) -> None:
-        """Takes up a difference."""
-        self.findings.differences.append(Difference(self.file, self.row, column, wanted, found))
+    def differs(self, column: str, expected: str, actual: str) -> None:
+        """Add a difference."""
+        self.findings.differences.append(Difference(self.file, self.row, column, expected, actual))
 
     def is_left_out(self, why: object) -> None:
-        """Takes up that the row is not recomputed."""
+        """Note that the row is not recomputed, and why."""
         self.findings.not_recomputed.append(f"{self.file}: {self.row}: {why}")

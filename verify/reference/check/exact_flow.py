@@ -32,22 +32,26 @@ class BlowsUpError(NoSolutionError):
 def states_at(
     field: Field, start: Mapping[str, Fraction], times: Sequence[Fraction], digits: int
 ) -> tuple[list[Vector], NoSolutionError | None]:
-    """Balls of z at the times, which ascend from 0, and why not at all of them, if so.
+    """Return balls of z at the times, which ascend from 0, and the reason if some were not reached.
 
     `start`: the coordinates and, where H depends on it, t.
     """
     bits = math.ceil(3.33 * (digits + _MORE)) + 64
     with flint.ctx.workprec(bits):
+        # Another tolerance and another order: an error of the method would have to be the same in
+        # both to go unseen.
         rough, why = _taylor_solution(field, start, times, digits)
-        fine, also = _taylor_solution(field, start, times, digits + _MORE)
-        both = [_around(*pair, digits) for pair in zip(rough, fine, strict=False)]
-        return both, why or also
+        fine, why_fine = _taylor_solution(field, start, times, digits + _MORE)
+        both = [_merge(*pair, digits) for pair in zip(rough, fine, strict=False)]
+        return both, why or why_fine
 
 
-def _around(rough: Vector, fine: Vector, digits: int) -> Vector:
-    apart = max((abs(a - b).upper() for a, b in zip(rough, fine, strict=True)), key=_size)
-    scale = max((abs(x).upper() for x in fine), key=_size)
-    radius = 4 * apart + scale * flint.arb(10) ** (-digits - 2)
+def _merge(rough: Vector, fine: Vector, digits: int) -> Vector:
+    distance = max((abs(a - b).upper() for a, b in zip(rough, fine, strict=True)), key=_log_size)
+    scale = max((abs(x).upper() for x in fine), key=_log_size)
+    # An estimate, not a bound: the factor 4 and the term of 10^(−digits − 2) allow for errors that
+    # both integrations share.
+    radius = 4 * distance + scale * flint.arb(10) ** (-digits - 2)
     return [x.mid() + flint.arb(0, 1) * radius for x in fine]
 
 
@@ -56,7 +60,7 @@ def _taylor_solution(
 ) -> tuple[list[Vector], NoSolutionError | None]:
     order = digits + digits // 4 + 10
     z: Vector = [flint.arb(number(start[name])) for name in field.names]
-    first, done, states = _largest(z), Fraction(0), []
+    first, done, states = _largest_log(z), Fraction(0), []
     waiting = list(times)
     shortest: float | None = None
     for _ in range(_MOST_STEPS):
@@ -71,45 +75,50 @@ def _taylor_solution(
         if not all(x.is_finite() for vector in zs for x in vector):
             return states, NoSolutionError("H is not defined there")
         shortest = reach if shortest is None else shortest
-        if _largest(z) > first + _BURST and reach < shortest - _STOPPED:
+        # Both a state 2^40 times larger and steps 2^60 times shorter than at first: near a pole in
+        # time they go together.
+        if _largest_log(z) > first + _BURST and reach < shortest - _STOPPED:
             return states, BlowsUpError("the solution blows up before")
         after = done + _power_of_two(reach)
         while waiting and waiting[0] <= after:
-            states.append(_sum(zs, waiting.pop(0) - done))
-        z, done = _sum(zs, after - done), after
+            states.append(_evaluate_at(zs, waiting.pop(0) - done))
+        z, done = _evaluate_at(zs, after - done), after
     return states, NoSolutionError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
 
 
 def _reach(zs: list[Vector], digits: int) -> float:
-    """lg₂ of a step whose last terms are 10^−digits of the state, or of its speed where it is 0."""
-    scale = next((size for size in map(_largest, zs) if size > -math.inf), 0.0)
+    """Return lg₂ of a step whose last terms are 10^−digits of the state, or of its speed where
+    it is 0."""
+    scale = next((size for size in map(_largest_log, zs) if size > -math.inf), 0.0)
     reaches = []
     for k in (len(zs) - 1, len(zs) - 2):
-        last = _largest(zs[k])
+        last = _largest_log(zs[k])
         if last > -math.inf:
             reaches.append((scale - 3.3219281 * digits - last) / k)
     return min(reaches, default=60.0)  # a polynomial in t
 
 
-def _sum(zs: list[Vector], h: Fraction) -> Vector:
-    """The polynomials at h, their rounding forgotten: the other integration tells it."""
+def _evaluate_at(zs: list[Vector], h: Fraction) -> Vector:
+    """Return the polynomials at h, without their rounding errors: the other integration shows
+    these."""
     return [x.mid() for x in polynomials(zs, flint.arb(number(h)))]
 
 
 def _power_of_two(exponent: float) -> Fraction:
-    """2^exponent, rounded down a little, with few bits."""
+    """Return 2^exponent, rounded down a little, with few bits."""
     whole = math.floor(exponent)
     return Fraction(math.floor(1024 * 2 ** (exponent - whole)), 1024) * Fraction(2) ** whole
 
 
-def _largest(z: Sequence[Any]) -> float:
-    return max(_size(x) for x in z)
+def _largest_log(z: Sequence[Any]) -> float:
+    """Return about lg₂ of the largest |coordinate|."""
+    return max(_log_size(x) for x in z)
 
 
-def _size(x: Any) -> float:
-    """About lg₂ |x| of a ball's middle, however large or small."""
-    middle = x.mid()
-    if not middle.is_finite() or middle.is_zero():
-        return -math.inf if middle.is_zero() else math.inf
-    mantissa, exponent = middle.man_exp()
+def _log_size(x: Any) -> float:
+    """Return about lg₂ |x| of a ball's middle, however large or small."""
+    midpoint = x.mid()
+    if not midpoint.is_finite() or midpoint.is_zero():
+        return -math.inf if midpoint.is_zero() else math.inf
+    mantissa, exponent = midpoint.man_exp()
     return float(abs(int(mantissa)).bit_length() + int(exponent))

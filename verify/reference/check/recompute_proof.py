@@ -1,4 +1,7 @@
-"""What is proved of a scheme, looked at again: powers of h in S and in the map, at some points.
+"""What is proved of a scheme, examined again: powers of h in S and in the map, at some points.
+
+The step is done with power series in h for z and the Jacobian, whose coefficients are balls. In the
+plane, S = JᵀΩJ − Ω has one entry, which is ΔJ.
 
 The step is done with power series in h for z and the Jacobian: their coefficients are balls. Of
 S = JᵀΩJ − Ω there is one entry in the plane, which is ΔJ.
@@ -28,127 +31,135 @@ _MOVES = (  # factors of p and of q, and how much later
 _AREA = ""  # the name of the only entry of S in the plane
 
 
-def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> None:
-    """The powers of h in S and in the map, at points near the initial values.
+def recompute_proof(field: Field, data: AnyData, proof: AnyProof, file: Place) -> None:
+    """Compute the powers of h in S and in the map, at points near the initial values.
+
+    Values at points cannot show that a coefficient vanishes for every z, but they show where it
+    does not.
 
     That a coefficient vanishes for every z is not seen so, but that it does not is.
     """
     order, convergence = proof.order, proof.convergence_order
-    row = file.at(f"proof of {proof.scheme}")
+    row = file.at_row(f"proof of {proof.scheme}")
     for column, claimed in (("order", order), ("convergence_order", convergence)):
         if (claimed or 0) > _ANY_ORDER:
             row.differs(column, f"at most {_ANY_ORDER}", str(claimed))
             return
-    unordered = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
-    looking = _Looking(known, proof, row, max(order or unordered, (convergence or 0) + 1))
-    for point in _points(known, data):
-        with flint.ctx.workprec(_BITS), length_of_series(looking.most + 1):
-            looking.at(point)
-    looking.end()
+    unordered = _MOST_ORDER if field.degrees == 1 else _OF_SEVERAL
+    examination = _Examination(field, proof, row, max(order or unordered, (convergence or 0) + 1))
+    for point in _points(field, data):
+        with flint.ctx.workprec(_BITS), length_of_series(examination.most + 1):
+            examination.examine(point)
+    examination.finish()
 
 
-class _Looking:
-    """One proof's coefficients at one point after another."""
+class _Examination:
+    """The coefficients of one proof at one point after another."""
 
-    def __init__(self, known: Field, proof: AnyProof, row: Place, most: int) -> None:
-        self.known, self.proof, self.row, self.most = known, proof, row, most
-        self.step = step_of(proof.scheme, known)
-        self.leading = {name: known.tape.read(x) for name, x in proof.entries.items()}
-        self.looked, self.seen = 0, {"order": False, "convergence_order": False}
+    def __init__(self, field: Field, proof: AnyProof, row: Place, most: int) -> None:
+        self.field, self.proof, self.row, self.most = field, proof, row, most
+        self.step = step_of(proof.scheme, field)
+        self.leading = {name: field.tape.read(x) for name, x in proof.entries.items()}
+        self.examined, self.nonzero_seen = 0, {"order": False, "convergence_order": False}
 
-    def at(self, point: Point) -> None:
-        form, apart, leading = _powers(self.known, self.step, point, self.most, self.leading)
-        every = [x for powers in (*form.values(), *apart.values()) for x in powers]
+    def examine(self, point: Point) -> None:
+        form, map_error, leading = _expand(self.field, self.step, point, self.most, self.leading)
+        every = [x for powers in (*form.values(), *map_error.values()) for x in powers]
+        # H is not defined at this point, or not on the way of the step: the point says nothing.
         if not all(x.is_finite() for x in (*every, *leading.values())):
             return
-        self.looked += 1
+        self.examined += 1
         order, convergence = self.proof.order, self.proof.convergence_order
-        self._vanish("order", form, self.most + 1 if order is None else order)
+        self._check_vanishing("order", form, self.most + 1 if order is None else order)
         upto = self.most - 1 if convergence is None else convergence
-        self._vanish("convergence_order", apart, upto + 1)
+        self._check_vanishing("convergence_order", map_error, upto + 1)
         if order is not None:
-            self._leads(form, leading, order)
+            self._check_leading(form, leading, order)
         if convergence is not None:
-            self.seen["convergence_order"] |= _some(apart, convergence + 1)
+            self.nonzero_seen["convergence_order"] |= _is_nonzero_at(map_error, convergence + 1)
 
-    def _leads(self, form: Powers, leading: Mapping[str, Number], order: int) -> None:
-        self.seen["order"] |= _some(form, order)
+    def _check_leading(self, form: Powers, leading: Mapping[str, Number], order: int) -> None:
+        self.nonzero_seen["order"] |= _is_nonzero_at(form, order)
         if not leading:  # too long to be written out
             return
         for name, powers in form.items():
             lead = leading.get(name, flint.arb(0))
-            wanted = f"{shown(powers[order], 20)} at a point"
+            expected = f"{format_ball(powers[order], 20)} at a point"
             same = (powers[order] - lead).contains(0)
-            self.row.must(same, f"leading {name}".strip(), wanted, shown(lead, 20))
+            # Overlapping balls do not prove equality; disjoint ones refute it, which is all that is
+            # needed.
+            self.row.require(same, f"leading {name}".strip(), expected, format_ball(lead, 20))
 
-    def _vanish(self, column: str, every: Powers, below: int) -> None:
+    def _check_vanishing(self, column: str, every: Powers, below: int) -> None:
         for k in range(below):
             for name, powers in every.items():
                 if not powers[k].contains(0):
-                    plane = self.known.degrees == 1
+                    plane = self.field.degrees == 1
                     what = f"the coefficient of h^{k}" if plane else f"that of h^{k} in {name}"
                     least = k if column == "order" else k - 1
-                    wanted = f"{least}, since {what} is {shown(powers[k], 12)}"
-                    self.row.differs(column, wanted, str(getattr(self.proof, column)))
+                    expected = f"{least}, since {what} is {format_ball(powers[k], 12)}"
+                    self.row.differs(column, expected, str(getattr(self.proof, column)))
                     return
 
-    def end(self) -> None:
-        """What was claimed not to vanish, and did wherever it was looked at."""
-        if not self.looked:
+    def finish(self) -> None:
+        """Report each coefficient that is claimed not to vanish and vanished at every point."""
+        if not self.examined:
             self.row.is_left_out("H is not defined nearby")
             return
         self.row.findings.recomputed += 1
-        for column, seen in self.seen.items():
+        for column, nonzero in self.nonzero_seen.items():
             claimed = getattr(self.proof, column)
-            wanted = "more, since that coefficient is 0"
-            self.row.must(seen or claimed is None, column, wanted, str(claimed))
+            expected = "more, since that coefficient is 0"
+            self.row.require(nonzero or claimed is None, column, expected, str(claimed))
 
 
-def _some(every: Powers, k: int) -> bool:
-    """Whether a coefficient of h^k does not vanish."""
+def _is_nonzero_at(every: Powers, k: int) -> bool:
+    """Return True if some coefficient of h^k does not vanish."""
     return any(not powers[k].contains(0) for powers in every.values())
 
 
-def _powers(
-    known: Field, step: Step, point: Point, most: int, leading: Mapping[str, int]
+def _expand(
+    field: Field, step: Step, point: Point, most: int, leading: Mapping[str, int]
 ) -> tuple[Powers, Powers, Mapping[str, Number]]:
-    """Coefficients of h⁰ … in the entries of S, and in the map less the flow; the leading ones."""
-    names = known.names
+    """Return the coefficients of h⁰ … in the entries of S and in the map minus the flow, and the
+    leading ones."""
+    names = field.names
     z, t = [flint.arb(number(point[name])) for name in names], flint.arb(number(point["t"]))
+    # h is a power series variable: the step's arithmetic then yields all coefficients at once.
     h = flint.arb_series([0, 1], most + 1)
     zero = 0 * h
     after, jacobian = step(z, h, t)
     form = {
-        _AREA if known.degrees == 1 else f"d{names[a]}∧d{names[b]}": _coefficients(x + zero, most)
-        for (a, b), x in defect(jacobian, known.degrees).items()
+        _AREA if field.degrees == 1 else f"d{names[a]}∧d{names[b]}": _coefficients(x + zero, most)
+        for (a, b), x in defect(jacobian, field.degrees).items()
     }
-    flow = zip(*flow_series(known.slopes, z, t, most), strict=True)
-    apart = {
+    flow = zip(*flow_series(field.slopes, z, t, most), strict=True)
+    map_error = {
         name: [u - v for u, v in zip(_coefficients(x + zero, most), series, strict=True)]
         for name, x, series in zip(names, after, flow, strict=True)
     }
-    values = Expansion(known.tape, list(leading.values()))
+    values = Expansion(field.tape, list(leading.values()))
     values.begin([*z, t])
-    return form, apart, {name: values.value(x) for name, x in leading.items()}
+    return form, map_error, {name: values.value(x) for name, x in leading.items()}
 
 
 def _coefficients(series: Any, most: int) -> list[Number]:
     return [series[k] for k in range(most + 1)]
 
 
-def shown(ball: Number, digits: int) -> str:
-    """The ball's middle, with two digits more than those."""
+def format_ball(ball: Number, digits: int) -> str:
+    """Return the ball's midpoint, with two digits more than `digits`."""
     return str(ball.str(digits + 2, radius=False))
 
 
-def _points(known: Field, data: AnyData) -> Iterator[Point]:
-    """Points near the initial values, of no pattern, with times; no coordinate is 0."""
-    momenta, places = known.names[: known.degrees], known.names[known.degrees :]
+def _points(field: Field, data: AnyData) -> Iterator[Point]:
+    """Yield points near the initial values, without a pattern, with times; no coordinate is 0."""
+    momenta, positions = field.names[: field.degrees], field.names[field.degrees :]
     starts = {tuple(run.start.values()): run.start for run in data.runs}
     for start in list(starts.values())[:3]:
-        for by_p, by_q, later in _MOVES:
-            point = {"t": start.get("t", Fraction(0)) + later}
-            for k, (p, q) in enumerate(zip(momenta, places, strict=True)):
+        for by_p, by_q, delay in _MOVES:
+            point = {"t": start.get("t", Fraction(0)) + delay}
+            for k, (p, q) in enumerate(zip(momenta, positions, strict=True)):
                 x, y, more = start[p], start[q], Fraction(k, 40)
                 point[p] = (x or y / 3 or Fraction(2, 3)) * (by_p + more)
                 point[q] = (y or x / 5 or Fraction(4, 5)) * (by_q + more)

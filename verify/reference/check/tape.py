@@ -1,4 +1,5 @@
-"""A formula as a list of operations, its derivatives as more of them: for recomputing, and alone.
+"""A formula as a list of operations, and its derivatives as more of them: for recomputing, and on
+its own.
 
 Nothing of `verify` is used here: the formula is read from Python's syntax tree, and derivatives are
 taken operation by operation. Operations that are the same are one. sympy would read and
@@ -17,7 +18,7 @@ _FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
 
 
 class NotReadError(ValueError):
-    """A formula with something in it that this module does not know."""
+    """A formula contains something that this module does not support."""
 
 
 class Tape:
@@ -33,29 +34,29 @@ class Tape:
     ) -> None:
         self.parameters, self.variables = parameters, tuple(variables)
         self.nodes: list[Node] = []
-        self._known: dict[Node, int] = {}
+        self._index_of: dict[Node, int] = {}
         self._derived: dict[tuple[int, str], int] = {}
 
     # -- building -------------------------------------------------------------------------------
 
     def node(self, *content: Any) -> int:
-        """The node of that kind and those operands, made where it is new."""
-        if content not in self._known:
-            self._known[content] = len(self.nodes)
+        """Return the node of that kind and those operands, created where it is new."""
+        if content not in self._index_of:
+            self._index_of[content] = len(self.nodes)
             self.nodes.append(content)
-        return self._known[content]
+        return self._index_of[content]
 
     def const(self, value: Fraction | int) -> int:
-        """A rational."""
+        """Return the node of a rational."""
         return self.node("const", Fraction(value))
 
     def value(self, x: int) -> Fraction | None:
-        """The rational that a node is, where it is one."""
+        """Return the rational that a node is, or None."""
         kind, *rest = self.nodes[x]
         return rest[0] if kind == "const" else None
 
     def add(self, x: int, y: int) -> int:
-        """x + y."""
+        """Return x + y."""
         a, b = self.value(x), self.value(y)
         if a is not None and b is not None:
             return self.const(a + b)
@@ -64,7 +65,7 @@ class Tape:
         return self.node("add", *sorted((x, y)))
 
     def scale(self, factor: Fraction | int, x: int) -> int:
-        """factor · x."""
+        """Return factor · x."""
         kind, *rest = self.nodes[x]
         if kind == "const":
             return self.const(factor * rest[0])
@@ -75,7 +76,7 @@ class Tape:
         return x if factor == 1 else self.node("scale", Fraction(factor), x)
 
     def mul(self, x: int, y: int) -> int:
-        """x y."""
+        """Return x y."""
         for one, other in ((x, y), (y, x)):
             kind, *rest = self.nodes[one]
             if kind == "const":
@@ -85,7 +86,7 @@ class Tape:
         return self.node("mul", *sorted((x, y)))
 
     def power(self, x: int, exponent: Fraction) -> int:
-        """x^exponent; whole positive powers are products."""
+        """Return x^exponent; whole positive powers are products."""
         a = self.value(x)
         if exponent == 1:
             return x
@@ -98,12 +99,12 @@ class Tape:
         return self.node("power", Fraction(exponent), x)
 
     def function(self, name: str, x: int) -> int:
-        """A function that formulas have, of x; tan and tanh are quotients, a root is a power, and
-        asinh x is log(x + √(1 + x²))."""
+        """Return a function of formulas, applied to x; tan and tanh are quotients, a root is a
+        power, and asinh x is log(x + √(1 + x²))."""
         if name in ("tan", "tanh"):
-            above, below = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
-            inverse = self.power(self.function(below, x), Fraction(-1))
-            return self.mul(self.function(above, x), inverse)
+            numerator, denominator = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
+            inverse = self.power(self.function(denominator, x), Fraction(-1))
+            return self.mul(self.function(numerator, x), inverse)
         if name == "sqrt":
             return self.power(x, Fraction(1, 2))
         if name == "asinh":
@@ -120,8 +121,8 @@ class Tape:
     # -- reading --------------------------------------------------------------------------------
 
     def read(self, formula: str) -> int:
-        """The node of a formula in the variables and the parameters. NotReadError for what is not
-        known."""
+        """Return the node of a formula in the variables and the parameters. Raises NotReadError for
+        anything else."""
         try:
             return self._read(ast.parse(formula, mode="eval").body, formula)
         except (SyntaxError, RecursionError, ArithmeticError, MemoryError) as error:
@@ -168,7 +169,7 @@ class Tape:
     # -- derivatives ----------------------------------------------------------------------------
 
     def diff(self, x: int, name: str) -> int:
-        """The node of ∂x by a variable."""
+        """Return the node of the derivative of x by a variable."""
         if (x, name) not in self._derived:
             self._derived[x, name] = self._diff(self.nodes[x], x, name)
         return self._derived[x, name]
@@ -190,7 +191,7 @@ class Tape:
         return self.mul(self._outer(kind, args, x), inner)
 
     def _outer(self, kind: str, args: Sequence[Any], x: int) -> int:
-        """The derivative of a function by its argument."""
+        """Return the derivative of a function by its argument."""
         if kind == "power":
             return self.scale(args[0], self.power(args[1], args[0] - 1))
         if kind == "exp":
@@ -202,12 +203,15 @@ class Tape:
         other = self.function(PAIRS[kind], args[0])
         return self.scale(-1, other) if kind == "cos" else other
 
-    def needed(self, *roots: int) -> tuple[int, ...]:
-        """The nodes that the roots are made of, themselves among them, in order."""
-        found = set(roots)
+    def nodes_below(self, *roots: int) -> tuple[int, ...]:
+        """Return the nodes that the roots are made of, themselves among them, in order."""
+        indices = set(roots)
+        # Operands come before the nodes that use them, so one pass from the end reaches them all.
         for x in reversed(range(len(self.nodes))):
-            if x in found:
-                found.update(a for a in self.nodes[x][1:] if not isinstance(a, Fraction))
-        own = [self.nodes[x] for x in found]  # of a pair each needs the other's coefficients
-        others = {self._known[PAIRS[kind], *args] for kind, *args in own if kind in PAIRS}
-        return tuple(sorted(found | others))
+            if x in indices:
+                indices.update(a for a in self.nodes[x][1:] if not isinstance(a, Fraction))
+        operations = [
+            self.nodes[x] for x in indices
+        ]  # of a pair each needs the other's coefficients
+        others = {self._index_of[PAIRS[kind], *args] for kind, *args in operations if kind in PAIRS}
+        return tuple(sorted(indices | others))

@@ -20,18 +20,18 @@ Work = tuple[int, str, Any, Any]  # node, kind, and two operands: nodes or a fac
 
 
 def number(x: Fraction) -> Any:
-    """A rational as flint's."""
+    """Return a rational as flint's."""
     return flint.fmpq(x.numerator, x.denominator)
 
 
 class Expansion:
-    """The coefficients of some nodes along the tape's variables, as far as those have been given,
-    and t."""
+    """The coefficients of some nodes along the tape's variables, as far as these have been
+    supplied, and along t."""
 
     def __init__(self, tape: Tape, roots: Sequence[int]) -> None:
         self._work: list[Work] = []
         self.c: dict[int, list[Number]] = {}
-        for x in tape.needed(*roots):
+        for x in tape.nodes_below(*roots):
             kind, *args = tape.nodes[x]
             if kind in PAIRS:
                 args.append(tape.node(PAIRS[kind], args[0]))
@@ -41,27 +41,27 @@ class Expansion:
             self._work.append((x, kind, *[*args, None, None][:2]))
 
     def begin(self, point: Sequence[Number]) -> None:
-        """The first coefficients: the nodes' values at a point, its numbers in the order of the
-        tape's variables, in flint's present precision."""
+        """Compute the first coefficients: the nodes' values at a point, its numbers in the order of
+        the tape's variables, in flint's present precision."""
         self.c = {}
         for x, kind, a, b in self._work:
-            self.c[x] = [point[a] if kind == _VARIABLE else _first(kind, a, b, self.c)]
+            self.c[x] = [point[a] if kind == _VARIABLE else _first_coefficient(kind, a, b, self.c)]
 
-    def more(self, point: Sequence[Number]) -> None:
-        """The next coefficient of every node, the point's being those of all variables but t."""
+    def extend(self, point: Sequence[Number]) -> None:
+        """Compute the next coefficient of every node from those of all variables but t."""
         for x, kind, a, b in self._work:
             k = len(self.c[x])
             if kind == _VARIABLE:
                 self.c[x].append(point[a] if a < len(point) else flint.arb(int(k == 1)))
             else:
-                self.c[x].append(_next(kind, a, b, self.c, self.c[x], k))
+                self.c[x].append(_next_coefficient(kind, a, b, self.c, self.c[x], k))
 
     def value(self, x: int) -> Number:
-        """A node's first coefficient."""
+        """Return a node's first coefficient."""
         return self.c[x][0]
 
 
-def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) -> Number:
+def _first_coefficient(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) -> Number:
     if kind == "const":
         return flint.arb(a)
     if kind == "pi":
@@ -90,18 +90,18 @@ def _power(u: Number, exponent: flint.fmpq) -> Number:
     return result if exponent > 0 else 1 / result
 
 
-def _next(
-    kind: str, a: Any, b: Any, c: dict[int, list[Number]], own: list[Number], k: int
+def _next_coefficient(
+    kind: str, a: Any, b: Any, c: dict[int, list[Number]], coefficients: list[Number], k: int
 ) -> Number:
-    """The k-th coefficient of a node that has `own` so far."""
+    """Return the k-th coefficient of a node whose earlier ones are `coefficients`."""
     if kind in ("const", "pi"):
         return flint.arb(0)
     if kind == "scale":
         return c[b][k] * a
     if kind == "power":  # u v' = r v u'
         r, u = a, c[b]
-        first = r * k * (u[k] * own[0])
-        total = sum(((r * j - (k - j)) * (u[j] * own[k - j]) for j in range(1, k)), first)
+        first = r * k * (u[k] * coefficients[0])
+        total = sum(((r * j - (k - j)) * (u[j] * coefficients[k - j]) for j in range(1, k)), first)
         return total / (k * u[0])
     u = c[a]
     if kind == "add":
@@ -113,8 +113,10 @@ def _next(
         return sum((u[j] * c[b][k - j] for j in range(1, k + 1)), u[0] * c[b][k])
     if kind in ("log", "atan"):  # w v' = u', w being u or 1 + u²
         w = u if kind == "log" else c[b]
-        total = sum((j * (own[j] * w[k - j]) for j in range(1, k)), 0 * u[k])
+        total = sum((j * (coefficients[j] * w[k - j]) for j in range(1, k)), 0 * u[k])
         return (k * u[k] - total) / (k * w[0])
-    other = own if kind == "exp" else c[b]  # v' = ± w u'
+    # exp, sin, cos, sinh and cosh: k v_k = ± Σ j u_j w_(k−j), where w is exp u itself or the other
+    # of the pair.
+    other = coefficients if kind == "exp" else c[b]  # v' = ± w u'
     total = sum((j * (u[j] * other[k - j]) for j in range(1, k)), k * (u[k] * other[0])) / k
     return -total if kind == "cos" else total

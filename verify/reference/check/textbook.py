@@ -24,11 +24,12 @@ _F = Fraction
 
 
 class UnknownSchemeError(ValueError):
-    """A scheme, or a scheme for such an H, that is not recomputed here."""
+    """A scheme, or a scheme for such an H, is not recomputed here."""
 
 
 class Rows:
-    """Some rows of f, and of A what in them does not vanish: at a point, or along a solution."""
+    """Some rows of f, and the entries of A in them that do not vanish: at a point, or along a
+    solution."""
 
     def __init__(self, tape: Tape, f: dict[int, int], a: Iterable[tuple[int, int, int]]) -> None:
         """`f`: nodes by their rows; `a`: row, column and node of each entry."""
@@ -37,7 +38,7 @@ class Rows:
 
 
 class Field:
-    """f and A of one Hamiltonian, from its formula alone."""
+    """The field f and its derivative A of one Hamiltonian, from its formula alone."""
 
     def __init__(self, formula: str, parameters: dict[str, Fraction], degrees: int) -> None:
         numbers = [""] if degrees == 1 else range(1, degrees + 1)
@@ -51,27 +52,30 @@ class Field:
         f = dict(enumerate(slopes))
         every = [(r, c, tape.diff(x, z)) for r, x in f.items() for c, z in enumerate(self.names)]
         a = [entry for entry in every if tape.value(entry[2]) != 0]
+        # H = T(p, t) + V(q, t) exactly where ∂f/∂z has no entry of p by p, or of q by q.
         self.separable = all((row < degrees) != (column < degrees) for row, column, _ in a)
-        self.timed = any(tape.nodes[x] == ("t",) for x in tape.needed(h))
+        self.timed = any(tape.nodes[x] == ("t",) for x in tape.nodes_below(h))
         self.alone = Expansion(tape, [h])
         self.slopes, self.all = Rows(tape, f, []), Rows(tape, f, a)
         self.of_q = Rows(tape, {row: f[row] for row in range(degrees)}, a)
         self.of_p = Rows(tape, {row: f[row] for row in range(degrees, 2 * degrees)}, a)
 
     def energy(self, z: Sequence[Number], t: Number) -> Number:
-        """H there."""
+        """Return H(z, t)."""
         self.alone.begin([*z, t])
         return self.alone.value(self.h)
 
 
 def identity(size: int) -> Matrix:
-    """The matrix 1."""
+    """Return the identity matrix."""
     return [int(k % (size + 1) == 0) for k in range(size**2)]
 
 
 def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
-    """JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom det J − 1."""
+    """Return the entries of JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom
+    det J − 1."""
     half = 2 * degrees**2  # entries of the rows of all p
+    # Pairs of rows, of p_i and of q_i: each contributes dp_i∧dq_i to the pulled-back form.
     rows = [(j[k : k + 2 * degrees], j[half + k :]) for k in range(0, half, 2 * degrees)]
     return {
         (a, b): sum((p[a] * q[b] - q[a] * p[b] for p, q in rows), -int(b == a + degrees))
@@ -80,7 +84,7 @@ def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
 
 
 def step_of(name: str, field: Field) -> Step:
-    """The scheme's step. UnknownSchemeError names what is not recomputed."""
+    """Return the scheme's step. UnknownSchemeError names a scheme that is not recomputed."""
     if match := re.fullmatch(r"lie([0-9]+)", name, re.ASCII):
         return lie(field, int(match[1]))
     if name == "euler":
@@ -98,19 +102,20 @@ def step_of(name: str, field: Field) -> Step:
 
 
 def flow_series(rows: Rows, z: Vector, t: Number, order: int) -> list[Vector]:
-    """The Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k. `rows`: all,
-    whose coefficients are known then."""
-    zs, known = [z], rows.expansion
-    known.begin([*z, t])
+    """Return the Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k. `rows`:
+    all rows of f, whose coefficients are known afterwards."""
+    zs, expansion = [z], rows.expansion
+    expansion.begin([*z, t])
     for k in range(order):
         if k > 0:
-            known.more(zs[-1])
-        zs.append([known.c[x][k] / (k + 1) for _, x in rows.f])
+            expansion.extend(zs[-1])
+        zs.append([expansion.c[x][k] / (k + 1) for _, x in rows.f])
     return zs
 
 
 def lie(field: Field, eta: int) -> Step:
-    """z' = Σ h^k z_k, and J the same sum of the variational equation M' = A M, M_0 = 1."""
+    """Return the step z' = Σ h^k z_k, with J the same sum for the variational equation M' = A M,
+    M_0 = 1."""
     size, rows = len(field.names), field.all
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
@@ -128,10 +133,10 @@ def lie(field: Field, eta: int) -> Step:
 
 
 def polynomials(coefficients: list[Vector], h: Number) -> Vector:
-    """Σ z_k h^k, of vectors, by Horner's rule."""
+    """Return Σ z_k h^k, of vectors, by Horner's rule."""
     *rest, total = coefficients
     for z in reversed(rest):
-        total = _added(z, h, total)
+        total = _add_scaled(z, h, total)
     return total
 
 
@@ -148,47 +153,50 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 
 
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
-    """k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, and J by the variational equation."""
+    """Return the step k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, with J by the variational
+    equation."""
     size = len(field.names)
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         slopes: list[Vector] = []
 
-        def moved(row: Sequence[Fraction]) -> Vector:
+        def stage_point(row: Sequence[Fraction]) -> Vector:
             total: Vector = [*z, *identity(size)]
             for b, slope in zip(row, slopes, strict=True):
                 if b:
-                    total = _added(total, h * number(b), slope)
+                    total = _add_scaled(total, h * number(b), slope)
             return total
 
         for row in rows:
-            slopes.append(_slope(field.all, moved(row), t + h * number(sum(row, _F(0))), size))
-        after = moved(weights)
+            slopes.append(
+                _slope(field.all, stage_point(row), t + h * number(sum(row, _F(0))), size)
+            )
+        after = stage_point(weights)
         return after[:size], after[size:]
 
     return step
 
 
-def _slope(rows: Rows, at: Vector, t: Number, size: int) -> Vector:
-    """f, then A M row by row, of z and then M row by row; 0 in what are not the rows."""
-    known = rows.expansion
-    known.begin([*at[:size], t])
-    f, turned = [0] * size, [0] * size**2
+def _slope(rows: Rows, point: Vector, t: Number, size: int) -> Vector:
+    """Return f, then A M row by row, at z and M given row by row; 0 in rows that are left out."""
+    expansion = rows.expansion
+    expansion.begin([*point[:size], t])
+    f, product = [0] * size, [0] * size**2
     for row, x in rows.f:
-        f[row] = known.value(x)
-    _add_product(turned, [(r, c, known.value(x)) for r, c, x in rows.a], at[size:], size)
-    return [*f, *turned]
+        f[row] = expansion.value(x)
+    _add_product(product, [(r, c, expansion.value(x)) for r, c, x in rows.a], point[size:], size)
+    return [*f, *product]
 
 
-def _added(x: Vector, by: Number, slope: Vector) -> Vector:
-    """x + by · slope."""
+def _add_scaled(x: Vector, by: Number, slope: Vector) -> Vector:
+    """Return x + by · slope."""
     return [a + by * b for a, b in zip(x, slope, strict=True)]
 
 
 def _add_product(
     total: Matrix, entries: Iterable[tuple[int, int, Number]], m: Matrix, size: int
 ) -> None:
-    """Adds A m, A being given by those of its entries that are not 0."""
+    """Add A m, with A given by its entries that are not 0."""
     columns = range(size)
     for row, column, x in entries:
         into, out = row * size, column * size
@@ -200,35 +208,44 @@ def _add_product(
 
 
 def _yoshida() -> list[tuple[str, Number]]:
-    """Störmer–Verlet steps of 1/(2 − 2^(1/3)) of h, what is left of 1, and the first again."""
+    """Return three Störmer–Verlet steps: 1/(2 − 2^(1/3)) of h, the remainder of 1, and the first
+    again.
+
+    H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262.
+
+    H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262.
+    """
     outer = 1 / (2 - flint.arb(2).root(3))
     steps = outer, 1 - 2 * outer, outer
     return [x for s in steps for x in (("kick", s / 2), ("drift", s), ("kick", s / 2))]
 
 
-def _of(*parts: tuple[str, Fraction]) -> Callable[[], list[tuple[str, Number]]]:
+def _fixed_parts(*parts: tuple[str, Fraction]) -> Callable[[], list[tuple[str, Number]]]:
     return lambda: [(kind, flint.arb(number(size))) for kind, size in parts]
 
 
 _HALF, _ONE = _F(1, 2), _F(1)
 SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
-    "symplectic-euler": _of(("kick", _ONE), ("drift", _ONE)),
-    "stormer-verlet": _of(("kick", _HALF), ("drift", _ONE), ("kick", _HALF)),
-    "position-verlet": _of(("drift", _HALF), ("kick", _ONE), ("drift", _HALF)),
+    "symplectic-euler": _fixed_parts(("kick", _ONE), ("drift", _ONE)),
+    "stormer-verlet": _fixed_parts(("kick", _HALF), ("drift", _ONE), ("kick", _HALF)),
+    "position-verlet": _fixed_parts(("drift", _HALF), ("kick", _ONE), ("drift", _HALF)),
     "yoshida4": _yoshida,
 }
 
 
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
-    """p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), and J's rows by A likewise."""
+    """Return the step p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), with J's rows by A
+    likewise."""
     size = len(field.names)
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
-        at, reads = [*z, *identity(size)], {"kick": t, "drift": t}
+        point, clocks = [*z, *identity(size)], {"kick": t, "drift": t}
         for kind, share in parts():
             rows = field.of_q if kind == "kick" else field.of_p
-            at = _added(at, h * share, _slope(rows, at, reads[kind], size))
-            reads["drift" if kind == "kick" else "kick"] += h * share
-        return at[:size], at[size:]
+            point = _add_scaled(point, h * share, _slope(rows, point, clocks[kind], size))
+            # A part is evaluated at the time that the parts of the other kind have reached: this is
+            # the splitting of the extended system in which t is a coordinate.
+            clocks["drift" if kind == "kick" else "kick"] += h * share
+        return point[:size], point[size:]
 
     return step

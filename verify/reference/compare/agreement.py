@@ -1,4 +1,5 @@
-"""A printed number against a known one: how many digits agree, and how fine its printing is."""
+"""Compare a printed number with a known one: how many digits agree, and how fine the printing
+is."""
 
 import math
 import re
@@ -23,13 +24,14 @@ _HEXADECIMAL = re.compile(r"[+-]?0[xX].{1,60}")
 
 @dataclass(frozen=True)
 class Printing:
-    """How a column is printed: so many significant digits, or so many after the point; or exact."""
+    """The printing of a column: so many significant digits, or so many after the point; or
+    exact."""
 
     digits: int | None
     places: int | None
 
     def unit(self, value: Fraction) -> Fraction:
-        """A unit of the last place of a number so printed: it may be cut or rounded."""
+        """Return a unit of the last place of a number so printed: it may be cut or rounded."""
         if self.places is not None:
             return Fraction(1, 10**self.places)
         if self.digits is None or value == 0:
@@ -41,7 +43,8 @@ EXACT = Printing(None, None)
 
 
 def printing(texts: Iterable[str]) -> Printing:
-    """That of a column, from its cells; exact, where they are too few and too short to tell.
+    """Return the printing of a column, from its cells; exact, where they are too few and too short
+    to tell.
 
     A language's shortest decimal drops zeros, and a format with an exponent or with a fixed number
     of places does not: only where all cells have the same number of places, and no exponent, is
@@ -53,18 +56,19 @@ def printing(texts: Iterable[str]) -> Printing:
     Printing(digits=6, places=None)
     """
     cells = {text.strip() for text in texts}
-    found = [match.groups() for match in map(_DIGITS.fullmatch, cells) if match]
-    most = max((len((whole + after).lstrip("0")) for whole, after, _ in found), default=0)
-    if len(found) < _ENOUGH and most < _LONG:
+    matches = [match.groups() for match in map(_DIGITS.fullmatch, cells) if match]
+    most = max((len((whole + after).lstrip("0")) for whole, after, _ in matches), default=0)
+    if len(matches) < _ENOUGH and most < _LONG:
         return EXACT
-    places = {len(after) for _, after, exponent in found}
-    if len(places) == 1 and places != {0} and not any(exponent for *_, exponent in found):
+    places = {len(after) for _, after, exponent in matches}
+    if len(places) == 1 and places != {0} and not any(exponent for *_, exponent in matches):
         return Printing(None, places.pop())
     return Printing(most, None)
 
 
 def number(text: str, what: str) -> Fraction | None:
-    """The exact value of a cell; None where it is not finite, an InputError where it is no number.
+    """Return the exact value of a cell; None where it is not finite. Raises InputError where it is
+    no number.
 
     Hexadecimal floats, as C prints them with %a, are numbers, too, and Fortran's 1.5D+00; exponents
     may be as large as those of the reference data, which go beyond ±1000.
@@ -89,7 +93,7 @@ def number(text: str, what: str) -> Fraction | None:
 
 @dataclass(frozen=True)
 class Cell:
-    """One number of theirs beside ours. `theirs` is None where it is not finite.
+    """One number of theirs and ours. `theirs` is None where it is not finite.
 
     `unit`: what their printing leaves open; `radius`: what ours does.
     """
@@ -100,20 +104,21 @@ class Cell:
     unit: Fraction
 
     @property
-    def apart(self) -> Fraction:
-        """How far they are apart beyond what the printing of both leaves open."""
+    def distance(self) -> Fraction:
+        """The difference of the two beyond what the printing of both leaves open."""
         if self.theirs is None:
             raise ValueError("theirs is not finite")
         return max(Fraction(0), abs(self.theirs - self.ours) - self.unit - self.radius)
 
     @property
     def differs(self) -> bool:
-        """Whether a digit that is printed does not agree."""
-        return self.theirs is None or self.apart > 0
+        """True if a printed digit does not agree."""
+        return self.theirs is None or self.distance > 0
 
     @property
     def digits(self) -> float:
-        """−log₁₀ of the relative difference: digits that agree. Infinite where there is none."""
+        """The number of digits that agree, −log₁₀ of the relative difference; infinite where
+        there is no difference."""
         if self.theirs is None:
             return 0.0
         difference = abs(self.theirs - self.ours)
@@ -126,15 +131,17 @@ class Cell:
         return max(0.0, -(exponent + math.log10(float(ratio / Fraction(10) ** exponent))))
 
 
-def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: str) -> Cell:
-    """The cell of a text; `ours`: a value and its radius. InputError where it is no number."""
+def cell_of(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: str) -> Cell:
+    """Return the cell of a text; `ours`: a value and its radius. Raises InputError where the
+    text is no number."""
     value = number(theirs, what)
     unit = Fraction(0) if value is None else how.unit(value)
     return Cell(value, *ours, unit)
 
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
-    """Whether it is a single-precision number, up to its printing, or one's shortest decimal.
+    """Return True if the value is a single-precision number, up to its printing, or one's shortest
+    decimal.
 
     >>> is_single(Fraction("0.100000001490116"), Fraction(0, 1))
     False
@@ -148,8 +155,8 @@ def is_single(value: Fraction, unit: Fraction) -> bool:
 
 
 def chance_of_single(value: Fraction, unit: Fraction) -> float:
-    """How likely a number that is not of single precision would pass for one: those of few digits
-    do, and everything that is printed with seven."""
+    """Return the probability that a number not of single precision passes for one: those of few
+    digits do, and everything that is printed with seven."""
     near = nearest_single(value)
     bits = value.denominator.bit_length() + value.numerator.bit_length()
     if near is None or bits < _SHORT_BITS:
@@ -161,7 +168,7 @@ def chance_of_single(value: Fraction, unit: Fraction) -> float:
 
 
 def nearest_single(value: Fraction) -> np.float32 | None:
-    """The single-precision number nearest to a value; None beyond the largest."""
+    """Return the single-precision number nearest to a value; None beyond the largest."""
     try:
         near = np.float32(struct.unpack("f", struct.pack("f", float(value)))[0])
     except OverflowError:

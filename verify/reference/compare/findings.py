@@ -1,16 +1,16 @@
-"""What is found of a run of theirs: how each column differs, and which mistakes fit."""
+"""The findings on a run of theirs: how each column differs, and which mistakes fit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
 
-Named = tuple[str, str]  # a mistake's name, and what it says
+NamedMistake = tuple[str, str]  # a mistake's name, and what it says
 DOUBLE, SINGLE = Fraction(1, 2**53), Fraction(1, 2**24)  # unit roundoffs
 
 
 class Verdict(IntEnum):
-    """Of a column, or of a run, from best to worst."""
+    """The verdict on a column, or on a run, from best to worst."""
 
     AGREES = 0  # in all digits that are printed
     LOST = 1  # rounding may have taken every digit: nothing is said
@@ -21,7 +21,8 @@ class Verdict(IntEnum):
 
 @dataclass(frozen=True)
 class Spread:
-    """How far rounding moves a number, or a unit of it: as it usually does, and at worst."""
+    """The distance by which rounding moves a number, in units of roundoff or not: usually, and
+    at worst."""
 
     usual: float | Fraction
     worst: float | Fraction
@@ -31,9 +32,9 @@ Spreads = Mapping[str, Spread]  # by the number's column
 
 
 @dataclass(frozen=True)
-class Of:
-    """What was found of a column of one run: of its `rows`, but for those where the run is lost,
-    `digits` agree at least, the least of them at `step`.
+class ColumnFindings:
+    """The findings on a column of one run: of its `rows`, without those where the run is lost, at
+    least `digits` agree, the fewest at `step`.
 
     `parts_at`: the first step at which it differs by more than rounding.
     """
@@ -47,38 +48,38 @@ class Of:
 
 @dataclass
 class RunFindings:
-    """What was found of one run. `mistakes`: those that fit; one, or several which nothing tells
+    """The findings on one run. `mistakes`: those that fit; one, or several which nothing tells
     apart. `unit`: the unit roundoff that explains it, or would. `lost_from`: the step from which
     rounding may have taken every digit, so that nothing can be said. `overflow_from`: the first
     step of which a number is not finite where doubles may overflow."""
 
     label: str
-    columns: dict[str, Of] = field(default_factory=dict)
-    mistakes: list[list[Named]] = field(default_factory=list)
+    columns: dict[str, ColumnFindings] = field(default_factory=dict)
+    mistakes: list[list[NamedMistake]] = field(default_factory=list)
     unit: Fraction = DOUBLE
     lost_from: int | None = None
     overflow_from: int | None = None
 
     @property
     def verdict(self) -> Verdict:
-        """The worst of its columns."""
+        """The worst verdict of its columns."""
         return max((x.verdict for x in self.columns.values()), default=Verdict.AGREES)
 
 
 @dataclass
 class Fit:
-    """How well a setting foretells some columns: a verdict of each, the first place of a column at
-    which it does not, and how far off it is at each place, as far as was looked."""
+    """The fit of a setting to some columns: a verdict of each, the first place of a column at
+    which it fails, and its distance at each place, as far as was looked."""
 
     verdicts: dict[str, Verdict]
     parts: dict[str, int] = field(default_factory=dict)
-    apart: dict[tuple[int, str], Fraction] = field(default_factory=dict)
+    distances: dict[tuple[int, str], Fraction] = field(default_factory=dict)
     lost_from: int | None = None
     overflow_from: int | None = None
 
     @property
     def fits(self) -> bool:
-        """Whether rounding explains all of it."""
+        """True if rounding explains all of it."""
         return max(self.verdicts.values(), default=Verdict.AGREES) <= Verdict.ROUNDING
 
     @property
@@ -87,7 +88,7 @@ class Fit:
         return min(((step, name) for name, step in self.parts.items()), default=None)
 
     def take(self, step: int, name: str, verdict: Verdict) -> None:
-        """A verdict on one number, in the order of steps."""
+        """Add a verdict on one number, in the order of steps."""
         if verdict >= Verdict.PERHAPS:
             self.parts.setdefault(name, step)
         self.verdicts[name] = max(self.verdicts[name], verdict)

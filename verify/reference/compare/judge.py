@@ -1,4 +1,14 @@
-"""One run of theirs beside ours: what differs by rounding, and what by more.
+"""One run of theirs compared with ours: differences that rounding explains, and larger ones.
+
+A setting fits where all numbers of the run are within what rounding may do of those that it
+foretells. The right one is tried in the precision that their numbers are printed with, and in
+doubles. `verify.reference.compare.diagnosis` tries others where it does not fit.
+
+Also decided here: whether a program in doubles may overflow on a run where the reference data do
+not.
+
+It does where the toolkit's own step does in doubles; and another program may where a number of the
+run, or a product of its determinants, is not far from the largest double.
 
 A setting fits where all numbers of the run are within what rounding may do of those that it
 foretells. The right one is tried in the precision that their numbers are printed with, and in
@@ -17,10 +27,10 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.arithmetic.systems import float64
-from verify.reference.compare.agreement import Cell, Printing, beside
+from verify.reference.compare.agreement import Cell, Printing, cell_of
 from verify.reference.compare.allowance import Allowance, products
-from verify.reference.compare.column_meanings import Foretold
-from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
+from verify.reference.compare.column_meanings import Prediction
+from verify.reference.compare.findings import DOUBLE, ColumnFindings, Fit, RunFindings, Verdict
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters, run_of
@@ -32,14 +42,19 @@ _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it
 _MOST_STEPS = 20_000  # stepped
 
 
-def may_overflow(orbit: Start, step: int, known: dict[str, Bounded]) -> bool:
-    """Within so many steps and the next; `known` are the run's numbers then, the state among them
-    unless it has left the reference data's range, too."""
-    if any(name not in known for name in orbit.hamiltonian.coordinates):
+def may_overflow(orbit: Start, step: int, bounded: dict[str, Bounded]) -> bool:
+    """Return True if doubles may overflow within `step` steps or in the next one.
+
+    `bounded`: the run's numbers then, the state among them unless it has left the range of the
+    reference data, too.
+    """
+    # The reference data have no state there: whether doubles overflow is decided by a run of the
+    # toolkit's own.
+    if any(name not in bounded for name in orbit.hamiltonian.coordinates):
         return _overflows(orbit, step)
-    if any(abs(value) > _LARGE for value, _ in known.values()):
+    if any(abs(value) > _LARGE for value, _ in bounded.values()):
         return True
-    return products(orbit, step, known) > _LARGE or _overflows(orbit, step)
+    return products(orbit, step, bounded) > _LARGE or _overflows(orbit, step)
 
 
 @lru_cache(maxsize=4096)
@@ -56,7 +71,7 @@ _MORE_DIGITS, _LEAST_DIGITS = 8, 25
 
 
 class Judge:
-    """Judges one run; see the module's text."""
+    """The judge of one run; see the module's text."""
 
     def __init__(
         self,
@@ -78,35 +93,38 @@ class Judge:
         self.right = Setting(ours.orbit, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
-        known = self.ours.numbers(step)
+        bounded = self.ours.numbers(step)
         for name, text in row.cells.items():
-            if name in known and text.strip():
-                yield name, beside(text, known[name], self.how[name], f"line {row.line}, {name}")
+            if name in bounded and text.strip():
+                yield name, cell_of(text, bounded[name], self.how[name], f"line {row.line}, {name}")
 
     # -- the right setting --------------------------------------------------------------------
 
-    def judged(self) -> RunFindings:
-        """The run as it is, in the unit roundoff that explains most; mistakes are not tried."""
+    def judge(self) -> RunFindings:
+        """Judge the run in the unit roundoff that explains most; mistakes are not tried."""
         fits = [(unit, self.fit(self.right, self.names, unit)) for unit in self.units()]
+        # Units are tried from the finest: who fits in high precision did not work with doubles.
         unit, best = next(((u, f) for u, f in fits if f.fits), fits[-1])
-        columns = {name: self._of(name, best) for name in self.names}
+        columns = {name: self._describe_column(name, best) for name in self.names}
         return RunFindings(self.ours.label, columns, [], unit, best.lost_from, best.overflow_from)
 
-    def _of(self, name: str, fit: Fit) -> Of:
-        """Where the run is lost its digits say nothing, and they are not looked at."""
+    def _describe_column(self, name: str, fit: Fit) -> ColumnFindings:
+        """Describe one column; where the run is lost, its digits say nothing and are not
+        compared."""
         every = {step: cell for (step, n), cell in self.cells.items() if n == name}
         cells = {n: x for n, x in every.items() if fit.lost_from is None or n < fit.lost_from}
         verdict = fit.verdicts[name] if cells else Verdict.LOST
         if not any(cell.differs for cell in every.values()):
             verdict, cells = Verdict.AGREES, every
         if not cells:
-            return Of(verdict, 0, math.inf, min(every), None)
+            return ColumnFindings(verdict, 0, math.inf, min(every), None)
+        # The place of the fewest digits that agree is the one that a report shows.
         step = min(cells, key=lambda n: cells[n].digits)
         parts_at = fit.parts.get(name) if verdict is Verdict.MORE else None
-        return Of(verdict, len(cells), cells[step].digits, step, parts_at)
+        return ColumnFindings(verdict, len(cells), cells[step].digits, step, parts_at)
 
     def units(self) -> list[Fraction]:
-        """The unit roundoffs that they may have worked with, the finest first."""
+        """Return the unit roundoffs that they may have worked with, the finest first."""
         digits = max((self.how[n].digits or 0 for n in self.names), default=0)
         fine = [Fraction(10) ** (1 - digits)] if digits > _DOUBLE_DIGITS else []
         return [*fine, DOUBLE]
@@ -118,68 +136,83 @@ class Judge:
         setting: Setting,
         names: Iterable[str],
         unit: Fraction,
-        read: Callable[[int], Foretold | None] | None = None,
+        predict: Callable[[int], Prediction | None] | None = None,
         *,
         wholly: bool = True,
     ) -> Fit:
-        """How well it foretells the columns; unless `wholly`, no farther than to where it fails.
+        """Judge how well a setting foretells the columns; unless `wholly`, stop where it fails.
+
+        `read` returns what a column is foretold to hold, where that is not the setting's number.
 
         `read` gives what a column is foretold to hold, where that is not the setting's own.
         """
         allowance = Allowance(setting.orbit, unit, self._scatters)
         names = tuple(names)
-        found = Fit(dict.fromkeys(names, Verdict.AGREES))
+        result = Fit(dict.fromkeys(names, Verdict.AGREES))
         for (step, name), cell in self.cells.items():
-            if name not in names or found.verdicts[name] is Verdict.MORE:
+            if name not in names or result.verdicts[name] is Verdict.MORE:
                 continue
-            known = self.known(setting, step, unit)
-            there = {setting.inner(n): x for n, x in known.items()}
+            bounded = self.numbers(setting, step, unit)
+            inner_values = {setting.inner(n): x for n, x in bounded.items()}
             inner, after = setting.inner(name), step + setting.late
-            if cell.theirs is None and may_overflow(setting.orbit, after, there):
-                found.overflow_from = step if found.overflow_from is None else found.overflow_from
-                found.verdicts[name] = max(found.verdicts[name], Verdict.ROUNDING)
+            if cell.theirs is None and may_overflow(setting.orbit, after, inner_values):
+                result.overflow_from = (
+                    step if result.overflow_from is None else result.overflow_from
+                )
+                result.verdicts[name] = max(result.verdicts[name], Verdict.ROUNDING)
                 continue
-            own = read(step) if read else Foretold(*known[name]) if name in known else None
+            foretold = (
+                predict(step)
+                if predict
+                else Prediction(*bounded[name])
+                if name in bounded
+                else None
+            )
             verdict: Verdict | None = Verdict.MORE
-            if own is not None and name in known:
+            if foretold is not None and name in bounded:
                 if cell.theirs is None:
-                    verdict = verdict if allowance.of(inner, after, there) else None
+                    verdict = verdict if allowance.after_steps(inner, after, inner_values) else None
                 else:
-                    apart = replace(cell, ours=own.value, radius=own.radius).apart
-                    found.apart[step, name] = apart
-                    verdict = _verdict(allowance, inner, after, there, apart / own.factor)
+                    distance = replace(cell, ours=foretold.value, radius=foretold.radius).distance
+                    result.distances[step, name] = distance
+                    verdict = _decide(
+                        allowance, inner, after, inner_values, distance / foretold.factor
+                    )
+            # Rounding may have taken every digit: nothing can be said of this step or of later
+            # ones.
             if verdict is None:
-                found.lost_from = step
-                return found
-            found.take(step, name, verdict)
-            if not wholly and not found.fits:
-                return found
-        return found
+                result.lost_from = step
+                return result
+            result.take(step, name, verdict)
+            if not wholly and not result.fits:
+                return result
+        return result
 
-    def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
-        """The setting's numbers at a row's step, as far as they can be had."""
+    def numbers(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
+        """Return the setting's numbers at a row's step, as far as they can be computed."""
         if setting == self.right:
             return self.ours.numbers(step)
-        known = setting.numbers(step, self.digits(unit))
-        wanted = {*self.ours.hamiltonian.coordinates, *self.names}
-        return {n: x for n, x in known.items() if n in wanted}
+        bounded = setting.numbers(step, self.digits(unit))
+        columns = {*self.ours.hamiltonian.coordinates, *self.names}
+        return {n: x for n, x in bounded.items() if n in columns}
 
     def digits(self, unit: Fraction) -> int:
-        """Those to which numbers are to be known that are judged with this unit roundoff."""
+        """Return the digits that numbers need in order to be judged with this unit roundoff."""
         return max(_LEAST_DIGITS, len(str(unit.denominator)) + _MORE_DIGITS)
 
 
-def _verdict(
-    allowance: Allowance, name: str, step: int, known: dict[str, Bounded], apart: Fraction
+def _decide(
+    allowance: Allowance, name: str, step: int, bounded: dict[str, Bounded], distance: Fraction
 ) -> Verdict | None:
-    """None where rounding may have taken every digit."""
-    if apart == 0:
+    """Return the verdict on one number; None where rounding may have taken every digit."""
+    if distance == 0:
         return Verdict.AGREES
-    if apart <= allowance.at_once(name, step, known):
+    # The cheap bound is tried first: following the earlier roundings takes a scatter of many runs.
+    if distance <= allowance.at_once(name, step, bounded):
         return Verdict.ROUNDING
-    allowed = allowance.of(name, step, known)
-    if allowed is None:
+    spread = allowance.after_steps(name, step, bounded)
+    if spread is None:
         return None
-    if apart <= allowed.usual:
+    if distance <= spread.usual:
         return Verdict.ROUNDING
-    return Verdict.PERHAPS if apart <= allowed.worst else Verdict.MORE
+    return Verdict.PERHAPS if distance <= spread.worst else Verdict.MORE

@@ -1,4 +1,7 @@
-"""What may be wrong with somebody's run: each mistake makes another setting of the right one.
+"""Mistakes that somebody's run may contain: each makes another setting of the right one.
+
+Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
+Mistakes in a column other than the state are in `verify.reference.compare.column_meanings`.
 
 Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
 What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
@@ -40,7 +43,7 @@ _ENDS_AND_MIDDLE = 3
 
 @dataclass(frozen=True)
 class Mistake:
-    """`says`: in words, to whom it may concern."""
+    """A mistake; `says` describes it to the author of the numbers."""
 
     name: str
     says: str
@@ -51,13 +54,14 @@ Change = tuple[str, str, dict[str, Any]]  # a mistake's name, what it says, and 
 Changes = Callable[[Setting], Iterable[Change]]  # of the right setting
 
 
-def of_inputs(right: Setting) -> Iterator[Mistake]:
-    """Inputs that are doubles; no program that works with doubles can be told by them."""
+def input_mistakes(right: Setting) -> Iterator[Mistake]:
+    """Yield inputs rounded to doubles; programs that work with doubles cannot be told apart by
+    them."""
     return _mistakes(right, _OF_INPUTS[right.orbit.hamiltonian.structure](right))
 
 
-def of_states(right: Setting) -> Iterator[Mistake]:
-    """All that can be seen in doubles."""
+def state_mistakes(right: Setting) -> Iterator[Mistake]:
+    """Yield all mistakes that can be seen in doubles."""
     return _mistakes(right, _OF_STATES[right.orbit.hamiltonian.structure](right))
 
 
@@ -66,13 +70,13 @@ def _mistakes(right: Setting, changes: Iterable[Change]) -> Iterator[Mistake]:
         yield Mistake(name, says, replace(right, **change))
 
 
-def _in_plane(right: Setting) -> Iterator[Change]:
+def _changes_in_plane(right: Setting) -> Iterator[Change]:
     orbit = right.orbit
-    first = chain(_of_columns(orbit), _of_clock(orbit), _of_scheme(orbit))
-    return chain(first, _staggered(right, orbit), _of_step(orbit))
+    first = chain(_column_changes(orbit), _clock_changes(orbit), _scheme_changes(orbit))
+    return chain(first, _staggered_starts(right, orbit), _step_changes(orbit))
 
 
-def _of_doubles(right: Setting) -> Iterator[Change]:
+def _doubles_for_inputs(right: Setting) -> Iterator[Change]:
     orbit = right.orbit
     starts = {"q0": orbit.point["q"], "p0": orbit.point["p"]}
     exact = {"h": orbit.step_size, **starts, **dict(orbit.hamiltonian.values)}
@@ -80,17 +84,22 @@ def _of_doubles(right: Setting) -> Iterator[Change]:
         exact["t0"] = orbit.t0
     doubles = {n: nearest_double(x) for n, x in exact.items()}
     inexact = [n for n, x in doubles.items() if isfinite(x) and x != exact[n]]
+    # A program may read some inputs exactly (0.5) and round others, or compute h as a quotient: all
+    # combinations are tried while they are few.
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
     ones = [(name,) for name in inexact]
     for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *ones]:
-        changed = {n: Fraction(doubles[n]) for n in names}
-        shown = " and ".join(f"{n} is the double nearest to {short(exact[n])}" for n in names)
-        says = f"your {shown}, and not exactly that"
-        yield f"double-{'-'.join(names)}", says, {"orbit": _with(orbit, changed)}
+        rounded = {n: Fraction(doubles[n]) for n in names}
+        names_in_words = " and ".join(
+            f"{n} is the double nearest to {short(exact[n])}" for n in names
+        )
+        says = f"your {names_in_words}, and not exactly that"
+        yield f"double-{'-'.join(names)}", says, {"orbit": _with_numbers(orbit, rounded)}
 
 
-def _in_degrees(right: Setting) -> Iterator[Change]:
-    """Of the schemes those that the reference data have, which need not be run."""
+def _changes_in_degrees(right: Setting) -> Iterator[Change]:
+    """Yield changes in n degrees of freedom; of other schemes those that the reference data
+    have, which need not be run."""
     degrees = range(1, right.orbit.hamiltonian.degrees + 1)
     pairs = tuple((f"p{k}", f"q{k}") for k in degrees)
     yield "swapped", "your columns of p and q are in each other's place", {"exchanged": pairs}
@@ -105,13 +114,16 @@ def _in_degrees(right: Setting) -> Iterator[Change]:
         yield f"scheme-{other.scheme}", says, {"orbit": other}
 
 
-_OF_INPUTS: Mapping[Structure, Changes] = {AREA: _of_doubles, SYMPLECTIC: lambda _: ()}
-_OF_STATES = {AREA: _in_plane, SYMPLECTIC: _in_degrees}
+_OF_INPUTS: Mapping[Structure, Changes] = {AREA: _doubles_for_inputs, SYMPLECTIC: lambda _: ()}
+_OF_STATES = {AREA: _changes_in_plane, SYMPLECTIC: _changes_in_degrees}
 
 
-def _of_columns(orbit: Start) -> Iterator[Change]:
+def _column_changes(orbit: Start) -> Iterator[Change]:
     p, q, swap = orbit.point["p"], orbit.point["q"], (("p", "q"),)
-    exchanged, turned = _with(orbit, {"p0": q, "q0": p}), _with(orbit, {"p0": -p})
+    exchanged, reversed_start = (
+        _with_numbers(orbit, {"p0": q, "q0": p}),
+        _with_numbers(orbit, {"p0": -p}),
+    )
     energy = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
     backwards = replace(orbit, hamiltonian=energy)
     yield "swapped-columns", "your columns p and q are swapped", {"exchanged": swap}
@@ -119,14 +131,14 @@ def _of_columns(orbit: Start) -> Iterator[Change]:
     says = "p and q are swapped, in your columns and at the start"
     yield "swapped-throughout", says, {"orbit": exchanged, "exchanged": swap}
     yield "negated-p", "your p has the other sign", {"negated": True}
-    yield "negated-start", "your initial p has the other sign", {"orbit": turned}
+    yield "negated-start", "your initial p has the other sign", {"orbit": reversed_start}
     says = "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p"
     yield "backwards", says, {"orbit": backwards}
     yield "late+1", "your step index is too low by one", {"late": 1}
     yield "late-1", "your step index is too high by one", {"late": -1}
 
 
-def _of_clock(orbit: Start) -> Iterator[Change]:
+def _clock_changes(orbit: Start) -> Iterator[Change]:
     if not orbit.hamiltonian.time_dependent:
         return
     for how, says in _CLOCKS.items():
@@ -143,7 +155,7 @@ def _of_clock(orbit: Start) -> Iterator[Change]:
         yield name, says, {"orbit": replace(orbit, t0=begin)}
 
 
-def _of_step(orbit: Start) -> Iterator[Change]:
+def _step_changes(orbit: Start) -> Iterator[Change]:
     h, values = orbit.step_size, orbit.hamiltonian.values
     changes = [
         ("half-step", "your h is half what it should be", {"h": h / 2}),
@@ -158,22 +170,22 @@ def _of_step(orbit: Start) -> Iterator[Change]:
             if other != value:
                 changes.append((f"{what}-{name}", f"your {name} is {short(other)}", {name: other}))
     for name, says, change in changes:
-        yield name, says, {"orbit": _with(orbit, change)}
+        yield name, says, {"orbit": _with_numbers(orbit, change)}
 
 
-def _of_scheme(orbit: Start) -> Iterator[Change]:
-    """Its relatives by name, then all other schemes."""
-    said = dict(_relatives(orbit.scheme))
-    known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
-    for name in known:
-        said.setdefault(name, f"{_OTHER}{name}")
-    said.pop(orbit.scheme, None)
-    for name, says in said.items():
+def _scheme_changes(orbit: Start) -> Iterator[Change]:
+    """Yield the scheme's relatives by name, then all other schemes."""
+    description_by_name = dict(_relatives(orbit.scheme))
+    names = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
+    for name in names:
+        description_by_name.setdefault(name, f"{_OTHER}{name}")
+    description_by_name.pop(orbit.scheme, None)
+    for name, says in description_by_name.items():
         yield f"{_OF_SCHEME}{name}", says, {"orbit": replace(orbit, scheme=name)}
 
 
-def _staggered(right: Setting, orbit: Start) -> Iterator[Change]:
-    """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
+def _staggered_starts(right: Setting, orbit: Start) -> Iterator[Change]:
+    """Yield a leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
     """
@@ -183,37 +195,43 @@ def _staggered(right: Setting, orbit: Start) -> Iterator[Change]:
         return
     (first, half), (second, whole), _ = parts
     name = "p" if first == "kick" else "q"
+    # Two half parts of adjacent steps make one whole part: the staggered variable is that of the
+    # splitting that begins there.
     both = ((first, 2 * half), (second, whole))
     for sign, order, when in ((1, both[::-1], "ahead"), (-1, both, "behind")):
-        start = _a_part_on(right, name, _named(both), sign)
+        start = _start_after_half_part(right, name, _name_of_parts(both), sign)
         if start is not None:
-            other = _with(replace(orbit, scheme=_named(order)), {f"{name}0": start})
+            other = _with_numbers(replace(orbit, scheme=_name_of_parts(order)), {f"{name}0": start})
             says = f"your {name} is half a step {when}: leapfrog"
             yield f"half-{name}-{when}", says, {"orbit": other}
 
 
-def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
-    """The initial `name` after half of the scheme's first part, which changes it alone."""
+def _start_after_half_part(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
+    """Return the initial `name` after half of the scheme's first part, which changes it alone."""
     start = right.orbit.point[name]
     after = replace(right, orbit=replace(right.orbit, scheme=scheme)).numbers(1, _SHARP)
     return start + sign * (after[name][0] - start) / 2 if name in after else None
 
 
 def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
-    """The mistakes but for those that are another name of an earlier one's scheme, for this H."""
-    found: dict[object, Mistake] = {}
+    """Return the mistakes without those whose scheme is, for this H, that of an earlier one."""
+    first_by_state: dict[object, Mistake] = {}
     for mistake in mistakes:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
         state = None
         if mistake.name.startswith(_OF_SCHEME):
-            there = _with(setting.orbit, {"q0": q, "p0": p, "h": h})
-            known = replace(setting, orbit=there).numbers(1, _SHARP)
-            state = (known["p"][0], known["q"][0]) if "p" in known else None
-        first = found.setdefault(state or mistake.name, mistake)
+            # Two schemes are taken for one where a step from a point like no other gives the same
+            # 40 digits.
+            elsewhere = _with_numbers(setting.orbit, {"q0": q, "p0": p, "h": h})
+            bounded = replace(setting, orbit=elsewhere).numbers(1, _SHARP)
+            state = (bounded["p"][0], bounded["q"][0]) if "p" in bounded else None
+        first = first_by_state.setdefault(state or mistake.name, mistake)
         if first is not mistake and first.says.startswith(_OTHER):
-            also = mistake.name.removeprefix(_OF_SCHEME)
-            found[state] = replace(first, says=f"{first.says}, which {also} is for this H, too")
-    return list(found.values())
+            synonym = mistake.name.removeprefix(_OF_SCHEME)
+            first_by_state[state] = replace(
+                first, says=f"{first.says}, which {synonym} is for this H, too"
+            )
+    return list(first_by_state.values())
 
 
 def _relatives(name: str) -> Iterator[tuple[str, str]]:
@@ -230,14 +248,14 @@ def _relatives(name: str) -> Iterator[tuple[str, str]]:
             "its parts in the opposite order": parts[::-1],
             "kicks for drifts and drifts for kicks": tuple((kinds[k], x) for k, x in parts),
         }
-        for says, changed in changes.items():
-            if changed != parts:
-                own = _OTHER_EULER if name == "symplectic-euler" else f"{name} with {says}"
-                yield _named(changed), f"{_OTHER}{own}"
+        for says, parts_of_relative in changes.items():
+            if parts_of_relative != parts:
+                description = _OTHER_EULER if name == "symplectic-euler" else f"{name} with {says}"
+                yield _name_of_parts(parts_of_relative), f"{_OTHER}{description}"
 
 
-def _named(parts: tuple[Part, ...]) -> str:
-    """The name of the scheme of these parts; the parts themselves where it has none."""
+def _name_of_parts(parts: tuple[Part, ...]) -> str:
+    """Return the name of the scheme of these parts; the parts themselves where it has none."""
     for name in schemes.names():
         generic = schemes.get(name).every_h
         if isinstance(generic, Splitting) and generic.parts == parts:
@@ -245,11 +263,11 @@ def _named(parts: tuple[Part, ...]) -> str:
     return "; ".join(f"{kind} {to_text(size)}" for kind, size in parts)
 
 
-def _with(orbit: Start, changed: dict[str, Fraction]) -> Start:
-    """The orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
-    known = {"h": orbit.step_size, "t0": orbit.t0} | {f"{n}0": x for n, x in orbit.point.items()}
-    numbers = known | changed
-    parameters = {name: x for name, x in changed.items() if name not in known}
+def _with_numbers(orbit: Start, changes: dict[str, Fraction]) -> Start:
+    """Return the orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
+    values = {"h": orbit.step_size, "t0": orbit.t0} | {f"{n}0": x for n, x in orbit.point.items()}
+    numbers = values | changes
+    parameters = {name: x for name, x in changes.items() if name not in values}
     hamiltonian = orbit.hamiltonian.with_values(dict(orbit.hamiltonian.values) | parameters)
     point = {name: numbers[f"{name}0"] for name in orbit.point}
     return Start(hamiltonian, orbit.scheme, numbers["h"], point, numbers["t0"])

@@ -1,4 +1,5 @@
-"""Reference data → what others' numbers are held against: each run by its scene and its inputs."""
+"""The reference data that others' numbers are compared with: each run by its scene and its
+inputs."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +13,7 @@ from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
 from verify.arithmetic.systems.float64 import nearest_double
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.files import read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.coordinates import coordinates_in
@@ -52,41 +53,41 @@ class PublishedRun:
 
     @cached_property
     def texts(self) -> dict[str, str]:
-        """What a run of a scene is told by, by a table's columns: scheme, step_size, and q0 and p0,
-        or q0_1 … p0_n."""
+        """The texts that identify a run of a scene, by a table's columns: scheme, step_size, and
+        q0 and p0, or q0_1 … p0_n."""
         return {"scheme": self.run.scheme, "step_size": self.run.step_size, **self.run.texts}
 
     @cached_property
     def exact(self) -> dict[str, Fraction]:
-        """h, q and p at the start."""
+        """The numbers h, q and p at the start."""
         return {name: rational(x) for name, x in self.texts.items() if name != "scheme"}
 
     @cached_property
     def inputs(self) -> Inputs:
-        """What it is found by."""
+        """The inputs by which a run is found."""
         return {"scheme": self.run.scheme} | {n: nearest_double(x) for n, x in self.exact.items()}
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Those of its numbers, the state first."""
+        """The columns of its numbers, the state first."""
         degrees = self.hamiltonian.degrees
         return *coordinates_in(degrees), *orbit_columns(degrees)
 
     @property
     def label(self) -> str:
-        """Scene, scheme and inputs, in words."""
+        """The scene, the scheme and the inputs, in words."""
         return f"{self.scene}: {self.run.label}"
 
     @cached_property
     def orbit(self) -> Start:
-        """What was run."""
+        """The orbit that was run."""
         exact, run, h = self.hamiltonian, self.run, self.exact["step_size"]
         point = point_of(exact, run.q, run.p)
         return Start(exact, run.scheme, h, point, self.t0 or Fraction(0))
 
     @property
     def t0(self) -> Fraction | None:
-        """When it starts, where H depends on time."""
+        """The time at which it starts, where H depends on time."""
         return None if self.run.begins is None else rational(self.run.begins, "t0")
 
     @cached_property
@@ -95,7 +96,7 @@ class PublishedRun:
         return {row.step: row for row in self.run.rows}
 
     def numbers(self, step: int) -> dict[str, Bounded]:
-        """Those of a row, by their columns' names."""
+        """Return the numbers of a row, by their columns' names."""
         return numbers_of(self.rows[step], self.hamiltonian.degrees)
 
 
@@ -112,27 +113,30 @@ class Published:
         self.columns = widest.columns
 
     def scene(self, name: str) -> list[PublishedRun]:
-        """Its runs; InputError for a scene that is not there."""
+        """Return a scene's runs; InputError for a scene that does not exist."""
         if name not in self.by_scene:
-            raise unknown("scene", name, sorted(self.by_scene))
+            raise unknown_name("scene", name, sorted(self.by_scene))
         return self.by_scene[name]
 
     def fitting(self, scene: str, inputs: Inputs) -> list[PublishedRun]:
-        """The scene's runs that have these inputs."""
+        """Return the scene's runs that have these inputs."""
         return [x for x in self.by_scene.get(scene, ()) if inputs.items() <= x.inputs.items()]
 
     def runs(self) -> Iterator[PublishedRun]:
-        """All of them."""
+        """Return all runs."""
         return chain.from_iterable(self.by_scene.values())
 
     def values_of(self, scene: str, key: str) -> list[str]:
-        """What the scene's runs have for one of `keys`, each once."""
+        """Return the values that the scene's runs have for one of `keys`, each once."""
         return list(dict.fromkeys(x.texts[key] for x in self.scene(scene) if key in x.texts))
 
 
 def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
-    """The runs of a folder's scenes, or of one where there is a file of that name: of those in the
-    plane, or of those in n degrees of freedom.
+    """Load the runs of a folder's scenes, or of one where there is a file of that name: of those in
+    the plane, or of those in n degrees of freedom.
+
+    Raises InputError for a folder that does not exist or has no such reference data, and for a file
+    of another format, or not as it must be.
 
     InputError for a folder that is not there or has no such reference data, and for a file that is
     of another format, or not as it must be.
@@ -150,17 +154,17 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
         names = {f"{scene}.json"}
     form = DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT
     names = {name for name in names if format_at(folder / name) == form}
-    runs = [run for name in sorted(names) for run in _runs(folder / name, form)]
+    runs = [run for name in sorted(names) for run in _read_runs(folder / name, form)]
     if not runs:
         raise InputError("--data", str(folder), _NONE[form])
     return Published(runs)
 
 
-def _runs(path: Path, form: str) -> Iterator[PublishedRun]:
-    data, name = _data(path, form), path.name
+def _read_runs(path: Path, form: str) -> Iterator[PublishedRun]:
+    data, name = _read_data(path, form), path.name
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
-    begun = data.timed and all(run.begins is not None for run in data.runs)
-    if hamiltonian.time_dependent and not begun:
+    has_start_times = data.timed and all(run.begins is not None for run in data.runs)
+    if hamiltonian.time_dependent and not has_start_times:
         problem = "is no reference data: its H depends on t, and its runs have no t0"
         raise InputError("file", name, problem)
     for run in data.runs:
@@ -171,20 +175,21 @@ def _runs(path: Path, form: str) -> Iterator[PublishedRun]:
         yield PublishedRun(data.name, hamiltonian, run)
 
 
-def _data(path: Path, form: str) -> AnyData:
+def _read_data(path: Path, form: str) -> AnyData:
     raw = check_format(json_of(read_bytes(path), path.name), form, path.name)
     try:
         return MODELS[form].model_validate(raw)
     except ValidationError as error:
-        told = error.errors(include_url=False)[0]
-        where = ".".join(map(str, told["loc"]))
-        problem = f"is no reference data: {where}: {told['msg']}"
+        first_error = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first_error["loc"]))
+        problem = f"is no reference data: {where}: {first_error['msg']}"
         raise InputError("file", path.name, problem) from None
 
 
 def _check_exponents(number: Rounded | None, name: str) -> None:
-    """InputError for an exponent whose power of ten would fill the memory."""
+    """Raise InputError for an exponent whose power of ten would fill the memory."""
     for text in (number.value, number.radius) if number else ():
         exponent = text.partition("e")[2].lstrip("+-0")
+        # The number is never made a rational before this check.
         if len(exponent) > _EXPONENT_DIGITS:
             raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")

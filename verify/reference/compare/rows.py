@@ -1,4 +1,4 @@
-"""A table of numbers in a text file, line by line, and the rows of each run that are kept.
+"""A table of numbers in a text file, read line by line, and the rows of each run that are kept.
 
 It is CSV with commas, semicolons, tabs or spaces.
 
@@ -26,9 +26,9 @@ _MOST_COLUMNS = 500
 
 
 @contextmanager
-def opened(path: Path) -> Iterator["Table"]:
-    """The table in a file. InputError where it is no file, or cannot be read."""
-    with files.opened(path) as file:
+def open_table(path: Path) -> Iterator["Table"]:
+    """Open the table in a file. Raises InputError where it is no file, or cannot be read."""
+    with files.open_regular_file(path) as file:
         yield Table(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""), path.name)
 
 
@@ -47,15 +47,15 @@ class Table:
         self.width = len(self.header)
         if self.width > _MOST_COLUMNS:
             raise self.error(f"has {self.width} columns; allowed: {_MOST_COLUMNS}")
-        if _numbers(self.header):
+        if _are_numbers(self.header):
             raise self.error("is no header: the first line must name the columns")
 
     def error(self, problem: str) -> InputError:
-        """What is wrong with the line that was read last."""
+        """Return an error that names the line read last."""
         return InputError("file", self.name, f"line {self.line} {problem}")
 
     def number(self, text: str, name: str) -> Fraction:
-        """The number that a cell is; InputError names the line."""
+        """Return the number in a cell; InputError names the line."""
         try:
             return rational(text, name)
         except InputError as error:
@@ -79,9 +79,10 @@ class Table:
         raise InputError("file", self.name, "is empty")
 
     def _texts(self) -> Iterator[str]:
-        """Line by line, none of which may be very long."""
+        """Yield line by line; none may be very long."""
         while True:
             try:
+                # A file without line ends must not be read as a whole.
                 text = self._file.readline(_LONGEST_LINE)
             except UnicodeDecodeError:
                 self.line += 1
@@ -96,7 +97,7 @@ class Table:
             yield text
 
 
-def _numbers(cells: tuple[str, ...]) -> bool:
+def _are_numbers(cells: tuple[str, ...]) -> bool:
     try:
         [float(cell) for cell in cells]
     except ValueError:
@@ -113,8 +114,9 @@ class Row:
 
 
 @dataclass
-class Theirs:
-    """What of a table is in the reference data. `rows`: of the table; `runs`: by run and step.
+class SubmittedTable:
+    """The part of a table that is in the reference data. `rows`: of the table; `runs`: by run and
+    step.
 
     `other_steps`: rows of runs that the reference data have, though not at that step. `outside`:
     rows of other runs, of which `first_outside` is one.
@@ -132,15 +134,15 @@ class Theirs:
     read_as: dict[str, tuple[Fraction, Fraction]] = field(default_factory=dict)
 
     def keep(self, run: PublishedRun, step: int, row: Row, lines: Table) -> None:
-        """Takes up a row; InputError where another one of this step says something else."""
+        """Add a row; InputError where another one of this step differs."""
         rows = self.runs.setdefault(run.label, (run, {}))[1]
         before = rows.setdefault(step, row)
         if before.cells != row.cells:
             raise lines.error(f"says of step {step} of {run.label} other than line {before.line}")
 
-    def kept(self) -> list[Row]:
-        """All rows of all runs. InputError where there is none."""
+    def all_rows(self) -> list[Row]:
+        """Return all rows of all runs. Raises InputError where there is none."""
         if not self.runs:
             steps = f"{self.other_steps} rows of other steps" if self.other_steps else "no rows"
             raise InputError("table", self.first_outside or steps, "has no row of these data")
-        return [row for _, own in self.runs.values() for row in own.values()]
+        return [row for _, rows in self.runs.values() for row in rows.values()]

@@ -9,7 +9,7 @@ others it stays what it was at first, the worst that roundings do where they alw
 side. A program's operations are others than ours, but their results are of the size of p and q or
 smaller.
 
-In n degrees of freedom less is run for it (`Carried`).
+In n degrees of freedom less is run for it (`CarriedRounding`).
 
 How far rounding is carried in n degrees of freedom, in doubles.
 
@@ -48,24 +48,24 @@ _ZERO = Fraction(0)
 
 @dataclass(frozen=True)
 class _Row:
-    """The orbit's size by then, what a rounding of that size at the start has become, by column,
-    and the greatest of a Jacobian's entries."""
+    """A row: the orbit's size up to it, what a rounding of that size at the start has become, by
+    column, and the greatest of a Jacobian's entries."""
 
     size: Fraction
     carried: Mapping[str, Fraction]
     entry: Fraction
 
 
-class Carried:
-    """That of one orbit."""
+class CarriedRounding:
+    """The spreads of one orbit in n degrees of freedom."""
 
     def __init__(self, orbit: Start) -> None:
         self._orbit = orbit
         self._rows: dict[int, _Row | None] = {}
 
-    def at(self, step: int) -> Spreads | None:
-        """After so many steps; None where rounding may have taken every digit of the state, or
-        where that is not known."""
+    def spreads_at(self, step: int) -> Spreads | None:
+        """Return the spreads after so many steps; None where rounding may have taken every digit
+        of the state, or where that is not known."""
         if step not in self._rows:
             self._rows[step] = self._row(step)
         row, names = self._rows[step], self._orbit.hamiltonian.coordinates
@@ -104,13 +104,15 @@ class Carried:
             aside = self._after({**start, name: start[name] + off}, step)
             if aside is None:
                 return None
+            # Difference quotients: the Jacobian of N steps, column by column.
             slopes = {n: abs(aside[n] - middle[n]) / off for n in middle}
             entry = max(entry, *(slopes[n] for n in start))
             carried = {n: x + slopes[n] * size for n, x in carried.items()}
         return _Row(size, carried, entry)
 
     def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
-        """The numbers after so many steps from a point; None where they cannot be had."""
+        """Return the numbers after so many steps from a point; None where they cannot be
+        computed."""
         aside = run_of(replace(self._orbit, point=point), steps, _OBSERVED)
         try:
             done = aside.run(float64.make(17))
@@ -131,14 +133,15 @@ _COUNT = "step"  # what a kernel's clock counts by
 
 
 class Scatter:
-    """The copies of some orbits of one scheme and one H (whose parameters may differ), which step
-    on together as they are asked to; what is known at `marks` on the way is kept."""
+    """The copies of some orbits of one scheme and one H (whose parameters may differ), which
+    step together on request; the spreads at `marks` on the way are kept."""
 
     def __init__(self, orbits: Sequence[Start], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
         runs = [run_of(orbit) for orbit in orbits]
         if runs[0].implicit:
             raise UnsupportedError("equations are not solved for many points at once")
+        # A fixed seed: verdicts must not change from run to run.
         self._random = np.random.default_rng(0)
         arithmetic = arrays()
         kernel = kernel_for(
@@ -150,53 +153,54 @@ class Scatter:
         clocks = clock_inputs if kernel.timed else lambda *_: {}
         inputs = [each.inputs(kernel, 0) | clocks(arithmetic, each.start) for each in runs]
         columns = zip(*(each.values() for each in inputs), strict=True)
-        self._given = [self._off(column) for column in columns]
+        self._inputs = [self._off(column) for column in columns]
         self._state = {n: self._off([each.point[n] for each in orbits]) for n in ("p", "q")}
         rest = zip(self._names[2:], kernel.start, strict=True)
         self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
         self._biased = self._draw(())
         self._ahead: list[Any] = []
         self._done, self._marks = 0, frozenset(marks)
-        self._known: dict[int, list[Spreads | None]] = {}
+        self._spreads_by_step: dict[int, list[Spreads | None]] = {}
 
-    def at(self, orbit: int, step: int) -> Spreads | None:
-        """Of an orbit, after so many steps; None where its copies leave every range, or are far
-        apart by then. ValueError for a step that was passed, and is no mark.
-        """
-        if step not in self._known:
+    def spreads_at(self, orbit: int, step: int) -> Spreads | None:
+        """Return the spreads of an orbit after so many steps; None where its copies leave every
+        range, or are far apart by then. Raises ValueError for an earlier step that is no mark."""
+        if step not in self._spreads_by_step:
             if self._done > min(step, _MOST_STEPS):
                 raise ValueError(step)
             with np.errstate(all="ignore"):
                 self._go_to(step)
-        return self._known[step][orbit]
+        return self._spreads_by_step[step][orbit]
 
     def _go_to(self, step: int) -> None:
         while self._done < min(step, _MOST_STEPS):
-            if self._done in self._marks and self._done not in self._known:
-                self._known[self._done] = self._spreads(self._done)
+            if self._done in self._marks and self._done not in self._spreads_by_step:
+                self._spreads_by_step[self._done] = self._spreads(self._done)
             self._advance()
-        self._known[step] = self._spreads(step)
+        self._spreads_by_step[step] = self._spreads(step)
 
     def _advance(self) -> None:
         if not self._ahead:
             self._ahead = list(self._draw((_BLOCK,)))
         push = self._ahead.pop()
+        # The second half of the copies is pushed by the same factors in every step, the worst case
+        # of roundings to one side.
         push[..., _COPIES:] = self._biased[..., _COPIES:]
-        self._state = self._stepped(self._state)
+        self._state = self._step(self._state)
         for name, by in zip(self._pushed, push, strict=True):
             self._state[name] = self._state[name] * by
         self._done += 1
 
-    def _stepped(self, state: Mapping[str, Any]) -> dict[str, Any]:
-        _, *after = self._function(1, *self._given, *(state[n] for n in self._names))
+    def _step(self, state: Mapping[str, Any]) -> dict[str, Any]:
+        _, *after = self._function(1, *self._inputs, *(state[n] for n in self._names))
         return dict(zip(self._names, after, strict=True))
 
     def _draw(self, shape: tuple[int, ...]) -> Any:
-        """Factors for what is pushed of each copy; the one in the middle is not."""
+        """Draw factors for the numbers of each copy that are perturbed; the middle copy is not."""
         many = (*shape, len(self._pushed), *self._shape)
-        drawn = self._random.uniform(1 - _PUSH, 1 + _PUSH, many)
-        drawn[..., _COPIES] = 1
-        return drawn
+        factors = self._random.uniform(1 - _PUSH, 1 + _PUSH, many)
+        factors[..., _COPIES] = 1
+        return factors
 
     def _off(self, column: Sequence[Fraction]) -> Any:
         exact = np.array([WIDE.rational(x) for x in column])
@@ -204,50 +208,53 @@ class Scatter:
 
     def _spreads(self, step: int) -> list[Spreads | None]:
         zero = {n: np.zeros(self._shape) for n in ("lam", "mse") if n in self._state}
-        after = self._stepped(self._state | zero)
+        after = self._step(self._state | zero)
         values = self._state | ({"delta_j": after["lam"]} if "lam" in after else {})
-        apart = {n: self._apart(x) for n, x in values.items()}
+        distances = {n: self._distances(x) for n, x in values.items()}
         size = np.maximum(*(np.abs(self._state[n][:, _COPIES]) for n in ("p", "q")))
-        beyond = max(1.0, step / _MOST_STEPS)  # a phase that drifts: N√N, and N²
-        found: list[Spreads | None] = []
+        # Random roundings of the frequency give a phase error that grows as N√N, roundings to one
+        # side one that grows as N²: this extrapolates beyond the steps that were run.
+        growth = max(1.0, step / _MOST_STEPS)
+        spreads: list[Spreads | None] = []
         for k in range(self._shape[0]):
-            own = {
+            by_column = {
                 ("lambda" if n == "lam" else n): Spread(
-                    float(usual[k]) * beyond**1.5, float(worst[k]) * beyond**2
+                    float(usual[k]) * growth**1.5, float(worst[k]) * growth**2
                 )
-                for n, (usual, worst) in apart.items()
+                for n, (usual, worst) in distances.items()
             }
-            finite = all(math.isfinite(y) for x in own.values() for y in (x.usual, x.worst))
-            far = max(own[n].worst for n in ("p", "q")) * _PUSH > _LARGE * float(size[k])
-            found.append(own if finite and not far else None)
-        return found
+            finite = all(math.isfinite(y) for x in by_column.values() for y in (x.usual, x.worst))
+            far = max(by_column[n].worst for n in ("p", "q")) * _PUSH > _LARGE * float(size[k])
+            spreads.append(by_column if finite and not far else None)
+        return spreads
 
-    def _apart(self, values: Any) -> tuple[Any, Any]:
+    def _distances(self, values: Any) -> tuple[Any, Any]:
         values = np.broadcast_to(values, self._shape)
         apart = np.abs(values - values[:, _COPIES : _COPIES + 1]) / _PUSH
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
 def run_of(orbit: Start, steps: int = 1, observed: Iterable[str] = ()) -> KernelRun:
-    """So many steps of the orbit; where nothing is said, with Λ and, in the plane, MSE."""
+    """Return a run of so many steps of the orbit; without `observed`, with Λ and, in the plane,
+    MSE."""
     exact = orbit.hamiltonian
-    asked = frozenset(observed) or _SUMS[exact.structure]
-    return KernelRun(exact, orbit.scheme, orbit.inputs, steps, asked, 0)
+    observables = frozenset(observed) or _SUMS[exact.structure]
+    return KernelRun(exact, orbit.scheme, orbit.inputs, steps, observables, 0)
 
 
 class Scatters:
-    """The scatters of a table's orbits, each made when it is first needed, with others of its kind;
-    other orbits have one of their own."""
+    """The scatters of a table's orbits, each made when it is first needed, with others of its
+    kind; other orbits have one of their own."""
 
     def __init__(self, orbits: Iterable[Start] = (), marks: Sequence[int] = ()) -> None:
-        self._carried: dict[Start, Carried] = {}
+        self._carried_by_orbit: dict[Start, CarriedRounding] = {}
         self._place: dict[Start, tuple[tuple[Start, ...], int]] = {}
         self._marks = marks
-        self._made: dict[tuple[Start, ...], Scatter] = {}
+        self._scatters: dict[tuple[Start, ...], Scatter] = {}
         self.expect(orbits)
 
     def expect(self, orbits: Iterable[Start]) -> None:
-        """They may be asked for, too; so those of a kind that are new step together."""
+        """Announce orbits that may be requested, so that new ones of a kind step together."""
         kinds: dict[object, list[Start]] = {}
         for orbit in dict.fromkeys(orbits):
             if orbit not in self._place:
@@ -257,19 +264,19 @@ class Scatters:
                 together = tuple(kind[first : first + _TOGETHER])
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
-    def at(self, orbit: Start, step: int) -> Spreads | None:
-        """As `Scatter.at`, in any order; of no number where the scheme solves equations, unless in
-        n degrees of freedom."""
+    def spreads_at(self, orbit: Start, step: int) -> Spreads | None:
+        """Return the spreads as `Scatter.spreads_at` does, in any order; of no number where the
+        scheme solves equations, unless in n degrees of freedom."""
         if not orbit.hamiltonian.planar:
-            return self._carried.setdefault(orbit, Carried(orbit)).at(step)
+            return self._carried_by_orbit.setdefault(orbit, CarriedRounding(orbit)).spreads_at(step)
         together, k = self._place.get(orbit, ((orbit,), 0))
         try:
-            if together not in self._made:
-                self._made[together] = Scatter(together, self._marks)
-            return self._made[together].at(k, step)
+            if together not in self._scatters:
+                self._scatters[together] = Scatter(together, self._marks)
+            return self._scatters[together].spreads_at(k, step)
         except (UnsupportedError, OverflowError):  # OverflowError: of an input that is no double
             return {}
         except ValueError:  # it was passed
             self._place[orbit] = (orbit,), 0
-            self._made[(orbit,)] = Scatter([orbit], self._marks)
-            return self._made[(orbit,)].at(0, step)
+            self._scatters[(orbit,)] = Scatter([orbit], self._marks)
+            return self._scatters[(orbit,)].spreads_at(0, step)

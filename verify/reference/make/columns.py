@@ -20,7 +20,8 @@ _BESIDE = {
 
 
 def cell(value: Any) -> str:
-    """The text of a value; empty for None; of entries by name, NAME: VALUE with semicolons."""
+    """Return the text of a value; empty for None; of entries by name, NAME: VALUE with
+    semicolons."""
     if value is None:
         return ""
     if isinstance(value, dict):
@@ -29,18 +30,18 @@ def cell(value: Any) -> str:
 
 
 def start_columns(degrees: int) -> Row:
-    """The names of the columns that hold the start: q first; q0, or q0_1 …"""
+    """Return the names of the columns that hold the start: q first; q0, or q0_1 …"""
     names = coordinates_in(degrees)
     return tuple(f"{x[0]}0_{x[1:]}".rstrip("_") for x in (*names[degrees:], *names[:degrees]))
 
 
 def orbit_columns(degrees: int) -> Row:
-    """The names of those that an orbit has beside its state."""
+    """Return the names of an orbit's columns other than those of its state."""
     return _BESIDE[structure_in(degrees)]
 
 
 def values_of(row: OrbitRow | FlowRow, degrees: int) -> dict[str, Cell]:
-    """The numbers of a row by the names of their columns; None for one that there is not."""
+    """Return the numbers of a row by the names of their columns; None for a missing one."""
     values: dict[str, Cell] = {}
     for letter, numbers in (("p", row.p), ("q", row.q)):
         if isinstance(numbers, tuple):  # a file may have too few or too many

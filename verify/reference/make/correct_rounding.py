@@ -14,7 +14,8 @@ _TOUCH = 20  # digits beyond those asked for, within which an exact number is lo
 
 
 def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded | None:
-    """The decimal of so many significant digits that is nearest to every number within `bound`.
+    """Return the decimal of so many significant digits that is nearest to every number within
+    `bound`.
 
     Of one digit more where the number is halfway between two of them, as exact decimals can be.
     An exact number (`bound` 0) that has no more digits than that is given itself, with radius 0.
@@ -28,8 +29,10 @@ def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded 
     """
     if bound == 0 and _short(value, digits):
         return exactly(value)
-    within = bound or abs(value) / Fraction(10) ** (digits + _TOUCH)
-    low, high = value - within, value + within
+    # An exact number with more digits is treated like one with a tiny bound: so the text does not
+    # depend on whether the number was known exactly.
+    tolerance = bound or abs(value) / Fraction(10) ** (digits + _TOUCH)
+    low, high = value - tolerance, value + tolerance
     if low <= 0 <= high:
         return None
     for many in (digits, digits + 1):
@@ -41,7 +44,8 @@ def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded 
 
 
 def near_zero(value: Fraction, bound: Fraction, digits: int, size: Fraction) -> Rounded | None:
-    """0 ± 10^(−2·digits) times the power of ten in `size`; None where more may be left than that.
+    """Return 0 ± 10^(−2·digits) times the power of ten in `size`; None where more may be left than
+    that.
 
     `size`: what the number is small against, such as the initial value; 0 counts as 1.
 
@@ -55,7 +59,7 @@ def near_zero(value: Fraction, bound: Fraction, digits: int, size: Fraction) -> 
 
 
 def exactly(value: Fraction) -> Rounded:
-    """A number whose decimals end, with all of them and radius 0.
+    """Return a number whose decimals end, with all of them and radius 0.
 
     >>> exactly(Fraction(-1, 8))
     Rounded(value='-1.25e-01', radius='0')
@@ -67,7 +71,7 @@ def exactly(value: Fraction) -> Rounded:
 
 
 def _short(value: Fraction, digits: int) -> bool:
-    """Whether a decimal of so many significant digits is that number."""
+    """Return True if a decimal of so many significant digits is that number."""
     if value == 0:
         return True
     units, exponent = rounded_units(value, digits)

@@ -1,4 +1,5 @@
-"""Scenes → reference data: the plan's tasks, then one JSON file a scene, its tables, a manifest."""
+"""Scenes → reference data: the plan's tasks, then one JSON file for a scene, its tables, a
+manifest."""
 
 import re
 import shlex
@@ -25,9 +26,9 @@ from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, 
 from verify.reference.make.writing import (
     MANIFEST,
     csv_text,
+    describe_file,
     digest,
     json_text,
-    listed,
     names_of,
     schema_text,
     schemas_for,
@@ -51,32 +52,35 @@ class SceneText:
 
 
 def load(paths: Sequence[Path]) -> list[SceneText]:
-    """The scenes in TOML files. InputError for one that asks for no reference data, a name that no
-    file can have, or two of one name, of which one would overwrite the other."""
-    found = [SceneText(load_scene(path), read_text(path)) for path in paths]
-    for path, asked in zip(paths, found, strict=True):
-        if not asked.scene.reference:
+    """Load the scenes in TOML files.
+
+    Raises InputError for one that requests no reference data, a name that no file can have, or two
+    of one name, of which one would overwrite the other.
+    """
+    scenes = [SceneText(load_scene(path), read_text(path)) for path in paths]
+    for path, entry in zip(paths, scenes, strict=True):
+        if not entry.scene.reference:
             raise InputError("SCENE", str(path), "asks for no [[reference]]")
-        if (size := size_of(asked.scene)) > MOST_BYTES:
+        if (size := size_of(entry.scene)) > MOST_BYTES:
             problem = f"makes a file of about {size} bytes; allowed: {MOST_BYTES}"
             raise InputError("SCENE", str(path), problem)
-    names = [asked.scene.name for asked in found]
+    names = [entry.scene.name for entry in scenes]
     for name in names:
         if not _NAME.fullmatch(name) or f"{name}.json" == MANIFEST:
             problem = "cannot begin a file's name; allowed: letters, digits, - and _; not manifest"
             raise InputError("name", name, problem)
         if names.count(name) > 1:
             raise InputError("SCENE", name, "two scenes have this name")
-    return found
+    return scenes
 
 
 def committed_scenes() -> list[Path]:
-    """The scenes that the committed set is made from."""
+    """Return the paths of the scenes that the committed set is made from."""
     return sorted(SCENES.glob("*.toml"))
 
 
 def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
-    """A scene's data from the results of its tasks, by their keys."""
+    """Return a scene's data from the results of its tasks, by their keys."""
     exact = scene.exact_hamiltonian()
     form = format_of(exact.degrees)
     content = {
@@ -96,12 +100,13 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
 
 
 def _rows(result: OrbitResult | SolutionResult) -> list[dict[str, Any]]:
-    """Its rows, of which some may be of either format where they are read again."""
+    """Return the rows of a result, some of which may be of either format where they are read
+    again."""
     return [point.model_dump() for point in result.points]
 
 
 def _proof(scheme: str, result: ProofResult) -> dict[str, Any]:
-    """What a file has of a proof: of all entries of S in several degrees of freedom."""
+    """Return a file's fields of a proof: of all entries of S in several degrees of freedom."""
     alike = ("verdict", "area_preserving", "order", "convergence_order")
     content = {"scheme": scheme, **{name: getattr(result, name) for name in alike}}
     form = result.form
@@ -110,15 +115,17 @@ def _proof(scheme: str, result: ProofResult) -> dict[str, Any]:
     return {"symplectic": form.symplectic, "leading": dict(form.entries), **content}
 
 
-def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
-    """InputError where the folder holds what is not made again, and would be extra in a check, or
-    a file of one of our names that is not ours."""
-    formats = {x.scene.name: format_of(x.scene.exact_hamiltonian().degrees) for x in asked}
-    made = {MANIFEST, *names_of(formats, parquet=parquet)}
+def check_is_alone(folder: Path, scenes: Sequence[SceneText], *, parquet: bool) -> None:
+    """Raise InputError where the folder holds files that are not made again, and would be extra
+    in a check, or a file of one of our names that is not ours."""
+    # The check compares the folder with the list of its files: any other file would be a
+    # difference.
+    formats = {x.scene.name: format_of(x.scene.exact_hamiltonian().degrees) for x in scenes}
+    own_names = {MANIFEST, *names_of(formats, parquet=parquet)}
     forms = {MANIFEST: MANIFEST_FORMAT, **{f"{name}.json": x for name, x in formats.items()}}
-    there = {path.name: path for path in folder.iterdir()}
-    other = sorted(there.keys() - made)
-    other += [x for x, form in forms.items() if x in there and not names_format(there[x], form)]
+    present = {path.name: path for path in folder.iterdir()}
+    other = sorted(present.keys() - own_names)
+    other += [x for x, form in forms.items() if x in present and not names_format(present[x], form)]
     if other:
         problem = (
             f"holds {other[0]!r}, which does not belong to these data; give a folder of its own"
@@ -127,7 +134,7 @@ def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
 
 
 def files_of(data: Sequence[AnyData], *, parquet: bool = False) -> dict[str, bytes]:
-    """The content of all files but the manifest, by name."""
+    """Return the content of all files but the manifest, by name."""
     schemas = schemas_for(each.format for each in data)
     files = {name: schema_text(name).encode() for name in schemas}
     for each in data:
@@ -141,21 +148,23 @@ def files_of(data: Sequence[AnyData], *, parquet: bool = False) -> dict[str, byt
     return dict(sorted(files.items()))
 
 
-def manifest_of(asked: Sequence[SceneText], files: Mapping[str, bytes], command: str) -> Manifest:
-    """The manifest of these files, with the versions that are installed."""
+def manifest_of(scenes: Sequence[SceneText], files: Mapping[str, bytes], command: str) -> Manifest:
+    """Return the manifest of these files, with the versions that are installed."""
     return Manifest(
         format=MANIFEST_FORMAT,
         command=command,
         versions=versions(),
         scenes=tuple(
-            SceneFile(name=x.scene.name, toml=x.toml, sha256=digest(x.toml.encode())) for x in asked
+            SceneFile(name=x.scene.name, toml=x.toml, sha256=digest(x.toml.encode()))
+            for x in scenes
         ),
-        files=tuple(listed(name, raw) for name, raw in files.items()),
+        files=tuple(describe_file(name, raw) for name, raw in files.items()),
     )
 
 
 def command_of(scenes: Sequence[str], parquet: bool) -> str:
-    """What makes the same files again; without scenes, the committed set's are meant.
+    """Return the command that makes the same files again; without scenes, the committed set's are
+    meant.
 
     >>> command_of(["somewhere/pendulum.toml"], parquet=True)
     'verify reference make pendulum.toml --parquet'
@@ -165,10 +174,14 @@ def command_of(scenes: Sequence[str], parquet: bool) -> str:
 
 
 def write(folder: Path, files: Mapping[str, bytes], manifest: Manifest) -> None:
-    """Writes the files, each atomically, and the manifest last.
+    """Write the files, each atomically, and the manifest last.
+
+    An old manifest is removed first: an interruption leaves no manifest of other files behind.
 
     An old manifest goes first: an interruption leaves no manifest of other files behind.
     """
+    # A folder without a manifest is refused by a check; one with a stale manifest might be
+    # believed.
     (folder / MANIFEST).unlink(missing_ok=True)
     for name, raw in files.items():
         write_atomically(folder / name, raw)

@@ -1,4 +1,4 @@
-"""What the files of reference data hold. The published JSON Schemas are made from these models.
+"""Models of the files of reference data. The published JSON Schemas are made from them.
 
 The formats are two: in the plane q and p of a start are a number each, and S is ΔJ; in n degrees of
 freedom they are lists.
@@ -49,7 +49,7 @@ ConvergenceOrder = Annotated[
 Ascending = Field(description="one a chosen step, ascending")
 
 
-class Started(Frozen):
+class WithStart(Frozen):
     """A start, and the step size with which it is gone on from there."""
 
     step_size: Exact = Field(description="the step size h exactly: a decimal or a quotient")
@@ -83,7 +83,7 @@ class Started(Frozen):
         return point if self.begins is None else point | {"t": Fraction(self.begins)}
 
 
-class _InPlane(Started):
+class _InPlane(WithStart):
     q: Exact = Field(description="the initial displacement q exactly")
     p: Exact = Field(description="the initial momentum p exactly")
     digits: Digits
@@ -93,7 +93,7 @@ class _InTime(_InPlane):
     t0: Exact = Field(description="the time at the start exactly")
 
 
-class _InDegrees(Started):
+class _InDegrees(WithStart):
     q: _List = Field(description="the initial displacements q1 … qn exactly")
     p: _List = Field(description="the initial momenta p1 … pn exactly")
     t0: Exact | None = Field(
@@ -102,13 +102,15 @@ class _InDegrees(Started):
     digits: Digits
 
 
-class OfScheme(Frozen):
+class WithScheme(Frozen):
     """A row that is of one scheme."""
 
     scheme: str = Field(description="the scheme, by the name that `verify run --scheme` takes")
 
 
-class Proof(OfScheme):
+# The first lines of the docstrings of these models are printed in the published JSON Schemas:
+# whoever changes one makes the committed data anew.
+class Proof(WithScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Proved
@@ -125,7 +127,7 @@ class Proof(OfScheme):
 
     @property
     def symplectic(self) -> bool | None:
-        """Whether S is 0, of which ΔJ is all."""
+        """True if S is 0, of which ΔJ is all."""
         return self.area_preserving
 
     @property
@@ -134,7 +136,7 @@ class Proof(OfScheme):
         return {"": self.leading}
 
 
-class ProofInDegrees(OfScheme):
+class ProofInDegrees(WithScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Proved
@@ -157,7 +159,7 @@ class ProofInDegrees(OfScheme):
         return self.leading
 
 
-class Run(_InPlane, OfScheme):
+class Run(_InPlane, WithScheme):
     """One scheme's orbit from one initial value with one step size."""
 
     rows: tuple[OrbitPoint, ...] = Ascending
@@ -167,7 +169,7 @@ class RunInTime(_InTime, Run):
     """The same for an H that depends on time, from a time on."""
 
 
-class RunInDegrees(_InDegrees, OfScheme):
+class RunInDegrees(_InDegrees, WithScheme):
     """One scheme's orbit from one initial value with one step size."""
 
     rows: tuple[OrbitPointInDegrees, ...] = Ascending
@@ -189,7 +191,7 @@ class FlowInDegrees(_InDegrees):
     rows: tuple[FlowPointInDegrees, ...] = Ascending
 
 
-class _OfScene(Frozen):
+class _SceneData(Frozen):
     format: str = Field(description="this format")
     name: Name = Field(description="the scene's name; the files begin with it")
     hamiltonian: str
@@ -198,17 +200,19 @@ class _OfScene(Frozen):
     @property
     def count(self) -> int:
         """The rows of all tables."""
-        own = dict(self)
-        return len(own["proofs"]) + sum(len(each.rows) for each in (*own["runs"], *own["flow"]))
+        fields = dict(self)
+        return len(fields["proofs"]) + sum(
+            len(each.rows) for each in (*fields["runs"], *fields["flow"])
+        )
 
     @property
     def timed(self) -> bool:
-        """Whether H depends on time."""
-        own = dict(self)
-        return any(each.begins is not None for each in (*own["runs"], *own["flow"]))
+        """True if H depends on time."""
+        fields = dict(self)
+        return any(each.begins is not None for each in (*fields["runs"], *fields["flow"]))
 
 
-class Data(_OfScene):
+class Data(_SceneData):
     """Reference data of one scene: one Hamiltonian, its schemes, step sizes and initial values."""
 
     model_config = ConfigDict(title="areaproof reference data")
@@ -230,7 +234,7 @@ class Data(_OfScene):
         return 1
 
 
-class DataInDegrees(_OfScene):
+class DataInDegrees(_SceneData):
     """Reference data of one scene in n degrees of freedom: one H(p1 … pn, q1 … qn), its schemes,
     step sizes and initial values."""
 
@@ -253,23 +257,24 @@ AnyData = Data | DataInDegrees
 MODELS: dict[str, type[AnyData]] = {DATA_FORMAT: Data, DATA_IN_DEGREES_FORMAT: DataInDegrees}
 
 
+# The format follows from the structure: area in the plane, the symplectic form beyond.
 _FORMATS = {AREA: DATA_FORMAT, SYMPLECTIC: DATA_IN_DEGREES_FORMAT}
 
 
 def format_of(degrees: int) -> str:
-    """The format of data in so many degrees of freedom."""
+    """Return the format of data in so many degrees of freedom."""
     return _FORMATS[structure_in(degrees)]
 
 
 def heading(hamiltonian: Hamiltonian) -> dict[str, Any]:
-    """What a file says of H: its formula and parameters, and in its format the degrees."""
-    told = {**hamiltonian.texts, "degrees": hamiltonian.degrees}
+    """Return a file's fields of H: its formula and parameters, and in its format the degrees."""
+    values = {**hamiltonian.texts, "degrees": hamiltonian.degrees}
     fields = MODELS[format_of(hamiltonian.degrees)].model_fields
-    return {name: x for name, x in told.items() if name in fields}
+    return {name: x for name, x in values.items() if name in fields}
 
 
 def format_at(path: Path) -> str:
-    """The format of a file of data; the plane's, too, where it names none."""
+    """Return the format of a file of data; the plane's, too, where it names none."""
     several = names_format(path, DATA_IN_DEGREES_FORMAT)
     return DATA_IN_DEGREES_FORMAT if several else DATA_FORMAT
 

@@ -1,5 +1,10 @@
 """One orbit at chosen steps, and the exact flow at their times, every number correctly rounded.
 
+Each chosen step is a run of its own, so that the numbers are those that `verify.runs.run` reports,
+with a rigorous bound wherever there is one. ΔJ at the state, or H in several degrees of freedom, is
+enclosed by balls over all states within that bound. The number of digits is raised until all
+numbers round to one decimal.
+
 Each step that is chosen is a run of its own, so that what is known of it is what `verify.runs.run`
 reports, with a rigorous bound wherever one can be had. ΔJ at the state, or H in several degrees of
 freedom, is enclosed by balls over all states within that bound. More digits are asked for until all
@@ -14,7 +19,7 @@ from typing import Any
 import flint
 
 from verify.algebra.enclosure import enclose_all, enclose_over
-from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import is_representable, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
@@ -26,7 +31,7 @@ from verify.kernels.step.computation import step_map_of
 from verify.lockstep import Course
 from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
-from verify.runs.run import AskedRun
+from verify.runs.run import RequestedRun
 from verify.runs.start import Start
 from verify.scenes.results.reference import (
     FlowPoint,
@@ -50,80 +55,87 @@ Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 
 
 def orbit_points(orbit: Start, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
-    """The orbit after each of these numbers of steps, every number to so many digits."""
+    """Compute the orbit after each of these numbers of steps, every number to so many digits."""
     exact, points = orbit.hamiltonian, []
     for step in steps:
-        told, values = yield from _after_steps(orbit, step, digits)
+        status, values = yield from _point_after(orbit, step, digits)
         numbers = _state(values)
         numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
-        points.append(_ORBITS[exact.structure](step=step, **_UNKNOWN | told, **numbers))
+        points.append(_ORBITS[exact.structure](step=step, **_UNKNOWN | status, **numbers))
     return tuple(points)
 
 
-def _after_steps(orbit: Start, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
-    """What is known after so many steps, and the numbers, if they are."""
+def _point_after(orbit: Start, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
+    """Return the status after so many steps, and the numbers, if there are any.
+
+    A number that lies between two decimals within its bound has no rounding yet: then all are
+    computed again with more digits.
+    """
     start = orbit.point
-    beside = orbit_columns(orbit.hamiltonian.degrees)
-    observables = tuple(x for x in beside if x not in MAY_LACK)
+    columns = orbit_columns(orbit.hamiltonian.degrees)
+    observables = tuple(x for x in columns if x not in MAY_LACK)
     at_first = [x for x in observables if x not in AFTER_A_STEP]
     for guard in _GUARDS:
-        known = {name: (x, Fraction(0)) for name, x in start.items()}
-        known |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
+        bounded = {name: (x, Fraction(0)) for name, x in start.items()}
+        bounded |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
         kind: Kind = "enclosed"
         if step > 0:
-            asked = AskedRun(
-                **orbit.asked,
+            request = RequestedRun(
+                **orbit.run_arguments,
                 steps=step,
                 arithmetic=AUTO,
                 digits=digits + guard,
                 observables=observables,
             )
-            after = yield from asked.result()
+            after = yield from request.result()
             if after.status == "left range":
                 return {"status": "left range", "failed_step": after.failed_step}, {}
             if after.status == "unresolved":
                 break
             kind = after.error_kind
-            known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in after.values.items()}
-        known |= _at_state(orbit, step, known, digits + guard)
-        values = _all_rounded(known, start, digits, guard)
+            bounded = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in after.values.items()}
+        bounded |= _enclose_at_state(orbit, step, bounded, digits + guard)
+        values = _round_all(bounded, start, digits, guard)
         if all(values.values()):
             return {"status": "finished", "kind": kind}, values
     return {}, {}
 
 
-def _all_rounded(
-    known: Mapping[str, Bounded], start: Mapping[str, Fraction], digits: int, guard: int
+def _round_all(
+    bounded: Mapping[str, Bounded], start: Mapping[str, Fraction], digits: int, guard: int
 ) -> dict[str, Rounded | None]:
-    """Each number rounded; with the last guard a 0 too, coordinates against the initial value."""
+    """Round each number; with the last guard a 0 too, coordinates against the initial value."""
     largest = max(map(abs, start.values()))
-    values = {name: correctly_rounded(*x, digits) for name, x in known.items()}
+    values = {name: correctly_rounded(*x, digits) for name, x in bounded.items()}
     if guard == _GUARDS[-1]:
-        for name, x in known.items():
+        for name, x in bounded.items():
             size = largest if name in start else Fraction(1)
             values[name] = values[name] or near_zero(*x, digits, size)
     return values
 
 
 def _state(values: Numbers) -> dict[str, Any]:
-    """p and q of a row: a number each, or a list; None where there are none."""
+    """Return p and q of a row: a number each, or a list; None where there are none."""
     lists = {letter: tuple(values[x] for x in values if x[0] == letter != x) for letter in "pq"}
     return {letter: values.get(letter) or several or None for letter, several in lists.items()}
 
 
-def _at_state(
-    orbit: Start, step: int, known: Mapping[str, Bounded], digits: int
+def _enclose_at_state(
+    orbit: Start, step: int, bounded: Mapping[str, Bounded], digits: int
 ) -> dict[str, Bounded]:
-    """ΔJ of the orbit's next step after so many, or H in several degrees of freedom, from any state
-    within the bounds in `known`; nothing where it may not be defined there.
-    """
+    """Enclose ΔJ of the orbit's next step after so many, or H in several degrees of freedom,
+    from any state within the bounds in `bounded`; empty where it may not be defined there."""
     with working_precision(4 * digits + _BITS):
-        box = {name: around(*known[name]) for name in orbit.hamiltonian.coordinates}
+        box = {name: make_ball(*bounded[name]) for name in orbit.hamiltonian.coordinates}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
         (name,) = (x for x in orbit_columns(orbit.hamiltonian.degrees) if x in MAY_LACK)
         value = _delta_j(orbit, box) if name == "delta_j" else _energy(orbit, box)
-        return {name: middle_and_radius(value)} if value is not None and in_reach(value) else {}
+        return (
+            {name: midpoint_and_radius(value)}
+            if value is not None and is_representable(value)
+            else {}
+        )
 
 
 def _energy(orbit: Start, box: dict[str, flint.arb]) -> flint.arb | None:
@@ -132,20 +144,24 @@ def _energy(orbit: Start, box: dict[str, flint.arb]) -> flint.arb | None:
 
 
 def _delta_j(orbit: Start, box: dict[str, flint.arb]) -> flint.arb | None:
-    """None, too, where a step is given by equations and does not preserve area by proof."""
+    """Enclose ΔJ; None, too, where a step is given by equations and is not proved to preserve
+    area."""
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     if step_map.preserves_area:
         return flint.arb(0)
-    h, written = rational_ball(orbit.step_size), step_map.written_defect
-    if written is not None:
+    h, closed_defect = rational_ball(orbit.step_size), step_map.written_defect
+    if closed_defect is not None:
         # With z' itself, since ΔJ may be defined beyond H.
-        balls = enclose_all(written.ring, [written.delta_j, *written.elements], {**box, "h": h})
+        balls = enclose_all(
+            closed_defect.ring, [closed_defect.delta_j, *closed_defect.elements], {**box, "h": h}
+        )
         return None if balls is None else balls[0]
     try:
         _, slopes = step_in_balls(step_map.field, step_map.step or step_map.flat, box, h)
     except UndefinedError:
         return None
     (a, b), (c, d) = slopes.tolist()
+    # With J = 1 + (slopes), det J − 1 is expanded so that the two 1's do not cancel.
     change: flint.arb = a + d + a * d - b * c
     return change
 
@@ -160,8 +176,8 @@ def solution_points(
     times: Mapping[int, Fraction],
     digits: int,
 ) -> Iterator[Any]:
-    """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
-    so many digits."""
+    """Yield the exact flow from the coordinates in `start` and t0, at these times after it by
+    their N, to so many digits."""
     model = _FLOWS[hamiltonian.structure]
     for step, time in times.items():
         status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
@@ -176,17 +192,17 @@ def _solution_at(
     time: Fraction,
     digits: int,
 ) -> tuple[str, Kind | None, Numbers]:
-    """The status of a row of the exact flow, what its radii are, and its values."""
+    """Return the status of a row of the exact flow, the kind of its radii, and its values."""
     try:
         for guard in _GUARDS:
             if time == 0:  # the initial value itself, also where H is not defined
-                at = Solution(start, Fraction(0), "the initial value itself")
+                solution = Solution(start, Fraction(0), "the initial value itself")
             else:
-                at = solution_from(hamiltonian, start, time, digits + guard, t0)
-            known = {name: (x, at.bound) for name, x in at.point.items()}
-            values = _all_rounded(known, start, digits, guard)
+                solution = solution_from(hamiltonian, start, time, digits + guard, t0)
+            bounded = {name: (x, solution.bound) for name, x in solution.point.items()}
+            values = _round_all(bounded, start, digits, guard)
             if all(values.values()):
-                return "finished", "enclosed" if at.enclosed else "estimated", values
+                return "finished", "enclosed" if solution.enclosed else "estimated", values
     except InputError as error:
         if error.name != "digits":
             raise
@@ -197,7 +213,7 @@ def _solution_at(
 
 
 def _blows_up(hamiltonian: Hamiltonian, start: Mapping[str, Fraction], time: Fraction) -> bool:
-    """Whether algebra says so, which it does in the plane alone."""
+    """Return True if algebra proves a blow-up, which it does in the plane alone."""
     if not hamiltonian.planar or hamiltonian.time_dependent:
         return False
     with suppress(NoFlowError):  # H may not even be defined at the initial value

@@ -9,21 +9,21 @@ from verify.reference.make.columns import Row
 from verify.reference.make.reading import MOST_CELLS
 
 
-def installed() -> bool:
-    """Whether pyarrow is there."""
+def is_installed() -> bool:
+    """Return True if pyarrow is installed."""
     return find_spec("pyarrow") is not None
 
 
 def require() -> None:
-    """InputError where pyarrow is not installed."""
-    if not installed():
+    """Raise InputError where pyarrow is not installed."""
+    if not is_installed():
         raise InputError(
             "--parquet", NOT_GIVEN, "pyarrow is not installed; the extra `parquet` has it"
         )
 
 
 def parquet_bytes(rows: list[Row]) -> bytes:
-    """The file of a table, whose first row names the columns."""
+    """Return the file of a table, whose first row names the columns."""
     import pyarrow
     from pyarrow import parquet
 
@@ -36,7 +36,8 @@ def parquet_bytes(rows: list[Row]) -> bytes:
 
 
 def parquet_rows(content: bytes, name: str) -> list[Row]:
-    """The table again. InputError where that is no such file, or would be very large."""
+    """Return the table again. Raises InputError where the content is no such file, or would be
+    very large."""
     import pyarrow
 
     try:
@@ -47,7 +48,10 @@ def parquet_rows(content: bytes, name: str) -> list[Row]:
 
 
 def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
-    """Names and cells of its columns. ValueError where they are no texts, or too long ones.
+    """Return names and cells of the columns. ValueError where they are no texts, or too long ones.
+
+    A few bytes may stand for very many cells, or for one long text in all of them: so columns are
+    read as dictionaries, and their size is computed before they are expanded.
 
     A few bytes may stand for very many cells, or for one long text in all of them: so columns are
     read as dictionaries, and it is looked how large they will be before they are.
@@ -55,13 +59,15 @@ def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
     import pyarrow.compute
     from pyarrow import parquet
 
-    told = parquet.read_metadata(io.BytesIO(content))
-    kinds = [told.schema.column(k) for k in range(told.num_columns)]
+    metadata = parquet.read_metadata(io.BytesIO(content))
+    kinds = [metadata.schema.column(k) for k in range(metadata.num_columns)]
     # A column of lists or structures has a path of several names.
     if any(x.logical_type.type != "STRING" or x.path != x.name for x in kinds):
         raise ValueError("a column is no text")
-    groups = [told.row_group(k).total_byte_size for k in range(told.num_row_groups)]
-    if sum(groups) > MOST_BYTES or told.num_rows * told.num_columns > MOST_CELLS:
+    # The sizes in the metadata are claims of the file; they are checked again on the columns that
+    # were read.
+    groups = [metadata.row_group(k).total_byte_size for k in range(metadata.num_row_groups)]
+    if sum(groups) > MOST_BYTES or metadata.num_rows * metadata.num_columns > MOST_CELLS:
         raise ValueError("too many cells")
     names = [x.name for x in kinds]
     if len(set(names)) < len(names):
@@ -69,7 +75,7 @@ def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
     table = parquet.ParquetFile(io.BytesIO(content), read_dictionary=names).read()
     for chunk in (chunk for column in table.columns for chunk in column.chunks):
         longest = pyarrow.compute.max(pyarrow.compute.binary_length(chunk.dictionary)).as_py()
-        if (longest or 0) * told.num_rows > MOST_BYTES:
+        if (longest or 0) * metadata.num_rows > MOST_BYTES:
             raise ValueError("too long cells")
     return names, [[_text(x) for x in column.to_pylist()] for column in table.columns]
 

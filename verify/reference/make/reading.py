@@ -11,7 +11,7 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.files import text_of
-from verify.formats import unique
+from verify.formats import reject_repeated_keys
 
 MOST_CELLS = 8 * 2**20  # or commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
@@ -19,7 +19,9 @@ _HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which n
 
 
 def json_of(content: bytes, name: str) -> Any:
-    """The JSON in it, in which no number is a float. InputError for what is not such JSON."""
+    """Return the JSON in it, in which no number is a float. InputError for what is not such
+    JSON."""
+    # Counted before parsing: a few megabytes of brackets would become gigabytes of Python objects.
     opened = content.count(b"[") + content.count(b"{")
     if opened > _MOST_OPEN or opened + content.count(b",") > MOST_CELLS:
         raise InputError("file", name, "has too many parts")
@@ -28,7 +30,10 @@ def json_of(content: bytes, name: str) -> Any:
         raise InputError("file", name, "is not JSON in UTF-8: it has half a character, as \\ud800")
     try:
         return json.loads(
-            text, object_pairs_hook=unique, parse_float=_no_float, parse_constant=_no_float
+            text,
+            object_pairs_hook=reject_repeated_keys,
+            parse_float=_no_float,
+            parse_constant=_no_float,
         )
     except RecursionError:
         raise InputError("file", name, "is nested too deep") from None
@@ -43,7 +48,7 @@ def _no_float(text: str) -> None:
 
 
 def rows_of(content: bytes, name: str) -> list[tuple[str, ...]]:
-    """The rows of a CSV file. InputError for what is not CSV."""
+    """Return the rows of a CSV file. InputError for what is not CSV."""
     source = text_of(content, name)
     if content.count(b",") > MOST_CELLS or content.count(b"\n") > MOST_CELLS:
         raise InputError("file", name, "has too many cells")

@@ -17,7 +17,9 @@ _NUMBERS = {AREA: "ΔJ, MSE and Λ", SYMPLECTIC: "H, S, W and Λ"}
 
 
 def plan_references(scenes: Sequence[Scene]) -> Plan:
-    """What the scenes ask for of reference data, and nothing else of them.
+    """Plan the reference data that the scenes request, and nothing else of them.
+
+    One task for a proof, a run and a flow; those that two scenes share are one.
 
     One task a proof, a run and a flow; those that two scenes share are one.
     """
@@ -35,7 +37,7 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
 
 
 def size_of(scene: Scene) -> int:
-    """About how many bytes the file of its data will have, without listing what it asks for."""
+    """Estimate the bytes of the file of its data, without listing what the scene requests."""
     size, degrees = 0, scene.exact_hamiltonian().degrees
     for section in scene.reference:
         rows = len(section.initial_values) * len(section.step_sizes) * len(section.steps)
@@ -46,35 +48,35 @@ def size_of(scene: Scene) -> int:
 
 
 def schemes_of(scene: Scene, section: Reference) -> tuple[str, ...]:
-    """The section's schemes; the scene's where it names none."""
+    """Return the section's schemes; the scene's where it names none."""
     return section.schemes or scene.schemes
 
 
 def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
-    """One a scheme that a section runs."""
-    named = (name for section in scene.reference for name in schemes_of(scene, section))
-    for name in dict.fromkeys(named):
+    """Yield one task for each scheme that a section runs."""
+    names = (name for section in scene.reference for name in schemes_of(scene, section))
+    for name in dict.fromkeys(names):
         yield proof_task(scene, name, formulas=False)
 
 
 def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
-    """Section by section: scheme, initial value, step size."""
+    """Yield the tasks section by section: scheme, initial value, step size."""
     for section in scene.reference:
-        for scheme, given in product(schemes_of(scene, section), _starts(scene, section)):
-            yield OrbitTask(scheme=scheme, **given)
+        for scheme, start in product(schemes_of(scene, section), _starts(scene, section)):
+            yield OrbitTask(scheme=scheme, **start)
 
 
 def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
-    """Section by section, where the flow is asked for: initial value, step size."""
+    """Yield the tasks section by section, where the flow is requested: initial value, step size."""
     for section in (x for x in scene.reference if x.flow):
-        for given in _starts(scene, section):
-            yield SolutionTask(**given)
+        for start in _starts(scene, section):
+            yield SolutionTask(**start)
 
 
 def _starts(scene: Scene, section: Reference) -> Iterator[dict[str, Any]]:
-    """What the tasks from each initial value with each step size have in common."""
+    """Yield the fields that the tasks from each initial value with each step size share."""
     common = {"steps": section.steps, "digits": section.digits, **scene.hamiltonian_fields()}
     if scene.exact_hamiltonian().time_dependent:
         common["t0"] = scene.t0
-    for at, h in product(section.initial_values, section.step_sizes):
-        yield {"q": at.q, "p": at.p, "step_size": h, **common}
+    for start, h in product(section.initial_values, section.step_sizes):
+        yield {"q": start.q, "p": start.p, "step_size": h, **common}

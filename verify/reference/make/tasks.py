@@ -7,7 +7,7 @@ from verify.arithmetic import automatic
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
-from verify.lockstep import Course, alone
+from verify.lockstep import Course, run_alone
 from verify.runs.start import Start
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
@@ -17,8 +17,8 @@ ROW_COST = 1_000_000  # of a row of reference data, however few its steps
 FLOW_ROW_COST = 10 * ROW_COST
 
 
-class AtSteps(HamiltonianTask):
-    """What is asked for from an initial value, after each of these numbers of steps."""
+class StepsTask(HamiltonianTask):
+    """A request for numbers from an initial value, after each of these numbers of steps."""
 
     imports = ("verify.reference.make.orbit_points",)
     step_size: StepSize
@@ -38,7 +38,7 @@ class AtSteps(HamiltonianTask):
         return self.model_dump(include=names)
 
 
-class OrbitTask(AtSteps):
+class OrbitTask(StepsTask):
     """A scheme's orbit after each of these numbers of steps, correctly rounded."""
 
     result = OrbitResult
@@ -64,7 +64,7 @@ class OrbitTask(AtSteps):
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
 
-        return OrbitResult(points=alone(orbit_points(self.orbit, self.steps, self.digits)))
+        return OrbitResult(points=run_alone(orbit_points(self.orbit, self.steps, self.digits)))
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         from verify.reference.make.orbit_points import orbit_points
@@ -73,7 +73,7 @@ class OrbitTask(AtSteps):
         return {self.key: OrbitResult(points=points)}
 
 
-class SolutionTask(AtSteps):
+class SolutionTask(StepsTask):
     """The exact flow at the times N·h for each of these N, correctly rounded."""
 
     result = SolutionResult

@@ -43,7 +43,7 @@ _OF_FLOW: Row = ("step", "time", "status", "kind")
 
 
 def json_text(model: BaseModel) -> str:
-    """The model as JSON: what has no list in it stands on one line."""
+    """Return the model as JSON; a value that contains no list stands on one line."""
     return "".join(_lines(model.model_dump(mode="json", by_alias=True), "")) + "\n"
 
 
@@ -56,6 +56,8 @@ def _lines(value: Any, indent: str) -> Iterator[str]:
     inner, comma = f"{indent} ", ""
     yield opening
     for name, x in entries:
+        # One line for each value without a list: files stay readable, and a change of one row
+        # changes one line.
         key = "" if name is None else f"{json.dumps(name, ensure_ascii=False)}: "
         yield f"{comma}\n{inner}{key}"
         yield from _lines(x, inner)
@@ -70,7 +72,7 @@ def _has_list(value: Any) -> bool:
 
 
 def schema_text(name: str) -> str:
-    """The JSON Schema of that name, in the dialect of 2020-12."""
+    """Return the JSON Schema of that name, in the dialect of 2020-12."""
     schema = SCHEMAS[name].model_json_schema(by_alias=True, mode="serialization")
     return json.dumps({"$schema": _DIALECT} | schema, ensure_ascii=False, indent=1) + "\n"
 
@@ -79,35 +81,38 @@ def schema_text(name: str) -> str:
 
 
 def tables(data: AnyData) -> dict[str, list[Row]]:
-    """The same as tables of texts, by file name without its ending; the first row names columns."""
+    """Return the same as tables of texts, by file name without its ending; the first row names
+    columns."""
     state = coordinates_in(data.degrees)
-    beside = (*state, *orbit_columns(data.degrees))
+    columns = (*state, *orbit_columns(data.degrees))
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
-        f"{data.name}-runs": list(_rows(data, data.runs, ("scheme",), _OF_ORBIT, beside)),
+        f"{data.name}-runs": list(_rows(data, data.runs, ("scheme",), _OF_ORBIT, columns)),
         f"{data.name}-flow": list(_rows(data, data.flow, (), _OF_FLOW, state)),
     }
 
 
 def schemas_for(formats: Iterable[str]) -> tuple[str, ...]:
-    """The schemas of a folder that has data of these formats, and the manifest's."""
-    needed = {MODELS[name] for name in formats} or {Data}
-    return tuple(name for name, model in SCHEMAS.items() if model in {*needed, Manifest})
+    """Return the schemas of a folder that has data of these formats, and the manifest's."""
+    models = {MODELS[name] for name in formats} or {Data}
+    return tuple(name for name, model in SCHEMAS.items() if model in {*models, Manifest})
 
 
 def names_of(scenes: Mapping[str, str], *, parquet: bool) -> set[str]:
-    """The files that scenes of these names have, with the schemas and without the manifest; of each
-    the data's format is given."""
-    found = set(schemas_for(scenes.values()))
+    """Return the files of scenes, with the schemas and without the manifest.
+
+    `scenes`: the format of each scene's data, by its name.
+    """
+    names = set(schemas_for(scenes.values()))
     for name in scenes:
-        found.add(f"{name}.json")
+        names.add(f"{name}.json")
         for ending in ("csv", "parquet") if parquet else ("csv",):
-            found |= {f"{name}-{what}.{ending}" for what in ("proofs", "runs", "flow")}
-    return found
+            names |= {f"{name}-{what}.{ending}" for what in ("proofs", "runs", "flow")}
+    return names
 
 
 def csv_text(rows: list[Row]) -> str:
-    """A table as CSV, its lines ending with a line feed."""
+    """Return a table as CSV, its lines ending with a line feed."""
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
@@ -123,34 +128,47 @@ def _proof_rows(data: AnyData) -> Iterator[Row]:
 
 
 def _rows(
-    data: AnyData, tables: Sequence[AnyRun | AnyFlow], named: Row, told: Row, numbers: Row
+    data: AnyData,
+    tables: Sequence[AnyRun | AnyFlow],
+    run_fields: Row,
+    own_fields: Row,
+    numbers: Row,
 ) -> Iterator[Row]:
-    """A row each; `named` are fields of its run or flow, `told` and `numbers` its own."""
+    """Yield a line for each row; `run_fields` are fields of its run or flow, `own_fields` and
+    `numbers` its own."""
     time: Row = ("t0",) if data.timed else ()
     pairs = (x for name in numbers for x in (name, f"{name}_radius"))
-    yield (*named, "step_size", *start_columns(data.degrees), *time, "digits", *told, *pairs)
-    for of in tables:
+    yield (
+        *run_fields,
+        "step_size",
+        *start_columns(data.degrees),
+        *time,
+        "digits",
+        *own_fields,
+        *pairs,
+    )
+    for item in tables:
         inputs = [
-            *(getattr(of, name) for name in (*named, "step_size")),
-            *of.texts.values(),
-            *(cell(of.begins) for _ in time),
-            cell(of.digits),
+            *(getattr(item, name) for name in (*run_fields, "step_size")),
+            *item.texts.values(),
+            *(cell(item.begins) for _ in time),
+            cell(item.digits),
         ]
-        for row in of.rows:
+        for row in item.rows:
             values = values_of(row, data.degrees)
-            known = (values.get(name) for name in numbers)
-            cells = (x for v in known for x in ((v.value, v.radius) if v else ("", "")))
-            yield (*inputs, *(cell(getattr(row, name)) for name in told), *cells)
+            rounded = (values.get(name) for name in numbers)
+            cells = (x for v in rounded for x in ((v.value, v.radius) if v else ("", "")))
+            yield (*inputs, *(cell(getattr(row, name)) for name in own_fields), *cells)
 
 
 # -- the manifest ---------------------------------------------------------------------------------
 
 
 def digest(content: bytes) -> str:
-    """SHA-256, in hexadecimal."""
+    """Return SHA-256, in hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 
-def listed(name: str, content: bytes) -> ListedFile:
-    """What a manifest says of a file."""
+def describe_file(name: str, content: bytes) -> ListedFile:
+    """Return a manifest's entry of a file."""
     return ListedFile(name=name, bytes=len(content), sha256=digest(content))

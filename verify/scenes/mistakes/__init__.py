@@ -1,1 +1,1 @@
-"""What is likely wrong in a scene's file that is refused, and what to write instead."""
+"""The likely mistake in a scene's file that is refused, and what to write instead."""

@@ -1,1 +1,1 @@
-"""What was found, as frozen data; numbers are exact decimal strings."""
+"""The results, as frozen data; numbers are exact decimal strings."""

@@ -1,4 +1,4 @@
-"""A number as it is reported: exact decimal strings, the same after a JSON round trip."""
+"""A number of a result: exact decimal strings, unchanged by a JSON round trip."""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -18,14 +18,14 @@ _DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
 class Value(Frozen):
     """A decimal whose printed digits are known, with the bound of its error.
 
-    It is used as a number: `float(x)`, `mpmath.mpf(x)` and `f"{x:.3e}"` give that of `value`,
-    `x.exact` the rational that `value` is, `abs(x)` and `-x` a Value.
+    It can be used as a number: `float(x)`, `mpmath.mpf(x)` and `f"{x:.3e}"` convert `value`,
+    `x.exact` is the rational number `value`, and `abs(x)` and `-x` are a Value.
 
-    Comparisons are of all numbers within the bounds: x < y is True where it holds for every one of
-    them, so that `assert abs(x) < 1e-6` says what it seems to say. Where the bounds overlap neither
-    x < y nor x > y is True, and neither x <= y nor x >= y: `not x < y` does not mean x ≥ y, and a
-    list of such is not sorted by them (sort by `key=float`). x == 0 is True of an exact 0 alone;
-    two Values are equal where value and bound are.
+    Comparisons are between all numbers within the bounds: x < y is True where it holds for each of
+    them, so that `assert abs(x) < 1e-6` means what it says. Where the bounds overlap, none of
+    x < y, x > y, x <= y and x >= y is True: `not x < y` does not imply x ≥ y, and Values cannot be
+    sorted by them (sort by `key=float`). x == 0 is True for an exact 0 alone; two Values are equal
+    where value and bound are.
 
     >>> x = Value(value="1.50e-03", bound="2.00e-05")
     >>> float(x), x < 0.0016, x < 0.00151, x >= 0.00151
@@ -36,10 +36,10 @@ class Value(Frozen):
     bound: Annotated[str, Field(pattern=_DECIMAL)]
 
     @classmethod
-    def of(cls, value: Fraction, bound: Fraction, digits: int) -> "Value":
-        """The digits of a value that its bound leaves, `digits` at most, and their own bound."""
-        shown, within = known_digits(value, bound, digits)
-        return cls(value=shown, bound=within)
+    def from_bound(cls, value: Fraction, bound: Fraction, digits: int) -> "Value":
+        """Return the value rounded to the digits that its bound permits, `digits` at most."""
+        digits_text, own_bound = known_digits(value, bound, digits)
+        return cls(value=digits_text, bound=own_bound)
 
     @property
     def exact(self) -> Fraction:
@@ -48,7 +48,7 @@ class Value(Frozen):
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """value − bound and value + bound, between which the true value is."""
+        """value − bound and value + bound, between which the true value lies."""
         middle, radius = Fraction(self.value), Fraction(self.bound)
         return middle - radius, middle + radius
 
@@ -65,7 +65,7 @@ class Value(Frozen):
         )
 
     def _mpmath_(self, precision: int, rounding: str) -> Any:
-        """What mpmath converts by: `value`, rounded to its present precision."""
+        """Convert `value` for mpmath, rounded to its current precision."""
         import mpmath
 
         exact = self.exact
@@ -74,7 +74,7 @@ class Value(Frozen):
 
     @property
     def unknown(self) -> bool:
-        """Whether no digit of it is known: all that is known is that |x| is within the bound."""
+        """True if no digit is known, but only that |x| is within the bound."""
         return self.bound != "0" and self.exact == 0
 
     def __str__(self) -> str:
@@ -108,6 +108,7 @@ class Value(Frozen):
             return NotImplemented
         if isinstance(other, Value) and (self.value, self.bound) == (other.value, other.bound):
             return True
+        # Numbers are equal for certain only where both are exact.
         return self.ends[0] == self.ends[1] == ends[0] == ends[1]
 
     def __hash__(self) -> int:
@@ -119,11 +120,11 @@ class Value(Frozen):
 
 
 def _ends(x: object) -> tuple[Fraction, Fraction] | None:
-    """The least and greatest number that it may be; None where it is no number."""
+    """Return the least and the greatest number that x may be; None where it is no number."""
     if isinstance(x, Value):
         return x.ends
     try:
-        if hasattr(x, "_mpf_"):  # mpmath's, which is what it is in binary
+        if hasattr(x, "_mpf_"):  # mpmath's numbers, which are exact in binary
             exact = of_mpf(x)
         elif isinstance(x, Real | Decimal):
             exact = rational(x)  # type: ignore[arg-type]

@@ -1,24 +1,24 @@
-"""What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
+"""Results on claims and on the paper's criteria: a verdict with its evidence."""
 
 from typing import Literal
 
 from verify.prose import Prose
-from verify.scenes.frozen import Said, WithProse
+from verify.scenes.frozen import ProseText, WithProse
 from verify.verdict import Verdict
 
 Standing = Literal["fair", "strict", "misprint", "ours"]  # see `verify.scenes.results.statement`
 
 
 class StepResult(WithProse):
-    """A step in words and formulas.
+    """A step of an argument, in words and formulas.
 
-    `checked_by`: what checked it by machine, one text each; where there is none it was not checked
-    by machine. `tried`: examples of it that were computed, which prove nothing by themselves.
+    `checked_by`: the machine checks of it, one text each; empty where there was none. `tried`:
+    computed examples, which prove nothing by themselves.
     """
 
-    text: Said
-    checked_by: tuple[Said, ...] = ()
-    tried: tuple[Said, ...] = ()
+    text: ProseText
+    checked_by: tuple[ProseText, ...] = ()
+    tried: tuple[ProseText, ...] = ()
 
 
 class CriterionResult(WithProse):
@@ -27,27 +27,27 @@ class CriterionResult(WithProse):
     number: int
     scheme: str
     verdict: Verdict
-    evidence: Said
+    evidence: ProseText
 
 
 class ClaimResult(WithProse):
     """One claim with its verdict; `evidence` is one line, `details` a table of texts.
 
-    `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
-    such as "4.1 The Duffing system"; a report groups its claims by it.
-    `domain`: conditions on p, q, h and the parameters under which the verdict holds, one a text,
-    beyond what the claim itself says; none where that is everywhere.
-    `checked_by`: who checked the proof that decides it, one text each: the small checker, with what
-    a certificate of it establishes; Rocq, with its theorems; and of an argument on paper how many
-    of its steps a machine checked. None where nobody did.
-    `proof`: the argument on paper that stands beside what the machine checked, where there is one,
-    as one paragraph; `steps`: the same step by step, with who checked each, after what is `given`
-    and before a `remark`, which other claims may have too. `confirmed_by`: what computes it again,
-    with code that shares nothing with this.
-    `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
-    and `standing` how it stands to what is printed; empty where statements are not counted.
-    `reproduction`: a few lines of code that show what is said of someone else's code; `severity`:
-    what kind of mistake it is, where it is refuted: wrong order, not symplectic as claimed, wrong
+    `scene` is empty where the claim is about every H. `section` is its place in the paper, such as
+    "4.1 The Duffing system"; a report groups its claims by it.
+    `domain`: conditions on q, p, h and the parameters under which the verdict holds, one text each,
+    beyond those of the claim itself; empty where it holds everywhere.
+    `checked_by`: the checkers of the proof that decides it, one text each: the small checker, with
+    the meaning of its certificate; Rocq, with its theorems; and, for an argument on paper, the
+    number of its steps that a machine checked. Empty where nobody checked it.
+    `proof`: the argument on paper beside the machine's checks, where there is one, as one
+    paragraph; `steps`: the same step by step, with the checkers of each, after the assumptions in
+    `given` and before a `remark`; other claims may have these two. `confirmed_by`: a second
+    computation of the result, whose code shares nothing with this.
+    `statement_id`: the statement of the paper of which the claim is a reading, `reading` the way it
+    is read and `standing` its relation to the printed text; empty where statements are not counted.
+    `reproduction`: a few lines of code that show the mistake in someone else's code; `severity`:
+    the kind of mistake, where it is refuted: wrong order, not symplectic as claimed, wrong
     clock, embedded or step weights, digits that a double notices, digits below that, documentation.
     """
 
@@ -55,20 +55,20 @@ class ClaimResult(WithProse):
     kind: str = ""
     source: str
     section: str = ""
-    statement: Said
+    statement: ProseText
     statement_id: str = ""
-    reading: Said = Prose("")
+    reading: ProseText = Prose("")
     standing: Standing = "fair"
     scene: str
     verdict: Verdict
-    evidence: Said
-    checked_by: tuple[Said, ...] = ()
+    evidence: ProseText
+    checked_by: tuple[ProseText, ...] = ()
     domain: tuple[str, ...] = ()
-    details: tuple[tuple[Said, ...], ...] = ()
-    proof: Said = Prose("")
-    given: Said = Prose("")
+    details: tuple[tuple[ProseText, ...], ...] = ()
+    proof: ProseText = Prose("")
+    given: ProseText = Prose("")
     steps: tuple[StepResult, ...] = ()
-    remark: Said = Prose("")
+    remark: ProseText = Prose("")
     confirmed_by: str = ""
     reproduction: str = ""
     severity: str = ""

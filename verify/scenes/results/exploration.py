@@ -1,11 +1,11 @@
-"""What an exploration found, and its report."""
+"""The results of an exploration, and its report."""
 
 from verify.scenes.frozen import Frozen, Real
 from verify.scenes.results.separation import SeparationResult
 
 
 class Failure(Frozen):
-    """The first scene, by its number, for which a property does not hold, and what was found."""
+    """The first scene, by its number, for which a property does not hold, with the message."""
 
     property: str
     example: int
@@ -13,9 +13,9 @@ class Failure(Frozen):
 
 
 class ExploreResult(Frozen):
-    """Of one stretch of drawn scenes: how many each property spoke of, and for how many not held.
+    """The counts of one stretch of scenes: those a property applies to, and those it fails for.
 
-    `first`: one a property that failed.
+    `first`: the first failure of each property that failed.
     """
 
     looked_at: dict[str, int]
@@ -24,13 +24,13 @@ class ExploreResult(Frozen):
 
 
 class ShrunkResult(Failure):
-    """The simplest scene found for which the property fails, as TOML, and what is found there."""
+    """The simplest scene, as TOML, for which the property was seen to fail, with the message."""
 
     scene: str
 
 
 class PropertySummary(Frozen):
-    """`looked_at`: examples that the property speaks of; `failures`: for how many it fails."""
+    """A property's counts: `looked_at`, the examples that it applies to, and its `failures`."""
 
     name: str
     sentence: str
@@ -39,8 +39,7 @@ class PropertySummary(Frozen):
 
 
 class EarlierFailure(Frozen):
-    """A scene that an earlier exploration found, looked at again; `message` is empty if it holds
-    now."""
+    """A failure of an earlier exploration, tried again; `message` is empty if it holds now."""
 
     file: str
     property: str
@@ -48,15 +47,17 @@ class EarlierFailure(Frozen):
 
 
 class Worst(Frozen):
-    """A scene, as TOML, and lg of how bad it is."""
+    """A scene, as TOML, and lg of its measure, which is the greater the worse it is."""
 
     value: Real
     scene: str
 
 
 class HuntResult(Frozen):
-    """The worst scenes of a hunt, or of one of its islands, the worst first, one a shape of H;
-    `examples` were measured."""
+    """The worst scenes of a hunt, or of one of its islands, in order, one for each shape of H.
+
+    `examples`: the number of scenes that were measured.
+    """
 
     worst: tuple[Worst, ...]
     examples: int
@@ -98,7 +99,7 @@ class Gallery(Frozen):
 
 
 class ExploreReport(Frozen):
-    """`failures`: one a property that fails, shrunk; `again`: scenes found earlier."""
+    """The report; `failures`: shrunk, one for each property; `again`: earlier failures, retried."""
 
     seed: int
     examples: int

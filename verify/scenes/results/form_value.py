@@ -1,4 +1,4 @@
-"""An antisymmetric matrix as it is reported: exact decimal strings, each entry with its bound."""
+"""An antisymmetric matrix of a result: exact decimal strings, each entry with its bound."""
 
 from fractions import Fraction
 from itertools import combinations
@@ -18,12 +18,13 @@ class FormValue(Frozen):
     bound: Rows
 
     @classmethod
-    def of(cls, entries: tuple[Value, ...]) -> "FormValue":
-        """That of the entries above the diagonal, row by row."""
+    def from_entries(cls, entries: tuple[Value, ...]) -> "FormValue":
+        """Return the matrix with these entries above the diagonal, row by row."""
         size = (1 + isqrt(1 + 8 * len(entries))) // 2  # of rows: size (size − 1)/2 entries
         zero = Value(value="0", bound="0")
         full = [[zero] * size for _ in range(size)]
         for (a, b), entry in zip(combinations(range(size), 2), entries, strict=True):
+            # The lower triangle follows from antisymmetry; the diagonal is 0.
             full[a][b], full[b][a] = entry, -entry
         return cls(
             value=tuple(tuple(x.value for x in row) for row in full),
@@ -32,18 +33,18 @@ class FormValue(Frozen):
 
     @property
     def exact(self) -> tuple[tuple[Fraction, ...], ...]:
-        """The matrix that `value` is, as rationals."""
+        """The matrix `value` as rationals."""
         return tuple(tuple(map(Fraction, row)) for row in self.value)
 
     def entry(self, a: int, b: int) -> Value:
-        """One entry, row and column from 0."""
+        """Return one entry, with row and column counted from 0."""
         return Value(value=self.value[a][b], bound=self.bound[a][b])
 
     @property
     def place(self) -> tuple[int, int]:
         """Row and column of the greatest |entry|, above the diagonal."""
         places = combinations(range(len(self.value)), 2)
-        return max(places, key=lambda at: abs(Fraction(self.value[at[0]][at[1]])))
+        return max(places, key=lambda indices: abs(Fraction(self.value[indices[0]][indices[1]])))
 
     @property
     def largest(self) -> Value:
@@ -55,5 +56,5 @@ class FormValue(Frozen):
 
 
 def largest(x: Value | FormValue) -> Value:
-    """The number itself; of a matrix the entry of the greatest size."""
+    """Return the number itself; for a matrix, the entry of the greatest size."""
     return x if isinstance(x, Value) else x.largest

@@ -1,8 +1,8 @@
-"""The growth law of Λ on one orbit, and Λ of runs as it predicts it."""
+"""The growth law of Λ on one orbit, and its predictions of Λ for runs."""
 
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, ProseText, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
 
@@ -26,7 +26,7 @@ class AverageResult(OfScheme, WithProse):
     telescopes: bool | None
     by_potential: bool
     orbit: Literal["libration", "rotation", "equilibrium", "undecided"]
-    reason: Said
+    reason: ProseText
     average: Value | None
     period: Value | None
     error_kind: Literal["enclosed", "estimated"]

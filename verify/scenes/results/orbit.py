@@ -12,8 +12,8 @@ Row k is the state after k steps of h, the initial state first and the last stat
 | `symplectic_defect` | in n degrees of freedom, max |W| of these k steps |
 
 The text is decimal, but for a `t` such as 1/3; it is empty where ΔJ or H is not defined, and the
-array has nan there. The arrays are the texts' nearest float64 numbers; what is smaller than those
-is 0 in them, as 1e-400 is.
+array has nan there. The arrays hold the float64 numbers nearest to the texts; a number below their
+range, such as 1e-400, is 0.
 """
 
 from collections.abc import Sequence
@@ -21,26 +21,28 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from verify.errors import unknown
-from verify.frames import library, nearest_float
+from verify.errors import unknown_name
+from verify.frames import import_library, nearest_float
 from verify.notebook import html_table
 
 if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
-COLUMNS = ("t", "p", "q", "energy_error", "delta_j", "lambda")  # in one degree of freedom
+# The columns in one degree of freedom.
+COLUMNS = ("t", "p", "q", "energy_error", "delta_j", "lambda")
 _HEADS = {"energy_error": "H − H₀", "delta_j": "ΔJ", "lambda": "Λ", "symplectic_defect": "max |W|"}
 MOST_POINTS = 10_000
-_SHOWN = 5  # rows at either end, in a notebook
+# The number of rows at either end that a notebook shows.
+_VISIBLE_ROWS = 5
 
 
 @dataclass(frozen=True)
 class OrbitTable:
-    """The rows, each with the texts of its `columns`, and what their digits are.
+    """The rows, each with the texts of its `columns`.
 
-    `every`: the steps between two rows; the last may be nearer. `digits`: in words, which digits
-    stand in the texts.
+    `every`: the number of steps between two rows; the last row may be nearer. `digits`: a sentence
+    on the digits of the texts.
     """
 
     rows: tuple[tuple[str, ...], ...]
@@ -51,13 +53,13 @@ class OrbitTable:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The names of what a row has."""
+        """The names of the columns."""
         return ("t", *self.coordinates, "energy_error", *self.observables)
 
     def texts(self, name: str) -> tuple[str, ...]:
-        """The exact texts of one of the `columns`; InputError for another name."""
+        """Return the exact texts of one of the `columns`; InputError for another name."""
         if name not in self.columns:
-            raise unknown("column", name, self.columns)
+            raise unknown_name("column", name, self.columns)
         place = self.columns.index(name)
         return tuple(row[place] for row in self.rows)
 
@@ -86,8 +88,8 @@ class OrbitTable:
 
         if letter in self.coordinates:
             return self._array(letter)
-        own = [name for name in self.coordinates if name[0] == letter]
-        return np.column_stack([self._array(name) for name in own])
+        names = [name for name in self.coordinates if name[0] == letter]
+        return np.column_stack([self._array(name) for name in names])
 
     @cached_property
     def energy_error(self) -> "np.ndarray":
@@ -105,10 +107,10 @@ class OrbitTable:
         return self._array("lambda")
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """The columns as float64; InputError where pandas is not installed."""
-        pandas = library("pandas", "to_dataframe()")
-        found: pd.DataFrame = pandas.DataFrame({name: self._array(name) for name in self.columns})
-        return found
+        """Return the columns as float64; InputError where pandas is not installed."""
+        pandas = import_library("pandas", "to_dataframe()")
+        frame: pd.DataFrame = pandas.DataFrame({name: self._array(name) for name in self.columns})
+        return frame
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -118,10 +120,10 @@ class OrbitTable:
         return f"OrbitTable({len(self)} states{last}; {', '.join(self.columns)})"
 
     def _repr_html_(self) -> str:
-        """The first and the last rows."""
+        """Return the first and the last rows as a table."""
         caption = f"{len(self)} states, one every {self.every} steps"
         rows: Sequence[Sequence[str]] = self.rows
-        if len(rows) > 2 * _SHOWN:
-            rows = [*rows[:_SHOWN], ("…",) * len(self.columns), *rows[-_SHOWN:]]
+        if len(rows) > 2 * _VISIBLE_ROWS:
+            rows = [*rows[:_VISIBLE_ROWS], ("…",) * len(self.columns), *rows[-_VISIBLE_ROWS:]]
         heads = [_HEADS.get(name, name) for name in self.columns]
         return html_table(caption, heads, rows, self.digits)

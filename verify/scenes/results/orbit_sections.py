@@ -1,4 +1,4 @@
-"""Orbits looked at once in each period, or where they pass a surface, as they were found."""
+"""Results on orbits once in each period, or where they pass a surface."""
 
 from typing import Literal
 
@@ -8,9 +8,9 @@ from verify.scenes.frozen import Frozen, Seconds
 class StroboscopicOrbit(Frozen):
     """The states (q, p) at the start and after 1, 2, … periods, decimals of a few digits.
 
-    `known`: the last of them that more digits confirm; those after it are of a number format, and
-    the orbit's own for no one who cannot follow it with still more. `in_float64`: the last that is
-    where it is in float64, too, as far as a picture shows. `left`: whether it left every range.
+    `known`: the index of the last state that more digits confirm; later ones are artefacts of the
+    number format and need not be near the orbit. `in_float64`: the index of the last state that has
+    the same place in float64, as far as a picture shows. `left`: True if it left every range.
     """
 
     q: str
@@ -22,7 +22,7 @@ class StroboscopicOrbit(Frozen):
 
 
 class SchemeSections(Frozen):
-    """One scheme's orbits; `arithmetic` followed them with `digits`."""
+    """The orbits of one scheme, followed in `arithmetic` with `digits` digits."""
 
     scheme: str
     orbits: tuple[StroboscopicOrbit, ...]
@@ -32,7 +32,7 @@ class SchemeSections(Frozen):
 
 
 class StroboscopicResult(Frozen):
-    """What a section of the scene asks for: one entry a scheme; `t0` where H depends on time.
+    """The result of a stroboscopic section, an entry for each scheme; `t0` if H depends on time.
 
     `q_is_angle`: H is the same at q + 2π, and a picture shows q within one turn.
     """
@@ -48,13 +48,12 @@ class StroboscopicResult(Frozen):
 
 
 class PoincareOrbit(Frozen):
-    """Where an orbit passes: of each time the two coordinates that are drawn, decimals of a few
-    digits.
+    """The points where an orbit passes: the two drawn coordinates, as decimals of a few digits.
 
-    `q` and `p` are where it starts, and `energy` is H there. `known`: how many of the first points
-    a second reckoning, with more digits or of another order, confirms; `error`: the greatest
-    distance of the two reckonings among these, an estimate of their error. `left`: whether the
-    orbit left every range.
+    `q` and `p` are its initial value, and `energy` is H there. `known`: how many of the first
+    points a second computation, with more digits or of another order, confirms; `error`: the
+    greatest distance between the two computations among these, an estimate of their error. `left`:
+    True if the orbit left every range.
     """
 
     q: tuple[str, ...]
@@ -67,8 +66,10 @@ class PoincareOrbit(Frozen):
 
 
 class MapSections(Frozen):
-    """One map's orbits; `arithmetic` followed them with `digits`. `map` is a scheme's name or that
-    of the exact flow."""
+    """The orbits of one map, followed in `arithmetic` with `digits` digits.
+
+    `map` is a scheme's name or that of the exact flow.
+    """
 
     map: str
     orbits: tuple[PoincareOrbit, ...]
@@ -78,10 +79,10 @@ class MapSections(Frozen):
 
 
 class PoincareResult(Frozen):
-    """What a section of the scene asks for: one entry a map.
+    """The result of a Poincaré section, an entry for each map.
 
-    Drawn are the coordinates `draw` where `coordinate` passes `value`, upwards where it is
-    `rising`; by a scheme in the step from z to Φ_h(z) at that Φ_θ(z), 0 < θ ≤ h, where it does.
+    The points are the coordinates `draw` where `coordinate` passes `value`, upwards if `rising`. A
+    scheme's orbit passes in the step from z to Φ_h(z) at the Φ_θ(z), 0 < θ ≤ h, on the surface.
     """
 
     kind: Literal["poincare"] = "poincare"

@@ -1,7 +1,7 @@
-"""What was proved of a scheme, for one H and for every H."""
+"""Results of proofs on a scheme, for one H and for every H."""
 
 from verify.prose import Prose
-from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, ProseText, Seconds, WithProse
 from verify.scenes.results.claim import StepResult
 from verify.schemes.conditions.condition import Condition
 from verify.verdict import Verdict
@@ -10,7 +10,7 @@ from verify.verdict import Verdict
 class Formulas(Frozen):
     """A map, its Jacobian matrix, ΔJ and its leading coefficient, some parameters as symbols."""
 
-    symbols: tuple[str, ...]  # that have values of their own
+    symbols: tuple[str, ...]  # the parameters that have values in the scene
     leading: str | None
     delta_j: str | None
     p_next: str | None
@@ -19,10 +19,13 @@ class Formulas(Frozen):
 
 
 class FormResult(Frozen):
-    """What a proof in n degrees of freedom says beside: whether S = JᵀΩJ − Ω vanishes, the entries
-    of its leading coefficient by their names, such as dp1∧dq2, each with its formula, none where
-    they are too long; the order of det J − 1 and its coefficient; whether the leading coefficient
-    telescopes, and the potential's entries in one text."""
+    """The further results of a proof in n degrees of freedom.
+
+    `symplectic`: S = JᵀΩJ − Ω vanishes. `entries`: the entries of the leading coefficient of S by
+    their names, such as dp1∧dq2, with their formulas, empty where they are too long. `volume_order`
+    and `volume_leading`: the order of det J − 1 and its coefficient. `telescopes`: the leading
+    coefficient telescopes, with the entries of its `potential` in one text.
+    """
 
     symplectic: bool | None
     entries: tuple[tuple[str, str], ...]
@@ -35,16 +38,16 @@ class FormResult(Frozen):
 
 
 class ProofResult(OfScheme, WithProse):
-    """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for.
+    """A `verify.proof.order.Proof`; closed forms are None where too large, or not requested.
 
-    In n degrees of freedom `form` is there; `order` and `leading` are then those of S. `domain`:
-    where it holds, one condition a text, and `where` in words; none where everywhere. `symbolic`:
-    the same formulas for people to read, where values are long numbers. `checked_by`: who else
-    checked it, as of a claim; none where formulas were not asked for.
+    In n degrees of freedom `form` is present, and `order` and `leading` are those of S. `domain`:
+    the conditions under which it holds, one text each, and `where` the same in words; empty where
+    it holds everywhere. `symbolic`: the same formulas for readers, where values are long numbers.
+    `checked_by`: other checkers, as in a claim; empty where formulas were not requested.
     """
 
     verdict: Verdict
-    reason: Said
+    reason: ProseText
     order: int | None
     leading: str
     delta_j: str | None
@@ -54,42 +57,42 @@ class ProofResult(OfScheme, WithProse):
     witness: dict[str, str]
     enclosure: str
     domain: tuple[str, ...] = ()
-    where: Said = Prose("")
+    where: ProseText = Prose("")
     p_next: str | None
     q_next: str | None
     jacobian: tuple[tuple[str, str], tuple[str, str]] | None
     symbolic: Formulas | None = None
     form: FormResult | None = None
-    checked_by: tuple[Said, ...] = ()
+    checked_by: tuple[ProseText, ...] = ()
     seconds: Seconds
 
     @property
     def what(self) -> str:
-        """What has the order: ΔJ, or S in n degrees of freedom."""
+        """The name of the defect that has the order: ΔJ, or S in n degrees of freedom."""
         return "ΔJ" if self.form is None else "S"
 
     @property
     def keeps(self) -> bool | None:
-        """Whether ΔJ ≡ 0; in n degrees of freedom S ≡ 0."""
+        """True if ΔJ ≡ 0, in n degrees of freedom S ≡ 0; None where that is undecided."""
         return self.area_preserving if self.form is None else self.form.symplectic
 
     @property
     def order_of_delta_j(self) -> int | None:
-        """That of det J − 1, in any number of degrees of freedom."""
+        """The order of det J − 1, in any number of degrees of freedom."""
         return self.order if self.form is None else self.form.volume_order
 
     @property
-    def shown(self) -> "ProofResult | Formulas":
-        """What holds the formulas that people read."""
+    def readable(self) -> "ProofResult | Formulas":
+        """The formulas for readers: `symbolic`, or the proof's own."""
         return self.symbolic or self
 
 
 class EveryResult(WithProse):
-    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it, and `steps`
-    it is made of. `checked_by`: who else checked it, as of a claim.
+    """A `verify.proof.every.EveryProof`.
 
-    `timed`: it is for every H that depends on time. `degrees` of freedom: where there are more than
-    one, order and leading coefficient are those of S.
+    `argument`: the proof on paper beside it, and `steps`: the steps of that. `checked_by`: other
+    checkers, as in a claim. `timed`: it is for every H that depends on time. `degrees` of freedom:
+    where there are several, order and leading coefficient are those of S.
     """
 
     scheme: str
@@ -97,7 +100,7 @@ class EveryResult(WithProse):
     timed: bool = False
     degrees: int = 1
     verdict: Verdict
-    reason: Said
+    reason: ProseText
     order: int | None
     area_preserving: bool | None
     convergence_order: int | None
@@ -106,9 +109,9 @@ class EveryResult(WithProse):
     leading: str
     telescopes: bool | None
     potential: str | None
-    why: Said
-    checked: tuple[Said, ...]
+    why: ProseText
+    checked: tuple[ProseText, ...]
     conditions: tuple[Condition, ...] = ()
-    argument: Said
+    argument: ProseText
     steps: tuple[StepResult, ...] = ()
-    checked_by: tuple[Said, ...] = ()
+    checked_by: tuple[ProseText, ...] = ()

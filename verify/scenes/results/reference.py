@@ -45,7 +45,7 @@ Cells = tuple[Rounded, ...] | None
 
 
 class OrbitRow(Frozen):
-    """What is known after `step` steps, but for the numbers beside the state."""
+    """The keys of a row after `step` steps, without the observables beside the state."""
 
     model_config = ConfigDict(populate_by_name=True)
 
@@ -98,7 +98,7 @@ class OrbitPointInDegrees(OrbitRow):
 
 
 class OrbitResult(Frozen):
-    """One scheme's orbit at the steps that were asked for."""
+    """The orbit of one scheme at the requested steps."""
 
     points: tuple[OrbitPoint | OrbitPointInDegrees, ...]
 
@@ -136,6 +136,6 @@ class FlowPointInDegrees(FlowRow):
 
 
 class SolutionResult(Frozen):
-    """The exact flow at the times that were asked for."""
+    """The exact flow at the requested times."""
 
     points: tuple[FlowPoint | FlowPointInDegrees, ...]

@@ -1,9 +1,9 @@
-"""What was found of regions that are carried by maps: areas, their changes, and curves to draw."""
+"""Results on regions that are carried by maps: areas, their changes, and curves to draw."""
 
 from pydantic import Field
 
 from verify.prose import Prose
-from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, ProseText, Seconds, WithProse
 
 EXACT_FLOW = "exact flow"
 
@@ -54,21 +54,21 @@ class FlowImage(WithProse):
     `map` is a scheme's name or `EXACT_FLOW`. `area_change` and `probe_error` are the region's;
     `mean_lambda` is the mean of Λ over the region, with its error; `distance` the Hausdorff
     distance of its outlines from those of the exact flow, the greatest of all of them. `agree`:
-    the change of area and the mean of Λ are the same within their errors. What was not asked for,
-    or is not known, is None. `area_preserving`: det J ≡ 1 by proof (for the exact flow by
-    Liouville's theorem). `problem` says why there is no image, or why its area tells nothing.
+    the change of area and the mean of Λ are equal within their errors. A value that was not
+    requested, or is not known, is None. `area_preserving`: det J ≡ 1 by proof (for the exact flow
+    by Liouville's theorem). `problem` says why there is no image, or why its area tells nothing.
 
     In n degrees of freedom the area is that of ω, ∮ p·dq; in place of Λ stands W's entry at
-    (p_i, q_i), the defect of all steps in the region's plane, with its mean `mean_defect`; no
-    distance is told; and `area_preserving` says that S ≡ 0 is shown (of the exact flow it is
-    Poincaré's theorem).
+    (p_i, q_i), the defect of all steps in the region's plane, with its mean `mean_defect`; there is
+    no distance; and `area_preserving` says that S ≡ 0 is proved (for the exact flow by Poincaré's
+    theorem).
     """
 
     map: str
     steps: int
     time: str
     area_preserving: bool | None
-    problem: Said = Prose()
+    problem: ProseText = Prose()
     area_change: str | None = None
     probe_error: str | None = None
     mean_lambda: str | None = None
@@ -88,10 +88,10 @@ class FlowImage(WithProse):
 class FlowResult(Frozen):
     """A shape carried by maps: its outlines before, and its images by map, then by steps.
 
-    `centre` (q, p) and `scale`: where the shape was put, and how large; `t0`: when, where H depends
-    on time. `source`: what of a paper it repeats (`Figure 4`). In n degrees of freedom `plane` is
-    the i of the plane (q_i, p_i) that the shape lay in, of which `centre` is, and `point` has all
-    coordinates of the centre by their names; in the plane they are None and empty.
+    `centre` (q, p) and `scale`: the place and size of the shape; `t0`: the start time, where H
+    depends on time. `source`: the part of a paper that it repeats (`Figure 4`). In n degrees of
+    freedom `plane` is the i of the plane (q_i, p_i) of the shape and of `centre`, and `point` has
+    all coordinates of the centre by their names; in the plane they are None and empty.
     """
 
     shape: str

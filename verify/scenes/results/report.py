@@ -1,4 +1,4 @@
-"""What was found for a scene, and a whole report: results of all kinds put together."""
+"""The results of a scene, and a whole report of results of all kinds."""
 
 from pathlib import Path
 from typing import Literal
@@ -34,18 +34,17 @@ FORMAT: ReportFormat = "areaproof report 1"
 
 
 class SceneResult(Frozen):
-    """Everything found for one scene; `time` is the length of its runs where it has a grid, and
-    `t0` when they start.
+    """All results of one scene.
 
-    `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
-    scene asks for beside it; `form_separations` and `form_crossovers` are the same of W, in n
-    degrees of freedom. `growth_laws` hold the grid's runs against the growth law of Λ;
-    `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
-    proved of its schemes for every H, `work_precision` error against run time,
-    `flows` what maps do to regions, `stroboscopic` orbits once in each period, `poincare` orbits
-    where they pass a surface;
-    `stability`, `largest_steps` and `stability_maps` how stable they are, `orbit_maps` what orbits
-    do over two of their initial values.
+    `time` is the length of its runs where it has a grid, and `t0` the time at which they start.
+    `separations` are those of the grid's runs, one for each initial value; `crossovers` those of
+    the sections [[separation]]; `form_separations` and `form_crossovers` are the same for W, in n
+    degrees of freedom. `growth_laws` compare the grid's runs with the growth law of Λ;
+    `growth_explains` is the part of a paper that the law explains, as the scene says. `every` holds
+    the proofs on its schemes for every H, `work_precision` error against run time, `flows` regions
+    carried by maps, `stroboscopic` orbits once in each period, `poincare` orbits where they pass a
+    surface; `stability`, `largest_steps` and `stability_maps` the stability of the schemes,
+    `orbit_maps` the kinds of orbits over two of their initial values.
     """
 
     name: str
@@ -77,9 +76,9 @@ class SceneResult(Frozen):
 
 
 class Provenance(Frozen):
-    """What made a report: the command, versions, machine, time it took, and when it was `made`.
+    """The origin of a report: command, versions, machine, duration, and when it was `made`.
 
-    `commit`: that of the checkout whose code it was, or "".
+    `commit`: that of the checkout whose code was run, or "".
     """
 
     command: str
@@ -95,10 +94,9 @@ class Provenance(Frozen):
 class Report(Frozen):
     """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
 
-    `statements`: those of the paper whose readings the claims are, where statements are counted;
-    `causes`: what explains that several of them do not hold.
-    `gallery`: the worst scenes that a hunt found. `preface`: what is said before all else, such as
-    which libraries are installed.
+    `statements`: the statements of the paper whose readings the claims are, where statements are
+    counted; `causes`: explanations why several of them do not hold. `gallery`: the worst scenes of
+    a hunt. `preface`: sentences before everything else, such as on the libraries installed.
     """
 
     format: ReportFormat = FORMAT
@@ -114,7 +112,7 @@ class Report(Frozen):
     provenance: Provenance
 
     def _repr_html_(self) -> str:
-        """How many claims have which verdict, then each claim, the refuted ones first."""
+        """Return a table of the claims, the refuted ones first, with the counts of verdicts."""
         if not self.claims:
             rows = [
                 (scene.title, proof.scheme, str(proof.verdict), str(proof.reason))
@@ -130,11 +128,13 @@ class Report(Frozen):
 
 
 def read_report(path: Path) -> Report:
-    """The report in a `results.json`. InputError, one line, for what is none of this format."""
+    """Read the report in a `results.json`; InputError, in one line, for any other content."""
     data = read_json(path, FORMAT)
     try:
         return Report.model_validate(data)
     except ValidationError as error:
-        told = error.errors(include_url=False)[0]
-        where = ".".join(map(str, told["loc"]))
-        raise InputError("file", str(path), f"is no report: {where}: {told['msg']}") from None
+        first_error = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first_error["loc"]))
+        raise InputError(
+            "file", str(path), f"is no report: {where}: {first_error['msg']}"
+        ) from None

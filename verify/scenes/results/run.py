@@ -1,7 +1,4 @@
-"""What one run gave, and how it shows itself in a notebook.
-
-How an energy changes along a run.
-"""
+"""The result of one run, its display in a notebook, and the drift of an energy along a run."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,7 +16,7 @@ from verify.scenes.results.orbit import MOST_POINTS, OrbitTable
 
 @dataclass(frozen=True)
 class EnergyDrift:
-    """H̃ − H̃₀ at the times of `t`, for H̃ up to h^`power`; None where H̃ is not defined there.
+    """H̃ − H̃₀ at the times of `t`, for H̃ up to h^`power`; None where H̃ is not defined.
 
     `power` 0 is H itself. All without units; the values are the nearest float64 numbers.
     """
@@ -46,16 +43,14 @@ class SeriesPoint(Frozen):
 class RunResult(OfScheme):
     """One run of N steps of a scheme in one arithmetic.
 
-    `values` holds p, q and the observables asked for. It is empty where the orbit left the
-    arithmetic's range (`status` "left range"; `failed_step` is the first step that was out of it),
-    and where no digit could be confirmed ("unresolved"). `error_kind`
-    is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
-    says why another arithmetic was taken than the one that was asked for; `left_domain` by which
-    step the orbit has left where H is defined, if it is seen to have: the scheme goes on there, and
-    no solution does. `exact` names the
-    observables that a proof gave and no run was needed for. `t0` is when it started, of an H that
-    depends on time. `source` is what of a paper the scene
-    says that the run repeats.
+    `values` holds q, p and the requested observables. It is empty where the orbit left the
+    arithmetic's range (`status` "left range"; `failed_step` is the first step out of it), and where
+    no digit could be confirmed ("unresolved"). `error_kind` is "enclosed" where every bound is
+    rigorous, else "estimated", by `error_method`. `fallback` says why another arithmetic was used
+    than the requested one; `left_domain` names the step by which the orbit has left the domain of
+    H, if that is seen: the scheme continues there, but no solution does. `exact` names the
+    observables that follow from a proof, without a run. `t0` is the time at which it started, where
+    H depends on time. `source` is the part of a paper that the run repeats, as the scene says.
     """
 
     arithmetic: str
@@ -80,19 +75,20 @@ class RunResult(OfScheme):
     _points: int = PrivateAttr(MOST_POINTS)
 
     def with_points(self, points: int) -> Self:
-        """The same, whose `orbit` has so many states at most; as many as it can for 0."""
-        made = self.model_copy()
-        made._points = points or MOST_POINTS
-        return made
+        """Return the run with an `orbit` of at most so many states; of as many as it can for 0."""
+        copy = self.model_copy()
+        # A private attribute, which is no key of the result and is not compared.
+        copy._points = points or MOST_POINTS
+        return copy
 
     def start_text(self, letter: str) -> str:
-        """q or p where it began; in n degrees of freedom the numbers, one after the other."""
-        given = self.q if letter == "q" else self.p
-        return given if isinstance(given, str) else f"({', '.join(given)})"
+        """Return the initial q or p; in n degrees of freedom all of its numbers, in brackets."""
+        start = self.q if letter == "q" else self.p
+        return start if isinstance(start, str) else f"({', '.join(start)})"
 
     @property
     def plane_start(self) -> tuple[str, str]:
-        """q and p, of a run in one degree of freedom; InputError of another."""
+        """The initial q and p of a run in one degree of freedom; InputError for any other run."""
         if isinstance(self.q, str) and isinstance(self.p, str):
             return self.q, self.p
         problem = "has more degrees of freedom; what is asked for takes p and q"
@@ -107,21 +103,21 @@ class RunResult(OfScheme):
         raise self._only_values()
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
-        """(t, |z − φ_t(z₀)|) at so many states at most: how far the exact solution is.
+        """Return (t, |z − φ_t(z₀)|), the distance from the exact solution, at so many states.
 
         See `verify.runs.solution_error`. Raises InputError where no exact solution is found.
         """
         raise self._only_values()
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
-        """H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
+        """Return H̃ − H̃₀ at most at so many states, for H and for H̃ with each term up to h^order.
 
-        See `verify.runs.energy_drift`. Raises InputError where the scheme has no H̃ but H.
+        See `verify.runs.energy_drift`. Raises InputError where the scheme has no H̃ other than H.
         """
         raise self._only_values()
 
     def _only_values(self) -> InputError:
-        """What does a run again is in a room above: see `verify.calls.run_result`."""
+        """Return the error of a run that cannot be repeated here; see `verify.calls.run_result`."""
         return InputError("run", self.scheme, "has its values alone; verify.RunResult has more")
 
     def __repr__(self) -> str:
@@ -130,7 +126,7 @@ class RunResult(OfScheme):
         return f"RunResult({what}: {values or self.status})"
 
     def _repr_html_(self) -> str:
-        """The values, each with its error bound."""
+        """Return the values, each with its error bound, as a table."""
         start = f"from q = {self.start_text('q')}, p = {self.start_text('p')}"
         caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size} {start}"
         bounds = f"bounds {self.error_kind}: {self.error_method}"
@@ -140,27 +136,27 @@ class RunResult(OfScheme):
         if self.left_domain:
             foot += f"; {self.left_domain}"
         if self.status != "finished":
-            at = f" at step {self.failed_step}" if self.failed_step is not None else ""
-            return html_table(caption, (), [("outcome", self.status + at)], foot)
+            place = f" at step {self.failed_step}" if self.failed_step is not None else ""
+            return html_table(caption, (), [("outcome", self.status + place)], foot)
         rows = [
             (label, "|·|", f"≤ {value.bound}") if value.unknown else
             (label, value.value, f"± {value.bound}")
-            for label, _, value in self._shown()
+            for label, _, value in self._labelled_values()
         ]  # fmt: skip
         return html_table(caption, ("", "value", "error bound"), rows, foot)
 
     def _repr_latex_(self) -> str:
-        """The values with their error bounds."""
+        """Return the values with their error bounds in LaTeX."""
         lines = [
             rf"{symbol} &: |\cdot| \le {number_latex(value.bound)}" if value.unknown else
             rf"{symbol} &= {number_latex(value.value)} \pm {number_latex(value.bound)}"
-            for _, symbol, value in self._shown()
+            for _, symbol, value in self._labelled_values()
         ]  # fmt: skip
         return aligned_latex(lines or [rf"\Lambda &: \text{{{self.status}}}"])
 
-    def _shown(self) -> list[tuple[str, str, Value]]:
-        """The values, each with its label as text and in LaTeX; coordinates come last."""
-        shown = {name: (each.label, each.tex) for name, each in observables.by_name().items()}
-        shown |= {"q": ("q", "q"), "p": ("p", "p")}
-        shown |= {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
-        return [(*names, self.values[n]) for n, names in shown.items() if n in self.values]
+    def _labelled_values(self) -> list[tuple[str, str, Value]]:
+        """Return the values with their labels as text and in LaTeX; coordinates come last."""
+        labels = {name: (each.label, each.tex) for name, each in observables.by_name().items()}
+        labels |= {"q": ("q", "q"), "p": ("p", "p")}
+        labels |= {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
+        return [(*names, self.values[n]) for n, names in labels.items() if n in self.values]

@@ -1,12 +1,12 @@
-"""Truncation and rounding as they were found, and how they show themselves in a notebook.
+"""Results on truncation and rounding, and their display in a notebook.
 
-In the plane Λ is split, a number; in n degrees of freedom W, the symplectic defect of the run,
+In the plane the number Λ is split; in n degrees of freedom W, the symplectic defect of the run,
 entry by entry.
 """
 
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
-from verify.frames import library, nearest_float
+from verify.frames import import_library, nearest_float
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.form_value import largest
@@ -30,13 +30,13 @@ WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 class Separation(OfScheme):
     """Truncation and rounding of one run in float64; see `verify.studies.separation.separate`.
 
-    `plain` and `closed_form`, its ways to evaluate what is split, are None where `status` is not
-    "finished" (`reason` says why). `arithmetic` is what stood for exact arithmetic; `seconds` is
-    the stepping of all runs.
+    `plain` and `closed_form`, two ways to evaluate the quantity that is split, are None where
+    `status` is not "finished" (`reason` says why). `arithmetic` is the number system that stood for
+    exact arithmetic; `seconds` is the time of stepping all runs.
     """
 
     split_into: ClassVar[type[PartsOfRun]]
-    greatest: ClassVar[str] = ""  # what is said of the parts where each is the greatest of several
+    greatest: ClassVar[str] = ""  # precedes the parts where each is the greatest of several entries
     arithmetic: str
     digits: int
     step_size: str
@@ -54,8 +54,8 @@ class Separation(OfScheme):
 
     @property
     def ways(self) -> dict[str, Any]:
-        """What was evaluated, by the names of `WAYS`."""
-        return {way: found for way in WAYS if (found := getattr(self, way))}
+        """The evaluations that exist, by the names of `WAYS`."""
+        return {way: evaluation for way in WAYS if (evaluation := getattr(self, way))}
 
     def __repr__(self) -> str:
         what = f"{self.scheme}, {self.steps} steps of h = {self.step_size}"
@@ -65,25 +65,27 @@ class Separation(OfScheme):
         sizes = f"{self.greatest}truncation {truncation}, rounding {total}"
         return f"{type(self).__name__}({what}: {sizes})"
 
-    def _beside(self) -> tuple[list[tuple[str, ...]], str]:
-        """More rows of its table, and what is said at its foot, first."""
+    def _extra_rows(self) -> tuple[list[tuple[str, ...]], str]:
+        """Return further rows of the table, and the beginning of the line at its foot."""
         grows = (way.growth["total"].name for way in self.ways.values())
         return [("rounding with N", *grows)], ""
 
     def _repr_html_(self) -> str:
-        """The parts for each way to evaluate, with their bounds; of matrices the greatest entry."""
-        whole = self.split_into.structure.accumulated
-        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, {whole} in float64"
+        """Return a table of the parts, or of their greatest entries, by way, with bounds."""
+        total = self.split_into.structure.accumulated
+        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, {total} in float64"
         if self.plain is None:
             return html_table(caption, (), [(self.status, self.reason)])
         rows = [
             (label, *(str(largest(getattr(way.parts, name))) for way in self.ways.values()))
             for name, label in self.plain.parts.labels("– ").items()
         ]
-        more, said = self._beside()
+        extra_rows, remark = self._extra_rows()
         bounds = f"bounds {self.plain.error_kind}: {self.error_method}"
-        foot = f"{said}{self.arithmetic} as exact arithmetic; {bounds}"
-        return html_table(caption, ("", *(WAYS[way] for way in self.ways)), [*rows, *more], foot)
+        foot = f"{remark}{self.arithmetic} as exact arithmetic; {bounds}"
+        return html_table(
+            caption, ("", *(WAYS[way] for way in self.ways)), [*rows, *extra_rows], foot
+        )
 
 
 class SeparationResult(Separation):
@@ -117,12 +119,12 @@ class SeparationInDegrees(Separation):
     tangent: TangentGrowth | None
 
     def name_of(self, place: tuple[int, int]) -> str:
-        """An entry as a 2-form: dp1∧dq1."""
+        """Return the name of an entry as a 2-form, such as dp1∧dq1."""
         return "∧".join(f"d{self.coordinates[k]}" for k in place)
 
-    def _beside(self) -> tuple[list[tuple[str, ...]], str]:
-        said = f"the greatest entry of each; {self.tangent.meaning} " if self.tangent else ""
-        return [], said
+    def _extra_rows(self) -> tuple[list[tuple[str, ...]], str]:
+        remark = f"the greatest entry of each; {self.tangent.meaning} " if self.tangent else ""
+        return [], remark
 
 
 AnySeparation = SeparationResult | SeparationInDegrees
@@ -157,34 +159,41 @@ class SeparationGrid(GridOf[SeparationResult]):
 
     @property
     def rows(self) -> list[dict[str, str]]:
-        """A row a step size and way to evaluate Λ, its parts and their bounds as exact texts."""
+        """A row for each step size and way to evaluate Λ: parts and bounds as exact texts."""
         return [
-            {"step_size": point.step_size, "steps": str(point.steps), "way": way, **_texts(found)}
+            {
+                "step_size": point.step_size,
+                "steps": str(point.steps),
+                "way": way,
+                **_texts(evaluation),
+            }
             for point in self.points
-            for way, found in point.ways.items()
+            for way, evaluation in point.ways.items()
         ]
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """The rows, numbers as float64; InputError where pandas is not installed."""
-        pandas = library("pandas", "to_dataframe()")
+        """Return the rows, with numbers as float64; InputError where pandas is not installed."""
+        pandas = import_library("pandas", "to_dataframe()")
         rows = [{k: x if k == "way" else nearest_float(x) for k, x in r.items()} for r in self.rows]
-        found: pd.DataFrame = pandas.DataFrame(rows)
-        return found
+        frame: pd.DataFrame = pandas.DataFrame(rows)
+        return frame
 
     def to_xarray(self) -> "xr.Dataset":
-        """The parts over way and step size; InputError where xarray or pandas is not installed."""
-        library("xarray", "to_xarray()")
-        found: xr.Dataset = self.to_dataframe().set_index(["way", "step_size"]).to_xarray()
-        return found
+        """Return the parts over way and step size; InputError without xarray or pandas."""
+        import_library("xarray", "to_xarray()")
+        dataset: xr.Dataset = self.to_dataframe().set_index(["way", "step_size"]).to_xarray()
+        return dataset
 
     def _repr_html_(self) -> str:
-        """Truncation and rounding of each step size, and where they cross; one alone in full."""
+        """Return a table of sizes and crossovers; for a single step size, that of all parts."""
         if len(self.points) == 1:
             return self.points[0]._repr_html_()
         heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in WAYS.values()))
         rows = [(point.step_size, str(point.steps), *_sizes(point)) for point in self.points]
-        crossed = (f"{label}: {_crossing(getattr(self, way))}" for way, label in WAYS.items())
-        foot = "rounding overtakes truncation, " + "; ".join(crossed)
+        crossings = (
+            f"{label}: {_describe_crossing(getattr(self, way))}" for way, label in WAYS.items()
+        )
+        foot = "rounding overtakes truncation, " + "; ".join(crossings)
         return html_table("Truncation and rounding in Λ", heads, rows, foot)
 
 
@@ -197,11 +206,14 @@ def _texts(way: EvaluationResult) -> dict[str, str]:
 def _sizes(point: SeparationResult) -> list[str]:
     if point.plain is None:
         return [f"{point.status}: {point.reason}"]
-    rounding = (str(found.parts.total) if found else "–" for found in map(point.ways.get, WAYS))
+    rounding = (
+        str(evaluation.parts.total) if evaluation else "–"
+        for evaluation in map(point.ways.get, WAYS)
+    )
     return [str(point.plain.parts.truncation), *rounding]
 
 
-def _crossing(way: CrossoverResult) -> str:
+def _describe_crossing(way: CrossoverResult) -> str:
     return f"below h = {way.step_size}" if way.step_size else way.reason
 
 
@@ -210,7 +222,7 @@ class SeparationGridInDegrees(GridOf[SeparationInDegrees]):
     greatest entries, each way."""
 
     def _repr_html_(self) -> str:
-        """Each step size in full, one below the other."""
+        """Return the tables of all step sizes, one below the other."""
         return "".join(point._repr_html_() for point in self.points)
 
 

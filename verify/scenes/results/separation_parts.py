@@ -1,15 +1,15 @@
-"""What one way to evaluate Λ, or W, in float64 gives: its parts, and how they grow."""
+"""The parts of Λ, or of W, by one way to evaluate it in float64, and their growth."""
 
 from typing import ClassVar, Literal
 
-from verify.scenes.frozen import Frozen, Said, WithProse
+from verify.scenes.frozen import Frozen, ProseText, WithProse
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.form_value import FormValue
 from verify.structures import AREA, SYMPLECTIC, Structure
 
 
 class PartsOfRun(Frozen):
-    """The parts of what float64 finds, the first of its fields; `rounding`: those of rounding."""
+    """The parts of float64's value, which is the first field; `rounding`: the parts of rounding."""
 
     structure: ClassVar[Structure]
     rounding: ClassVar[tuple[str, ...]]
@@ -21,7 +21,7 @@ class PartsOfRun(Frozen):
         return first, *(["clock"] if hasattr(self, "clock") else []), *others
 
     def labels(self, mark: str) -> dict[str, str]:
-        """What each part is called; those of rounding by their names after a `mark`."""
+        """Return the labels of the parts; those of rounding are their names after a `mark`."""
         working, *_ = type(self).model_fields
         wholes = {working: f"{self.structure.accumulated} in float64", "truncation": "truncation"}
         return wholes | {"total": "rounding"} | {n: mark + n for n in self.of_rounding}
@@ -43,8 +43,7 @@ class Parts(PartsOfRun):
 
 
 class PartsInTime(Parts):
-    """Of an H that depends on time: what float64's clock does stands between input and
-    trajectory."""
+    """The parts for an H that depends on time: the effect of float64's clock follows `input`."""
 
     clock: Value
 
@@ -66,8 +65,7 @@ class FormParts(PartsOfRun):
 
 
 class FormPartsInTime(FormParts):
-    """Of an H that depends on time: what float64's clock does stands between input and
-    trajectory."""
+    """The parts for an H that depends on time: the effect of float64's clock follows `input`."""
 
     clock: FormValue
 
@@ -85,14 +83,16 @@ class PartsAt(Frozen):
 
 
 class PartsInTimeAt(PartsAt):
-    """The same of an H that depends on time."""
+    """The parts after `steps` steps for an H that depends on time."""
 
     clock: str
 
 
 class FormAt(Frozen):
-    """After `steps` steps: ‖M‖² of Frobenius, and the greatest |entry| of w_working and of each
-    part, as decimals of a few digits."""
+    """‖M‖² of Frobenius and the greatest |entry| of w_working and of each part after `steps` steps.
+
+    All numbers are decimals of a few digits.
+    """
 
     steps: int
     norm_squared: str
@@ -108,7 +108,7 @@ class GrowthResult(WithProse):
     exponent: str | None
     standard_error: str | None
     name: Literal["random walk", "drift", "undecided"]
-    reason: Said
+    reason: ProseText
     first: int
     last: int
     points: int
@@ -120,19 +120,19 @@ class PowerLawResult(WithProse):
     exponent: str | None
     standard_error: str | None
     name: Literal["bounded", "N", "N²", "exponential", "undecided"]
-    reason: Said
+    reason: ProseText
 
 
 class TangentGrowth(WithProse):
-    """How M, the product of the Jacobians that float64 computed, grew, and what follows for W.
+    """The growth of the tangent map M, the product of float64's Jacobians, and its effect on W.
 
-    `norm_squared`: ‖M_N‖² of Frobenius. `areas`: ‖∧²M_N‖, the root of the sum of all squares of its
-    2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
-    ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
-    run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
-    with half the step size (`verify.studies.separation.tangent`). `law`, `law_of_areas`: those
-    of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
-    over ‖∧²M_N‖.
+    `norm_squared`: ‖M_N‖² of Frobenius. `areas`: ‖∧²M_N‖, the root of the sum of the squares of all
+    2 × 2 minors, the rate at which a 2-form grows; it is below ‖M_N‖². `finite_time_lyapunov`:
+    ln(‖M_N‖/√(2n))/T per unit of time, with T in `time`. `motion`: the kind of growth of ‖M‖ in
+    this run, and, where it is exponential, its `cause`: `at_half_step` is the exponent over the
+    same time with half the step size (`verify.studies.separation.tangent`). `law`, `law_of_areas`:
+    the laws of ‖M‖² and ‖∧²M‖ where the growth is not exponential. `per_area`: the greatest |entry|
+    of the truncation of W_N, over ‖∧²M_N‖.
     """
 
     norm_squared: str
@@ -145,14 +145,14 @@ class TangentGrowth(WithProse):
     law: PowerLawResult
     law_of_areas: PowerLawResult
     per_area: str
-    meaning: Said
+    meaning: ProseText
 
 
 # -- all of it -------------------------------------------------------------------------------------
 
 
 class EvaluationResult(Frozen):
-    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
+    """Λ of a float64 run, split, by one way to evaluate it; `growth` is of total and each part.
 
     `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
     """
@@ -165,11 +165,11 @@ class EvaluationResult(Frozen):
 
 
 class FormEvaluation(Frozen):
-    """W of a float64 run, split, for one way to evaluate it.
+    """W of a float64 run, split, by one way to evaluate it.
 
     `largest`: the greatest |entry| of truncation and of total at any checkpoint. `growth`: of the
-    greatest |entry| of total and of each part, as of Λ. `law`: how that of w_working grows with N,
-    measured.
+    greatest |entry| of total and of each part, as for Λ. `law`: the measured growth with N of the
+    greatest |entry| of w_working.
     """
 
     parts: FormPartsInTime | FormParts

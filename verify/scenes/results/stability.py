@@ -1,4 +1,4 @@
-"""What was found of a scheme's stability: frozen results."""
+"""Results on a scheme's stability."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.scenes.frozen import Frozen, OfScheme, Said, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, ProseText, WithProse
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
@@ -46,12 +46,12 @@ class StabilityResult(WithProse):
     h_omega: str | None = None
     linear_limit: str | None = None
     lyapunov: str | None = None
-    exact_orbit: Said
-    detail: Said
+    exact_orbit: ProseText
+    detail: ProseText
 
     @property
     def verdict(self) -> str:
-        """In words, with the step or the rate that belongs to it."""
+        """The verdict in words, with the step or the rate that belongs to it."""
         if self.kind == "overflow":
             return f"overflow at step {self.step}"
         if self.kind == "drifts":
@@ -65,7 +65,7 @@ class LargestStepResult(OfScheme, WithProse):
     `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
     greater, it does not; None where no step size looked at is of that kind. `linear`: the step size
     that linear theory allows where the orbit is stiffest; "0" where it allows none. `energy_error`
-    and `symplectic_defect`: what the motion had to keep within beside its bounds, if anything.
+    and `symplectic_defect`: the further limits that the motion had to respect, if any.
     """
 
     time: str
@@ -78,8 +78,8 @@ class LargestStepResult(OfScheme, WithProse):
     h_omega: str | None
     energy_error: str | None = None
     symplectic_defect: str | None = None
-    exact_orbit: Said
-    detail: Said
+    exact_orbit: ProseText
+    detail: ProseText
 
 
 class MapCell(Frozen):
@@ -107,9 +107,9 @@ class StabilityMapResult(OfScheme):
     linear: tuple[str | None, ...]
 
     def counted(self) -> dict[Kind, int]:
-        """How many cells there are of each kind that occurs."""
-        seen = Counter(cell.kind for row in self.cells for cell in row)
-        return {kind: seen[kind] for kind in KINDS if seen[kind]}
+        """Return the number of cells of each kind that occurs."""
+        counts = Counter(cell.kind for row in self.cells for cell in row)
+        return {kind: counts[kind] for kind in KINDS if counts[kind]}
 
 
 class OrbitMapResult(OfScheme):
@@ -143,12 +143,12 @@ class OrbitMapResult(OfScheme):
     energies: Rows
 
     def counted(self) -> dict[OrbitKind, int]:
-        """How many orbits there are of each kind that occurs."""
-        seen = Counter(kind for row in self.kinds for kind in row)
-        return {kind: seen[kind] for kind in ORBIT_KINDS if seen[kind]}
+        """Return the number of orbits of each kind that occurs."""
+        counts = Counter(kind for row in self.kinds for kind in row)
+        return {kind: counts[kind] for kind in ORBIT_KINDS if counts[kind]}
 
     def places(self) -> Iterator[tuple[int, int]]:
-        """The indices of all cells: row, then column."""
+        """Yield the indices of all cells: row, then column."""
         for i in range(len(self.upwards)):
             for j in range(len(self.across)):
                 yield i, j

@@ -1,4 +1,4 @@
-"""Statements of a paper, and what holds of each by the verdicts on its readings.
+"""Statements of a paper, and the outcome of each by the verdicts on its readings.
 
 A statement is what the paper prints; a reading is one precise meaning of it, and a claim with a
 verdict. A sentence that asserts several things makes several statements.
@@ -23,13 +23,13 @@ from collections import Counter
 from collections.abc import Sequence
 from enum import StrEnum
 
-from verify.scenes.frozen import Said, WithProse
+from verify.scenes.frozen import ProseText, WithProse
 from verify.scenes.results.claim import ClaimResult, Standing
 from verify.verdict import Verdict
 
 
 class Outcome(StrEnum):
-    """What holds of a statement, by all of its readings."""
+    """The outcome of a statement, by all of its readings."""
 
     HOLDS = "holds"
     IN_SOME = "holds in some readings"
@@ -43,13 +43,14 @@ class StatementResult(WithProse):
     id: str
     source: str
     section: str = ""
-    statement: Said
+    statement: ProseText
     outcome: Outcome
     readings: tuple[str, ...]
 
 
 def outcome_of(readings: Sequence[tuple[Verdict, Standing]]) -> Outcome:
-    """What holds of a statement whose readings have these verdicts, and stand to it so."""
+    """Return the outcome of a statement by the verdicts and standings of its readings."""
+    # The fair readings decide whether a statement holds as meant; see the module's text.
     fair = [verdict.holds for verdict, standing in readings if standing == "fair"]
     if fair and all(fair):
         return Outcome.HOLDS
@@ -60,7 +61,7 @@ def outcome_of(readings: Sequence[tuple[Verdict, Standing]]) -> Outcome:
 
 
 def statements_of(claims: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
-    """The statements of which these are all readings, in their order; none where none is told."""
+    """Return the statements of which these claims are the readings, in their order."""
     readings: dict[str, list[ClaimResult]] = {}
     for claim in claims:
         if claim.statement_id:
@@ -68,37 +69,39 @@ def statements_of(claims: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
     return tuple(
         StatementResult(
             id=name,
-            source=own[0].source,
-            section=own[0].section,
-            statement=own[0].statement,
-            outcome=outcome_of([(claim.verdict, claim.standing) for claim in own]),
-            readings=tuple(claim.id for claim in own),
+            source=claims_of_statement[0].source,
+            section=claims_of_statement[0].section,
+            statement=claims_of_statement[0].statement,
+            outcome=outcome_of([(claim.verdict, claim.standing) for claim in claims_of_statement]),
+            readings=tuple(claim.id for claim in claims_of_statement),
         )
-        for name, own in readings.items()
+        for name, claims_of_statement in readings.items()
     )
 
 
-def counted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> str:
-    """How many statements there are, in how many readings, and what holds of how many of them."""
-    found = Counter(statement.outcome for statement in statements)
+def describe_counts(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> str:
+    """Return a sentence with the numbers of statements, of readings and of each outcome."""
+    counts = Counter(statement.outcome for statement in statements)
     readings, count = sum(len(each.readings) for each in statements), len(statements)
-    printed = misprinted(statements, claims)
-    slips = f", {printed} of them with a misprint" if printed else ""
-    told = (
-        (found[Outcome.HOLDS], "{} as meant" + slips, ("holds", "hold")),
-        (found[Outcome.IN_SOME], "{} in some readings", ("holds", "hold")),
-        (found[Outcome.REFUTED], "{} refuted in every reading", ("is", "are")),
-        (found[Outcome.UNDECIDED], "{} undecided", ("is", "are")),
+    misprints = count_misprinted(statements, claims)
+    slips = f", {misprints} of them with a misprint" if misprints else ""
+    forms = (
+        (counts[Outcome.HOLDS], "{} as meant" + slips, ("holds", "hold")),
+        (counts[Outcome.IN_SOME], "{} in some readings", ("holds", "hold")),
+        (counts[Outcome.REFUTED], "{} refuted in every reading", ("is", "are")),
+        (counts[Outcome.UNDECIDED], "{} undecided", ("is", "are")),
     )
-    parts = [f"{n} " + said.format(verb[n > 1]) for n, said, verb in told if n]
+    parts = [f"{n} " + template.format(verb[n > 1]) for n, template, verb in forms if n]
     ours = len(claims) - readings
     more = f"; {ours} more {'claims are' if ours > 1 else 'claim is'} ours" if ours else ""
-    of = f"{count} statement{'s' if count > 1 else ''} of the paper"
-    return f"{of}, in {readings} reading{'s' if readings > 1 else ''}: {', '.join(parts)}{more}"
+    heading = f"{count} statement{'s' if count > 1 else ''} of the paper"
+    return (
+        f"{heading}, in {readings} reading{'s' if readings > 1 else ''}: {', '.join(parts)}{more}"
+    )
 
 
-def misprinted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> int:
-    """How many of the statements that hold as meant are misprinted."""
+def count_misprinted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> int:
+    """Return how many of the statements that hold as meant are misprinted."""
     slips = {claim.id for claim in claims if claim.standing == "misprint"}
     return sum(
         each.outcome is Outcome.HOLDS and bool(slips & {*each.readings}) for each in statements

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from verify.frames import library, nearest_float
+from verify.frames import import_library, nearest_float
 from verify.notebook import html_table
 from verify.scenes.results.run import RunResult
 
@@ -14,13 +14,16 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-_SHOWN = 40  # rows in a notebook
+# The number of rows that a notebook shows.
+_VISIBLE_ROWS = 40
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """`axes`: what was varied or given, with its values as exact texts; `runs`: one for each
-    combination of them, the last axis fastest. `observables`: what each run has values of.
+    """Runs over a product of axes.
+
+    `axes`: the names of the inputs with their values as exact texts; `runs`: one for each
+    combination of them, the last axis fastest. `observables`: the names of each run's values.
     """
 
     axes: Mapping[str, tuple[str, ...]]
@@ -35,39 +38,39 @@ class Sweep:
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
-        """The table as exact texts; one is empty where a run gave no value."""
+        """The table as exact texts; a text is empty where a run gave no value."""
         return [
-            (*at, *self._values(run), run.status)
-            for at, run in zip(product(*self.axes.values()), self.runs, strict=True)
+            (*values, *self._values(run), run.status)
+            for values, run in zip(product(*self.axes.values()), self.runs, strict=True)
         ]
 
     def _values(self, run: RunResult) -> list[str]:
-        found = (run.values.get(name) for name in self.observables)
-        return [text for x in found for text in ((x.value, x.bound) if x else ("", ""))]
+        values = (run.values.get(name) for name in self.observables)
+        return [text for x in values for text in ((x.value, x.bound) if x else ("", ""))]
 
     def column(self, name: str) -> "np.ndarray":
-        """A column as float64, nan where a run gave no value; ValueError for one of words."""
+        """Return a column as float64, nan where a run gave no value; ValueError for words."""
         import numpy as np
 
         place = self.columns.index(name)
         return np.array([nearest_float(row[place]) for row in self.rows], dtype=np.float64)
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """A row a run, numbers as float64; InputError where pandas is not installed."""
-        pandas = library("pandas", "to_dataframe()")
-        read = {name: self._as_numbers(name) for name in self.columns}
-        found: pd.DataFrame = pandas.DataFrame(read)
-        return found
+        """Return a row for each run, numbers as float64; InputError without pandas."""
+        pandas = import_library("pandas", "to_dataframe()")
+        columns = {name: self._as_numbers(name) for name in self.columns}
+        frame: pd.DataFrame = pandas.DataFrame(columns)
+        return frame
 
     def to_xarray(self) -> "xr.Dataset":
-        """A variable an observable and its bound, over the axes; InputError without xarray."""
-        xarray = library("xarray", "to_xarray()")
+        """Return the observables and their bounds over the axes; InputError without xarray."""
+        xarray = import_library("xarray", "to_xarray()")
         shape = tuple(len(values) for values in self.axes.values())
         names = [name for name in self.columns if name not in self.axes]
-        data = {n: ([*self.axes], _shaped(self._as_numbers(n), shape)) for n in names}
+        data = {n: ([*self.axes], _reshape(self._as_numbers(n), shape)) for n in names}
         coordinates = {name: _numbers(values) for name, values in self.axes.items()}
-        found: xr.Dataset = xarray.Dataset(data, coords=coordinates)
-        return found
+        dataset: xr.Dataset = xarray.Dataset(data, coords=coordinates)
+        return dataset
 
     def _as_numbers(self, name: str) -> Any:
         place = self.columns.index(name)
@@ -88,26 +91,26 @@ class Sweep:
         fixed = {name: values[0] for name, values in self.axes.items() if name not in varied}
         heads = (*varied, *self.observables)
         rows = [
-            (*(row[self.columns.index(name)] for name in varied), *self._shown(run))
-            for row, run in zip(self.rows[:_SHOWN], self.runs, strict=False)
+            (*(row[self.columns.index(name)] for name in varied), *self._run_texts(run))
+            for row, run in zip(self.rows[:_VISIBLE_ROWS], self.runs, strict=False)
         ]
         foot = ", ".join(f"{name} = {value}" for name, value in fixed.items())
         more = len(self) - len(rows)
         return html_table(repr(self), heads, rows, f"{foot}; {more} more rows" if more else foot)
 
-    def _shown(self, run: RunResult) -> list[str]:
+    def _run_texts(self, run: RunResult) -> list[str]:
         return [str(run.values.get(name, run.status)) for name in self.observables]
 
 
 def _numbers(texts: Sequence[str]) -> Any:
-    """Floats where all are numbers, else the texts."""
+    """Return floats where all texts are numbers, else the texts."""
     try:
         return [nearest_float(text) for text in texts]
     except ValueError:
         return list(texts)
 
 
-def _shaped(values: Any, shape: tuple[int, ...]) -> Any:
+def _reshape(values: Any, shape: tuple[int, ...]) -> Any:
     import numpy as np
 
     reshape: Callable[..., Any] = np.array(values).reshape

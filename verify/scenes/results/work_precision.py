@@ -1,11 +1,11 @@
-"""What was found of error against run time: frozen results, exact decimal strings."""
+"""Results on error against run time, with exact decimal strings."""
 
 from fractions import Fraction
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, ProseText, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.values import rounded_down
+from verify.scenes.values import describe_rounding
 from verify.structures import Structure, structure_in
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
@@ -49,7 +49,7 @@ class WorkPoint(Frozen):
 
     @property
     def area_error(self) -> Value | None:
-        """What is lost of area, Λ; in n degrees of freedom of the symplectic form, max |W_N|."""
+        """The defect of area, Λ; in n degrees of freedom that of the symplectic form, max |W_N|."""
         return self.symplectic_defect or self.lam
 
 
@@ -63,11 +63,11 @@ class SlopeResult(Frozen):
 
 
 class CostResult(Frozen):
-    """What one step executes: operations of the compiled loop, the same subexpression once.
+    """The operations of one step in the compiled loop, with each common subexpression once.
 
-    `functions`: calls by name. `gradient`: evaluations of H_p and H_q, where the scheme is made of
-    such (explicit Runge–Kutta, kicks and drifts); None where it is not. `turn`: what one turn of
-    Newton's method executes beside them, where equations are solved.
+    `functions`: calls by name. `gradient`: evaluations of H_p and H_q, where the scheme consists of
+    them (explicit Runge–Kutta, kicks and drifts); else None. `turn`: the operations of one
+    iteration of Newton's method in addition, where equations are solved.
     """
 
     additions: int
@@ -79,10 +79,14 @@ class CostResult(Frozen):
 
     @property
     def text(self) -> str:
-        """Its operations, as "3 +, 2 ×, 1 sin"; those of Newton's method a turn."""
+        """The operations, such as "3 +, 2 ×, 1 sin", and those of an iteration of Newton's."""
         counts = {"+": self.additions, "×": self.multiplications, "÷": self.divisions}
-        shown = ", ".join(f"{n} {what}" for what, n in (counts | self.functions).items() if n)
-        return shown if self.turn is None else f"{shown}, and a turn of Newton {self.turn.text}"
+        counts_text = ", ".join(f"{n} {what}" for what, n in (counts | self.functions).items() if n)
+        return (
+            counts_text
+            if self.turn is None
+            else f"{counts_text}, and a turn of Newton {self.turn.text}"
+        )
 
 
 class WorkLine(Frozen):
@@ -121,7 +125,7 @@ class SystemPoint(Frozen):
 
 
 class RatioResult(Frozen):
-    """How many times smaller the one's quantity is than the other's at equal run time.
+    """The ratio of the other's quantity to the one's at equal run time.
 
     `at` one run time, the middle one of those that both cover, and `least` … `most` over all of
     them. A ratio below 1 says that the other's is the smaller.
@@ -145,7 +149,7 @@ class ComparisonResult(WithProse):
     last: str | None
     error: RatioResult | None
     area: RatioResult | None
-    sentence: Said
+    sentence: ProseText
 
 
 class WorkPrecisionResult(Frozen):
@@ -183,12 +187,13 @@ class WorkPrecisionResult(Frozen):
 
     @property
     def structure(self) -> Structure:
-        """What its schemes are to keep."""
+        """The structure that the schemes are meant to preserve."""
         return structure_in(1 if isinstance(self.q, str) else len(self.q))
 
     @property
     def rounded_down(self) -> str:
-        """What is said where T/h is not a whole number: the error is then that at t = N·h."""
+        """A sentence on step sizes that do not divide T, whose error is that at t = N·h; or ""."""
+        # Peers have tolerances in place of step sizes.
         points = (point for line in self.lines for point in line.points if point.step_size)
         steps = (Fraction(point.step_size or 1) for point in points)
-        return rounded_down(Fraction(self.time), steps)
+        return describe_rounding(Fraction(self.time), steps)

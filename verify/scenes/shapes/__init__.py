@@ -1,1 +1,1 @@
-"""Closed outlines in the plane; `named/` has one shape a file."""
+"""Closed outlines in the plane; `named/` has a file for each shape."""

@@ -1,4 +1,4 @@
-"""Closed outlines in the plane: smooth arcs that join, each s ↦ (x, y) in whatever arithmetic.
+"""Closed outlines in the plane: smooth arcs that join, each s ↦ (x, y) in any arithmetic.
 
 An arc's formula is written once over `mp`, mpmath's context or one that takes arrays of float64
 (`verify.arithmetic.float_context`), so that it has as many digits as the area measured with it.
@@ -28,9 +28,9 @@ class Outline:
     name: str
     arcs: tuple[Arc, ...]
 
-    def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Outline":
-        """The same curve scaled about (0, 0) and moved there."""
-        return Outline(self.name, tuple(_placed(arc, q, p, scale) for arc in self.arcs))
+    def place_at(self, q: Fraction, p: Fraction, scale: Fraction) -> "Outline":
+        """Return the curve scaled about (0, 0) and then moved by (q, p)."""
+        return Outline(self.name, tuple(_move_arc(arc, q, p, scale) for arc in self.arcs))
 
 
 @dataclass(frozen=True)
@@ -40,33 +40,35 @@ class Shape:
     name: str
     outlines: tuple[Outline, ...]
 
-    def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Shape":
-        return Shape(self.name, tuple(each.placed(q, p, scale) for each in self.outlines))
+    def place_at(self, q: Fraction, p: Fraction, scale: Fraction) -> "Shape":
+        return Shape(self.name, tuple(each.place_at(q, p, scale) for each in self.outlines))
 
 
 def angle(mp: Context, s: Number) -> Number:
-    """Once around, from −π to π: in float64 its rounding is half of that from 0 to 2π."""
+    """Return an angle from −π to π; in float64 its rounding error is half of that of 0 to 2π."""
     return 2 * mp.pi * (s - mp.mpf(1) / 2)
 
 
 def bezier(*control: Point) -> Arc:
-    """The Bézier curve of these control points; of two, the line between them."""
+    """Return the Bézier curve of these control points; of two, the line between them."""
     degree = len(control) - 1
 
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         x = y = mp.mpf(0)
         for k, (a, b) in enumerate(control):
+            # Bernstein's polynomials, which in float64 have smaller rounding errors than powers of
+            # s.
             weight = comb(degree, k) * (1 - s) ** (degree - k) * s**k
             x, y = x + weight * number(mp, a), y + weight * number(mp, b)
         return x, y
 
-    return at
+    return evaluate
 
 
-def _placed(arc: Arc, q: Fraction, p: Fraction, scale: Fraction) -> Arc:
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+def _move_arc(arc: Arc, q: Fraction, p: Fraction, scale: Fraction) -> Arc:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         x, y = arc(mp, s)
         size = number(mp, scale)
         return number(mp, q) + size * x, number(mp, p) + size * y
 
-    return at
+    return evaluate

@@ -1,1 +1,1 @@
-"""Schemes as they are for every H, by coefficients, and conditions on these."""
+"""Schemes for every H, by coefficients, and conditions on these."""

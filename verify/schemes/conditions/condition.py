@@ -1,4 +1,4 @@
-"""Conditions on a scheme's coefficients, evaluated exactly, each with its residue."""
+"""Conditions on a scheme's coefficients, evaluated exactly, each with its residual."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -25,12 +25,12 @@ class Condition:
 
 @dataclass(frozen=True)
 class NearbyOrder:
-    """The highest order that exact coefficients near printed ones have, and how that is known.
+    """The highest order that exact coefficients near printed ones have, with the evidence for it.
 
-    `said`: how near they are, and the residues that the digits leave. `wrong`: a condition of the
-    next order that none near them satisfy; None where that is not decided. `parts`: the nearest, to
-    some 90 digits; none where they are not known. `times`: those of the nearest, None where it is
-    the right one; none where all are.
+    `explanation`: how near they are, and the residuals that the digits leave. `wrong`: a condition
+    of the next order that none near them satisfy; None where that is not decided. `parts`: the
+    nearest, to some 90 digits; none where they are not known. `times`: those of the nearest, None
+    where it is the right one; none where all are.
     """
 
     order: int
@@ -43,18 +43,20 @@ class NearbyOrder:
 
 @runtime_checkable
 class ByConditions(Protocol):
-    """A scheme for every H (`separable`: every H = T(p) + V(q)) that is given by coefficients."""
+    """A scheme for every H (`separable`: every H = T(p) + V(q)) that is defined by coefficients."""
 
     @property
     def separable(self) -> bool: ...
 
     @property
     def most_order(self) -> int:
-        """Beyond it `order_conditions` raises InputError."""
+        """The highest order of which there are conditions; `order_conditions` raises InputError
+        beyond it."""
         ...
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """All that make the map agree with the exact flow up to h^order, for every H.
+        """Return all conditions that make the map agree with the exact flow up to h^order, for
+        every H.
 
         Where those of lower orders hold and one of h^r does not, there is an H for which the map
         does not agree with the flow up to h^r.
@@ -62,5 +64,5 @@ class ByConditions(Protocol):
         ...
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """All that make det J ≡ 1 for every H; they suffice."""
+        """Return all conditions that make det J ≡ 1 for every H; they suffice."""
         ...

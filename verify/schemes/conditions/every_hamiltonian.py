@@ -1,8 +1,8 @@
-"""A scheme as it is for every H: what gives its step map where H is not known.
+"""A scheme for every H: its step map where H is not specified.
 
 `taylor(jets, most)`: the coefficients of h⁰ … h^most of z', as series over the jets, in as many
-degrees of freedom as these have.
-`StageEquations` have more: their equations, which give det J without solving them.
+degrees of freedom as these have. `StageEquations` have more: their equations, which give det J
+without solving them.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ class BySeries(Protocol):
 
 
 class ByChanges(ABC):
-    """A scheme whose step is made of the operations of a step, and so its series."""
+    """A scheme whose step is written in the operations of a step algebra, and so its series."""
 
     @abstractmethod
     def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
-        """z' − z."""
+        """Return z' − z."""
 
     def taylor(self, jets: JetsInDegrees, most: int) -> tuple[Series, ...]:
-        """z' as series up to h^most; see `BySeries`."""
-        state = series_of(JetFlow.over(jets), self.changes, most)
+        """Return z' as series up to h^most; see `BySeries`."""
+        state = series_of(JetFlow.from_jets(jets), self.changes, most)
         return tuple(list(x.coefficients) for x in state)
 
 
@@ -63,11 +63,11 @@ class TaylorSeries(ByChanges):
 
     @property
     def a_step(self) -> str:
-        """What it costs, in words."""
+        """The cost of a step, in words."""
         return f"derivatives of p and q along the flow, up to X^{self.eta}"
 
     def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
-        """z' − z, by the flow's own terms."""
+        """Return z' − z, by the flow's own terms."""
         return algebra.along_flow(self.eta)
 
 
@@ -92,49 +92,50 @@ class RungeKutta(ByChanges):
 
     @property
     def evaluations(self) -> dict[str, int]:
-        """Those of H_p and of H_q in a step."""
+        """The evaluations of H_p and of H_q in a step."""
         return dict.fromkeys(("H_p", "H_q"), len(self.weights))
 
     @property
     def a_step(self) -> str:
-        """What it costs, in words."""
+        """The cost of a step, in words."""
         return count(len(self.weights), "stage")
 
     def step(
         self,
         slope: Callable[[At], Slope],
-        moved: Callable[[Sequence[Fraction], Sequence[Slope]], At],
+        move: Callable[[Sequence[Fraction], Sequence[Slope]], At],
     ) -> At:
-        """One step: `slope` is f, and `moved(weights, slopes)` is z + h Σ weights · slopes."""
+        """Make one step: `slope` is f, and `move(weights, slopes)` is z + h Σ weights · slopes."""
         slopes: list[Slope] = []
         for row in self.rows:
-            slopes.append(slope(moved(row, slopes)))
-        return moved(self.weights, slopes)
+            slopes.append(slope(move(row, slopes)))
+        return move(self.weights, slopes)
 
     def changes(self, algebra: StepAlgebra[Any], standing: Fraction | None = None) -> list[Any]:
-        """z' − z, stage by stage, each at t + c h where H depends on time, or all at t + `standing`
-        h."""
+        """Return z' − z, stage by stage, each at t + c h where H depends on time, or all at t +
+        `standing` h."""
         places = range(algebra.size)
 
-        def moved(
+        def move(
             weights: Sequence[Fraction], slopes: Sequence[list[Any]]
         ) -> tuple[list[Any], Fraction]:
-            """A change of z, and that of t by h."""
+            """Return a change of z, and that of t by h."""
             columns = [[slope[k] for slope in slopes] for k in places]
-            own = [algebra.moved(algebra.nothing, weights, column) for column in columns]
-            return own, sum(weights, Fraction(0))
+            changes_of_z = [algebra.move(algebra.nothing, weights, column) for column in columns]
+            # The weights' sum is c_i, so that t moves like a coordinate with slope 1.
+            return changes_of_z, sum(weights, Fraction(0))
 
         def slope(stage: tuple[list[Any], Fraction]) -> list[Any]:
             change, clock = stage
             return algebra.slopes(change, clock if standing is None else standing, places)
 
-        return self.step(slope, moved)[0]
+        return self.step(slope, move)[0]
 
 
 @dataclass(frozen=True)
 class Stage:
-    """p' = p − h·kick·H_q(P, Q), q' = q + h·drift·H_p(P, Q), where P = p + at_p·(p' − p) and
-    Q = q + at_q·(q' − q)."""
+    """One stage: p' = p − h·kick·H_q(P, Q), q' = q + h·drift·H_p(P, Q), where P = p + at_p·(p' − p)
+    and Q = q + at_q·(q' − q)."""
 
     kick: Fraction
     drift: Fraction
@@ -144,7 +145,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class StageEquations(ByChanges):
-    """One stage after the other."""
+    """Stages that are made one after the other."""
 
     stages: tuple[Stage, ...]
     separable: bool = False
@@ -152,12 +153,12 @@ class StageEquations(ByChanges):
 
     @property
     def a_step(self) -> str:
-        """What it costs, in words."""
+        """The cost of a step, in words."""
         return f"{count(len(self.stages), 'stage')}, solved by Newton's method"
 
     @classmethod
-    def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> StageEquations:
-        """Kicks and drifts of so many step sizes, for H = T(p) + V(q)."""
+    def from_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> StageEquations:
+        """Return kicks and drifts of these step sizes, for H = T(p) + V(q)."""
         stages = []
         for kind, size in parts:
             length, none = Fraction(int(size.p), int(size.q)), Fraction(0)
@@ -165,19 +166,24 @@ class StageEquations(ByChanges):
         return cls(tuple(stages), separable=True)
 
     def changes(self, outer: StepAlgebra[Any]) -> list[Any]:
-        """z' − z: of each stage the change that it makes is solved for, as far as it reads it."""
+        """Return z' − z: the change that each stage makes is solved for, as far as the stage reads
+        it."""
         result = [outer.nothing] * outer.size
         for stage in self.stages:
             half = outer.size // 2
+            # A stage at (p', q) reads only the new momenta: then n equations suffice, and none if
+            # it reads z alone.
             count = outer.size if stage.at_q else half if stage.at_p else 0
-            right = partial(_moves, stage, result)
-            solved = outer.solved(count, partial(right, count)) if count else []
-            moves = right(outer.size, outer, solved)
-            result = [outer.between(x, y, Fraction(1)) for x, y in zip(result, moves, strict=True)]
+            right = partial(_stage_moves, stage, result)
+            solution = outer.solve(count, partial(right, count)) if count else []
+            moves = right(outer.size, outer, solution)
+            result = [
+                outer.add_share(x, y, Fraction(1)) for x, y in zip(result, moves, strict=True)
+            ]
         return result
 
     def conditions(self) -> tuple[Condition, ...]:
-        """det A = det B of each stage, which together suffice for det J ≡ 1."""
+        """Return det A = det B of each stage, which together suffice for det J ≡ 1."""
         return tuple(
             Condition(
                 f"A J = B with det A = det B = {b}", 0, str(a - b), a == b and not a.is_zero()
@@ -186,7 +192,7 @@ class StageEquations(ByChanges):
         )
 
     def determinants(self) -> list[tuple[Poly, Poly]]:
-        """(det A, det B) of each stage, where A J = B by implicit differentiation.
+        """Return (det A, det B) of each stage, where A J = B by implicit differentiation.
 
         Over Q[h, a, b, c] with a, b, c = H_pp, H_pq, H_qq at the stage's own point (P, Q), which
         are free. Where both are the same polynomial det J = 1, wherever the stage has a solution
@@ -196,17 +202,17 @@ class StageEquations(ByChanges):
         h, a, b, c = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex).gens()
         if self.separable:
             b = b * 0
-        found = []
+        pairs = []
         for stage in self.stages:
             at_p, at_q, kick, drift = map(_exact, (stage.at_p, stage.at_q, stage.kick, stage.drift))
             # dp' = dp − h kick (b dP + c dQ), dq' = dq + h drift (a dP + b dQ)
             slopes = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
-            found.append((_det(slopes, -at_p, -at_q), _det(slopes, 1 - at_p, 1 - at_q)))
-        return found
+            pairs.append((_det(slopes, -at_p, -at_q), _det(slopes, 1 - at_p, 1 - at_q)))
+        return pairs
 
 
 def _det(slopes: Sequence[Sequence[Poly]], of_p: flint.fmpq, of_q: flint.fmpq) -> Poly:
-    """Of 1 + slopes, whose columns are taken times these."""
+    """Return the determinant of 1 + slopes, whose columns are multiplied by these factors."""
     (a, b), (c, d) = ((x * of_p, y * of_q) for x, y in slopes)
     return (1 + a) * (1 + d) - b * c
 
@@ -215,19 +221,20 @@ def _exact(x: Fraction) -> flint.fmpq:
     return flint.fmpq(x.numerator, x.denominator)
 
 
-def _moves(
+def _stage_moves(
     stage: Stage,
     before: Sequence[Any],
     count: int,
     algebra: StepAlgebra[Any],
     change: Sequence[Any],
 ) -> list[Any]:
-    """h times the first slopes that a stage takes, so many, at a share of the change that they make
+    """Return h times the first `count` slopes of a stage, at a share of the change that they make,
     as far as that is known."""
     n = algebra.size // 2
+    # The first n coordinates are momenta, which the kick changes; the others the drift.
     shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
-    moved = zip(before, change, shares, strict=False)
-    at = [*(algebra.between(*each) for each in moved), *before[len(change) :]]
-    slopes = algebra.slopes(at, stage.at_q, range(count))  # t goes with q
+    triples = zip(before, change, shares, strict=False)
+    stage_point = [*(algebra.add_share(*each) for each in triples), *before[len(change) :]]
+    slopes = algebra.slopes(stage_point, stage.at_q, range(count))  # t goes with q
     each = zip(weights, slopes, strict=False)
-    return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
+    return [algebra.move(algebra.nothing, [w], [slope]) for w, slope in each]

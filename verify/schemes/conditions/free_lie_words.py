@@ -32,37 +32,40 @@ MOST_ORDER = {"splitting": 8, "nystrom": 7, "composition": 10}
 
 @cache
 def conditions(kind: str, order: int) -> tuple[WordEquation, ...]:
-    """All of orders 1 … `order` for the kind; `order` at most `MOST_ORDER[kind]`."""
-    found = []
+    """Return all conditions of orders 1 … `order` for the kind; `order` at most
+    `MOST_ORDER[kind]`."""
+    equations = []
     for weight in range(1, order + 1):
         words = lyndon(KINDS[kind], weight)
+        # [K, [K, [K, D]]] has weight 4: below that the conditions are those of any splitting.
         if kind == "nystrom" and weight > 3:
-            found += [_combined(row, words, weight) for row in _modulo_ideal(words, weight)]
+            equations += [_combination(row, words, weight) for row in _modulo_ideal(words, weight)]
             continue
-        found += [_single(kind, word, weight) for word in words]
-    return tuple(found)
+        equations += [_single(kind, word, weight) for word in words]
+    return tuple(equations)
 
 
 def _single(kind: str, word: Word, weight: int) -> WordEquation:
     value, kinds = int(weight == 1), [letter for letter, _ in word]
     names = {"K": "Σ kicks = 1", "D": "Σ drifts = 1", "1": "Σ w = 1", "3": "Σ w³ = 0"}
-    spelled = "Y" + " Y".join(kinds) if kind == "composition" else text(word)
-    name = names.get("".join(kinds), f"coefficient of {spelled} in log S = {value}")
+    spelling = "Y" + " Y".join(kinds) if kind == "composition" else text(word)
+    name = names.get("".join(kinds), f"coefficient of {spelling} in log S = {value}")
     return WordEquation(name, weight, ((1, word),), Fraction(value), "logarithm")
 
 
-def _combined(row: Sequence[int], words: Sequence[Word], weight: int) -> WordEquation:
+def _combination(row: Sequence[int], words: Sequence[Word], weight: int) -> WordEquation:
     terms = tuple((n, word) for n, word in zip(row, words, strict=True) if n)
-    left = " + ".join(text(word) if n == 1 else f"({n}) {text(word)}" for n, word in terms)
-    return WordEquation(f"{left} in log S = 0", weight, terms, Fraction(0), "logarithm")
+    left_side = " + ".join(text(word) if n == 1 else f"({n}) {text(word)}" for n, word in terms)
+    return WordEquation(f"{left_side} in log S = 0", weight, terms, Fraction(0), "logarithm")
 
 
 # -- quadratic kinetic energy ---------------------------------------------------------------------
 
 
 def _modulo_ideal(words: Sequence[Word], weight: int) -> Iterator[tuple[int, ...]]:
-    """A basis of the combinations of Lyndon words that vanish on the ideal's elements."""
+    """Yield a basis of the combinations of Lyndon words that vanish on the ideal's elements."""
     rows = [[element.get(word, 0) for word in words] for element in _ideal(weight)]
+    # flint's nullspace is over ℤ but not primitive: each column is divided by its gcd.
     space, count = flint.fmpz_mat(rows).nullspace()
     for k in range(count):
         column = [int(space[i, k]) for i in range(len(words))]
@@ -71,10 +74,11 @@ def _modulo_ideal(words: Sequence[Word], weight: int) -> Iterator[tuple[int, ...
 
 @cache
 def _ideal(weight: int) -> tuple[Mapping[Word, int], ...]:
-    """Spans its part of that weight: brackets of letters with [K, [K, [K, D]]]."""
+    """Return elements that span the ideal's part of that weight: brackets of letters with [K, [K,
+    [K, D]]]."""
     if weight == 4:
-        found: Mapping[Word, int] = {(("D", 0),): 1}
+        nested: Mapping[Word, int] = {(("D", 0),): 1}
         for _ in range(3):
-            found = bracket(("K", 0), found)
-        return (found,)
+            nested = bracket(("K", 0), nested)
+        return (nested,)
     return tuple(bracket((x, 0), element) for element in _ideal(weight - 1) for x in "DK")

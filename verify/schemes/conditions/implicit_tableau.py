@@ -2,13 +2,14 @@
 
 k_i = f(z + h Σ a_ij k_j, t + c_i h), i = 1 … s, and z' = z + h Σ b_i k_i. Of a partitioned method
 p' = −H_q and q' = H_p have matrices and weights of their own, and their stages in common.
-Coefficients are algebraic numbers, exact. What is asked of them is decided in the ring of
-`verify.algebra.embedding.embed`, by exact algebra, and what is not zero there is enclosed by Arb;
-no coefficient is ever rounded for it.
+Coefficients are algebraic numbers, exact. Conditions on them are decided in the ring of
+`verify.algebra.embedding.embed`, by exact algebra, and a value that is not zero there is enclosed
+by Arb; no coefficient is ever rounded for it.
 
 The right clock is c = A 1. With t as one more coordinate, t' = 1, the system is autonomous, and t
-has at stage i the value t + h Σ a_ij: so the method is what it is without time, for every H. Of a
-partitioned method t may go with q or with p, and both c = A_q 1 and c = A_p 1 are right.
+has at stage i the value t + h Σ a_ij: so the method has for every H the properties that it has
+without time. Of a partitioned method t may go with q or with p, and both c = A_q 1 and c = A_p 1
+are right.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ SHOWN = 5  # digits of a residue
 
 @dataclass(frozen=True)
 class ImplicitTableau:
-    """`rows[i][j]`: a_ij; `weights`: b_i. `clock`: c_i, for an H that depends on time; None without
-    time. `of_q`: of a partitioned method the tableau of q', its times left out; this is that of p'.
+    """A Runge–Kutta tableau: `rows[i][j]`: a_ij; `weights`: b_i. `clock`: c_i, for an H that
+    depends on time; None without time. `of_q`: of a partitioned method the tableau of q', without
+    its times; this is that of p'.
 
     ValueError where they do not fit together, or are no constants.
     """
@@ -55,36 +57,37 @@ class ImplicitTableau:
             raise ValueError("coefficients are numbers")
 
     @classmethod
-    def of(
+    def from_numbers(
         cls, rows: Sequence[Sequence[sympy.Expr | int]], weights: Sequence[sympy.Expr | int]
     ) -> ImplicitTableau:
-        """From numbers as sympy takes them."""
+        """Return the tableau for numbers as sympy takes them."""
         exact = [[sympy.sympify(x) for x in row] for row in (*rows, weights)]
         return cls(tuple(map(tuple, exact[:-1])), tuple(exact[-1]))
 
-    def at_times(self, clock: Sequence[sympy.Expr | int | None] | None = None) -> ImplicitTableau:
-        """The same with these times, as parts of h: None for a right one, as all are by default."""
-        given = (None,) * self.stages if clock is None else clock
-        return replace(self, clock=tuple(None if c is None else sympy.sympify(c) for c in given))
+    def with_times(self, clock: Sequence[sympy.Expr | int | None] | None = None) -> ImplicitTableau:
+        """Return the same with these times, as parts of h: None for a right one, as all are by
+        default."""
+        times = (None,) * self.stages if clock is None else clock
+        return replace(self, clock=tuple(None if c is None else sympy.sympify(c) for c in times))
 
     @property
     def parts(self) -> tuple[ImplicitTableau, ...]:
-        """Itself; or those of p' and of q'."""
+        """The tableau itself; or those of p' and of q'."""
         return (self,) if self.of_q is None else (self, self.of_q)
 
     @property
     def stages(self) -> int:
-        """How many stages there are."""
+        """The number of stages."""
         return len(self.weights)
 
     @cached_property
     def numbers(self) -> Numbers:
         """The coefficients in one ring."""
-        return Numbers.of(self)
+        return Numbers.from_tableau(self)
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; of two parts
-        b_p,i a_q,ij + b_q,j a_p,ji = b_p,i b_q,j and b_p = b_q.
+        """Return the conditions b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; of two parts b_p,i
+        a_q,ij + b_q,j a_p,ji = b_p,i b_q,j and b_p = b_q.
 
         They suffice for det J ≡ 1, for every H, at the stages' times (Sanz-Serna 1988; Hairer,
         Lubich, Wanner, Geometric Numerical Integration, theorems VI.4.3 and VI.4.6).
@@ -114,47 +117,49 @@ def _area_gaps(numbers: Numbers) -> Iterator[tuple[str, Poly]]:
 
 @dataclass(frozen=True)
 class Numbers:
-    """a_ij, b_i and c_i of each part as elements of a ring without variables."""
+    """The numbers a_ij, b_i and c_i of each part as elements of a ring without variables."""
 
     ring: Ring
     blocks: tuple[Tableau[Poly], ...]
 
     @classmethod
-    def of(cls, tableau: ImplicitTableau) -> Numbers:
-        """Those of a tableau, embedded together."""
-        count, told = tableau.stages, [c for c in tableau.clock or () if c is not None]
+    def from_tableau(cls, tableau: ImplicitTableau) -> Numbers:
+        """Return the numbers of a tableau, embedded together."""
+        count, clock_times = tableau.stages, [c for c in tableau.clock or () if c is not None]
         rows = [row for part in tableau.parts for row in (part.weights, *part.rows)]
-        ring, found = embed([*(x for row in rows for x in row), *told], ())
-        left = iter(found)
+        ring, elements = embed([*(x for row in rows for x in row), *clock_times], ())
+        # The order of reading is that of embedding: for each part b, then the rows of a; the times
+        # last.
+        remaining = iter(elements)
 
         def row() -> tuple[Poly, ...]:
-            return tuple(islice(left, count))
+            return tuple(islice(remaining, count))
 
         parts = [(row(), tuple(row() for _ in range(count))) for _ in tableau.parts]
         times = None
         if tableau.clock is not None:  # time is a coordinate: of two parts, it goes with q
             pairs = zip(_row_sums(ring, parts[-1][1]), tableau.clock, strict=True)
-            times = tuple(x if c is None else next(left) for x, c in pairs)
+            times = tuple(x if c is None else next(remaining) for x, c in pairs)
         return cls(ring, tuple(Tableau(a, b, times) for b, a in parts))
 
     @property
     def a(self) -> tuple[tuple[Poly, ...], ...]:
-        """a_ij, of two parts that of p'."""
+        """The matrix a_ij, of two parts that of p'."""
         return self.blocks[0].matrix
 
     @property
     def b(self) -> tuple[Poly, ...]:
-        """b_i, of two parts that of p'."""
+        """The weights b_i, of two parts that of p'."""
         return self.blocks[0].weights
 
     @property
     def clock(self) -> tuple[Poly, ...]:
-        """c_i; none without time."""
+        """The times c_i; none without time."""
         return self.blocks[0].times or ()
 
     @cached_property
     def right(self) -> bool:
-        """Whether c is a right clock, exactly, or there is none."""
+        """True if c is a right clock, exactly, or there is none."""
         decide = self.ring.decide
         return any(
             all(
@@ -166,11 +171,11 @@ class Numbers:
 
     @cached_property
     def tree_weights(self) -> TreeWeights[Poly]:
-        """What they put into the conditions of trees."""
+        """The factors of the numbers in the conditions of trees."""
         return TreeWeights(self.blocks, self.ring.one, reduce=self.ring.reduce)
 
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
-        """The condition that `gap`, left side − right side, is 0."""
+        """Return the condition that `gap`, left side − right side, is 0."""
         return condition_of(self.ring, name, order, gap, SHOWN)
 
 
@@ -181,23 +186,27 @@ def _row_sums(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> list[Poly]:
 def implicit_step(
     rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
 ) -> Step:
-    """How z' is made: a_ij, b_i and c_i in the ring of H's field."""
+    """Return the step z ↦ z' for a_ij, b_i and c_i in the ring of H's field."""
 
     def changes(outer: StepAlgebra[Any]) -> list[Any]:
         size = outer.size
 
-        def combined(
-            algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
+        def combine(
+            algebra: StepAlgebra[Any],
+            weight_rows: Sequence[Sequence[Number]],
+            unknowns: Sequence[Any],
         ) -> list[Any]:
-            """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
+            """Return h Σ w_j f(z + Z_j) of each row of weights, row after row."""
             slopes = [
                 algebra.slopes(unknowns[size * i : size * (i + 1)], clock, range(size))
                 for i, clock in enumerate(clocks)
             ]
-            each = product(own, zip(*slopes, strict=True))
-            return [algebra.moved(algebra.nothing, row, column) for row, column in each]
+            each = product(weight_rows, zip(*slopes, strict=True))
+            return [algebra.move(algebra.nothing, row, column) for row, column in each]
 
-        solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
-        return combined(outer, [weights], solved)
+        # The unknowns are Z_i = Y_i − z, of the size of h: so they are rounded h times less than
+        # Y_i.
+        stage_changes = outer.solve(size * len(clocks), lambda inner, z: combine(inner, rows, z))
+        return combine(outer, [weights], stage_changes)
 
     return changes

@@ -81,36 +81,37 @@ LETTERS = {"kick": "K", "drift": "D"}
 _DIGITS = 12  # of a residue
 
 
-def sums_before(parts: Sequence[tuple[str, E]], zero: E, *, own: bool = False) -> list[E]:
-    """What the parts of the other kind, or of its own, add up to before each: those of the other
-    kind are the right times.
+def sums_before(parts: Sequence[tuple[str, E]], zero: E, *, same_kind: bool = False) -> list[E]:
+    """Return the sums of the parts of the other kind, or of the same kind, before each part: the
+    sums of the other kind are the right times.
 
     >>> sums_before([("kick", 1), ("drift", 2), ("kick", 1)], 0)
     [0, 1, 2]
     """
+    # A drift advances the clock that kicks read, and a kick the one that drifts read.
     sums: dict[str, E] = {}
-    found = []
+    totals = []
     for kind, size in parts:
-        read = (x for other, x in sums.items() if (other == kind) is own)
-        found.append(sum(read, zero))
+        read = (x for other, x in sums.items() if (other == kind) is same_kind)
+        totals.append(sum(read, zero))
         sums[kind] = sums.get(kind, zero) + size
-    return found
+    return totals
 
 
 @dataclass(frozen=True)
 class Splitting:
     """Kicks p − a h V'(q) and drifts q + a h T'(p) of these parts of h, for H = T(p) + V(q).
 
-    The sizes that are given are rational or algebraic numbers; those of `parts` are sympy's.
+    The sizes in `raw_parts` are rational or algebraic numbers; those of `parts` are sympy's.
     `times`: of an H that depends on time, when each part is made, in parts of h from the step's
-    start, None for the right one; all are right where none is given. `kinetic`: for every
-    H = T + V(q, t) with T of that class; None for every H without time. `nearby`: of what is
-    printed decimals in it, the order that exact ones near them have; `nearby_in_time`: that of
-    sizes or `times` that are. ValueError unless there are as many times as parts. It is a
+    start, None for the right one; without times all are right. `kinetic`: for every H = T + V(q, t)
+    with T of that class; None for every H without time. `nearby`: where sizes are printed decimals,
+    the order that exact ones near them have; `nearby_in_time`: that of sizes or `times` that are.
+    ValueError unless there are as many times as parts. It is a
     `verify.schemes.conditions.condition.ByConditions`.
     """
 
-    given: tuple[Part, ...]
+    raw_parts: tuple[Part, ...]
     times: Times = ()
     kinetic: Kinetic | None = None
     nearby: Nearby | None = field(default=None, compare=False, repr=False)
@@ -120,53 +121,55 @@ class Splitting:
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     def __post_init__(self) -> None:
-        if self.times and len(self.given) != len(self.times):
-            raise ValueError(f"{len(self.times)} times of {len(self.given)} parts")
+        if self.times and len(self.raw_parts) != len(self.times):
+            raise ValueError(f"{len(self.times)} times of {len(self.raw_parts)} parts")
 
     def in_time(self, kinetic: Kinetic | None = None, times: Times = ()) -> Splitting:
-        """The same for every H = T + V(q, t), T of that class, at these times or its own."""
-        own = tuple(times) or self.times
-        near = self.nearby_in_time if own == self.times else None
-        if all(time is None for time in own):
+        """Return the same for every H = T + V(q, t), T of that class, at these times or its own."""
+        clock_times = tuple(times) or self.times
+        near = self.nearby_in_time if clock_times == self.times else None
+        if all(time is None for time in clock_times):
             near = self.nearby
-        return replace(self, times=own, kinetic=kinetic or Kinetic.GENERAL, nearby=near)
+        return replace(self, times=clock_times, kinetic=kinetic or Kinetic.GENERAL, nearby=near)
 
     @cached_property
     def parts(self) -> Parts:
         """The parts, each with its size as an expression."""
-        return tuple((kind, sympy.sympify(size)) for kind, size in self.given)
+        return tuple((kind, sympy.sympify(size)) for kind, size in self.raw_parts)
 
     @property
     def all_times(self) -> tuple[sympy.Expr, ...]:
-        """The time of each part: the one that is given, else the right one."""
+        """The time of each part: the specified one, else the right one."""
         right = sums_before(self.parts, sympy.S.Zero)
-        own = self.times or (None,) * len(right)
-        return tuple(x if t is None else t for x, t in zip(right, own, strict=True))
+        clock_times = self.times or (None,) * len(right)
+        return tuple(x if t is None else t for x, t in zip(right, clock_times, strict=True))
 
     @property
     def evaluations(self) -> dict[str, int]:
-        """Those of H_p and of H_q in a step."""
-        kinds = Counter(kind for kind, _ in self.given)
+        """The evaluations of H_p and of H_q in a step."""
+        kinds = Counter(kind for kind, _ in self.raw_parts)
         return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
 
     @property
     def a_step(self) -> str:
-        """What it costs, in words."""
-        found = self.evaluations
-        return f"{count(found['H_q'], 'kick')}, {count(found['H_p'], 'drift')}"
+        """The cost of a step, in words."""
+        counts = self.evaluations
+        return f"{count(counts['H_q'], 'kick')}, {count(counts['H_p'], 'drift')}"
 
     @cached_property
     def numbers(self) -> tuple[Ring, list[TimedPart]]:
         """The parts, letters with sizes and times in one ring; without time at the right ones."""
         times = self.times if self.kinetic else ()
-        told = [time for time in times if time is not None]
-        ring, numbers = embed([*(size for _, size in self.parts), *told], ())
-        left = iter(numbers)
-        sized = [(LETTERS[kind], next(left)) for kind, _ in self.parts]
-        right = sums_before(sized, ring.zero)
-        own = times or (None,) * len(right)
-        clock = [x if t is None else next(left) for x, t in zip(right, own, strict=True)]
-        return ring, [(*part, time) for part, time in zip(sized, clock, strict=True)]
+        clock_times = [time for time in times if time is not None]
+        ring, numbers = embed([*(size for _, size in self.parts), *clock_times], ())
+        remaining = iter(numbers)
+        sized_parts = [(LETTERS[kind], next(remaining)) for kind, _ in self.parts]
+        right = sums_before(sized_parts, ring.zero)
+        chosen_times = times or (None,) * len(right)
+        clock = [
+            x if t is None else next(remaining) for x, t in zip(right, chosen_times, strict=True)
+        ]
+        return ring, [(*part, time) for part, time in zip(sized_parts, clock, strict=True)]
 
     @cached_property
     def right(self) -> list[Poly]:
@@ -176,11 +179,11 @@ class Splitting:
 
     @cached_property
     def clocks_are_right(self) -> bool:
-        """Whether each part that reads a time has the right one, exactly; one of size 0 reads
+        """True if each part that reads a time has the right one, exactly; a part of size 0 reads
         none."""
         ring, parts = self.numbers
         return all(
-            (self.kinetic is not None and letter not in self.kinetic.timed)
+            (self.kinetic is not None and letter not in self.kinetic.timed_letters)
             or size.is_zero()
             or ring.decide(time - clock).zero is True
             for (letter, size, time), clock in zip(parts, self.right, strict=True)
@@ -193,28 +196,31 @@ class Splitting:
         return [ring.expression(time) for _, _, time in parts]
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """One for each Lyndon word of weights 1 … `order`, or combination; InputError beyond
-        order 8."""
+        """Return one condition for each Lyndon word of weights 1 … `order`, or combination;
+        InputError beyond order 8."""
         if order > MOST_ORDER:
             raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
         return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
 
     def _of_weight(self, n: int) -> tuple[Condition, ...]:
-        if n not in self._known:
-            equations, (ring, _) = equations_of(self._asked, n), self.numbers
-            self._known[n] = tuple(
+        if n not in self._conditions_by_weight:
+            equations, (ring, _) = equations_of(self._condition_class, n), self.numbers
+            self._conditions_by_weight[n] = tuple(
                 condition_of(ring, each.name, n, gap, _DIGITS)
                 for each, gap in zip(equations, residues_of(equations, self.words), strict=True)
             )
-        return self._known[n]
+        return self._conditions_by_weight[n]
 
     @cached_property
-    def _known(self) -> dict[int, tuple[Condition, ...]]:
+    def _conditions_by_weight(self) -> dict[int, tuple[Condition, ...]]:
         return {}
 
     @cached_property
-    def _asked(self) -> Kinetic | None:
-        """The class of which conditions are asked: with right clocks those without time do."""
+    def _condition_class(self) -> Kinetic | None:
+        """The class of T whose conditions are used: with right clocks those without time
+        suffice."""
+        # With right clocks a splitting has its order for every T(p, t) + V(q, t): see the module's
+        # text.
         any_t = self.kinetic is not None and not self.kinetic.quadratic
         return None if any_t and self.clocks_are_right else self.kinetic
 
@@ -224,25 +230,25 @@ class Splitting:
         return StepWords(*self.numbers)
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """That every kick and every drift, at a fixed time, has determinant 1, whatever its size, T
-        and V."""
+        """Return the conditions that every kick and every drift, at a fixed time, has determinant
+        1, whatever its size, T and V."""
         context = flint.fmpq_mpoly_ctx.get(("x",), flint.Ordering.lex)
         (x,), one, zero = context.gens(), context.constant(1), context.constant(0)
         # x = a h V'' or a h T'', any number
         shears = {"kick": ((one, -x), (zero, one)), "drift": ((one, zero), (x, one))}
         kinds = dict.fromkeys(kind for kind, _ in self.parts)
-        found = []
+        conditions = []
         for kind in kinds:
             (a, b), (c, d) = shears[kind]
             residue = a * d - b * c - 1
-            found.append(
+            conditions.append(
                 Condition(f"det of every {kind} = 1", 0, str(residue), bool(residue == zero))
             )
-        return tuple(found)
+        return tuple(conditions)
 
     @property
     def stages(self) -> StageEquations | None:
         """The same scheme in stages; None where a coefficient is irrational."""
         if all(size.is_Rational for _, size in self.parts):
-            return StageEquations.of_shears(self.parts)
+            return StageEquations.from_shears(self.parts)
         return None

@@ -7,7 +7,7 @@ the trees that are left where the root is taken away,
 
     Φ_i(t) = Π_k Σ_j a_ij Φ_j(t_k),   γ(t) = |t| γ(t_1) … γ(t_m).
 
-That each of them is needed is shown there with vector fields of high dimension. Of Hamiltonian
+All of them are needed, as is shown there with vector fields of high dimension. Of Hamiltonian
 fields in the plane fewer are, from five vertices on: f'f is −det Hess H there, so that f''(f,
 f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So where
 conditions of n vertices fail, the difference of the two maps' terms with hⁿ, Σ (b·Φ(t) − 1/γ(t))
@@ -20,7 +20,7 @@ A condition is written with the vectors c = A 1 and b, products of vectors by co
 For z' = f(z, t) some leaves are of time: that is Butcher's theorem for the system with t' = 1
 beside it (`verify.schemes.conditions.coloured_trees`). A leaf of time puts the stage's time c_i
 into Φ_i(t). Where c = A 1, it has the factor of any leaf, and the densities know no colours: each
-condition is one without time, and these are asked. Combinations that count in the plane alone do
+condition is one without time, and these are used. Combinations that count in the plane alone do
 not carry over, as with time the field's derivative has a column f_t more: so the difference is
 looked at for H without time first, which are among all, and then for every one.
 """
@@ -37,9 +37,15 @@ from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import count
-from verify.schemes.conditions.coloured_trees import PLAIN, Tree, all_trees, equation_text, of_all
+from verify.schemes.conditions.coloured_trees import (
+    PLAIN,
+    Tree,
+    all_trees,
+    equation_text,
+    unrestricted_grammar,
+)
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.elementary_differentials import Differentials, cancels
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.words.kinetic import Kinetic
 
@@ -48,7 +54,7 @@ _MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
 
 
 def trees(order: int) -> tuple[Tree, ...]:
-    """All rooted trees of so many vertices: 1, 1, 2, 4, 9, 20, 48, 115, …"""
+    """Return all rooted trees of so many vertices: 1, 1, 2, 4, 9, 20, 48, 115, …"""
     return all_trees(PLAIN, order)
 
 
@@ -64,17 +70,17 @@ class TreeConditions:
 
     @property
     def separable(self) -> bool:
-        """Whether it is for H = T + V alone."""
+        """True if it is for H = T + V alone."""
         return self.kinetic is not None
 
     @property
-    def timed(self) -> bool:
-        """Whether it is for H that depend on time."""
+    def has_clock(self) -> bool:
+        """True if it is for H that depend on time."""
         return self.tableau.clock is not None
 
     @property
     def most_order(self) -> int:
-        """The highest of which there are conditions."""
+        """The highest order of which there are conditions."""
         return MOST_ORDER if self.tableau.numbers.right else _MOST_TIMED
 
     @property
@@ -85,93 +91,101 @@ class TreeConditions:
 
     @property
     def a_step(self) -> str:
-        """What it costs, in words."""
+        """The cost of a step, in words."""
         stages = count(self.tableau.stages, "stage")
         return f"{stages} together, solved by Newton's method"
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """Those that the trees of 1 … `order` vertices give; see the module's text.
+        """Return the conditions of the trees of 1 … `order` vertices; see the module's text.
 
         InputError beyond order 10, of which there are 1205, or 8 where a clock is not right.
         """
         if order > self.most_order:
-            these = " with these times" * self.timed
+            these = " with these times" * self.has_clock
             problem = f"of a Runge–Kutta method{these} is proved up to {self.most_order}"
             raise InputError("order", order, problem)
         return tuple(c for n in range(1, order + 1) for c in _of_order(self, n))
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """See `ImplicitTableau.area_conditions`."""
+        """Return the conditions of `ImplicitTableau.area_conditions`."""
         return self.tableau.area_conditions()
 
 
 @lru_cache(maxsize=256)
 def _of_order(method: TreeConditions, order: int) -> tuple[Condition, ...]:
-    """Each tree's condition; or, in place of those that fail, the one that their trees cancel for
-    every H."""
+    """Return each tree's condition; or, in place of those that fail, the one that their trees
+    cancel for every H."""
     numbers = method.tableau.numbers
     weights, parts = numbers.tree_weights, len(numbers.blocks)
     names = ("",) if parts == 1 else ("_p", "_q")
     # With right clocks a leaf of time is as any other.
-    asked = all_trees(of_all(parts, method.timed and not numbers.right), order)
-    found = {
+    rooted_trees = all_trees(
+        unrestricted_grammar(parts, method.has_clock and not numbers.right), order
+    )
+    conditions = {
         tree: numbers.condition(equation_text(tree, names), order, weights.gap(tree))
-        for tree in asked
+        for tree in rooted_trees
     }
-    wrong = [tree for tree, condition in found.items() if condition.holds is False]
-    cancelled = _cancel(method, order, timed=False) if wrong else False
-    if cancelled is not False and method.timed:
+    wrong = [tree for tree, condition in conditions.items() if condition.holds is False]
+    # H without time come first, as they are cheaper: if the sum does not cancel there, it never
+    # does.
+    vanishes = _cancel(method, order, timed=False) if wrong else False
+    if vanishes is not False and method.has_clock:
         if order > _MOST_TIMED:
             name = f"b·Φ(t) = 1/γ(t) over trees of {order}"
             return (Condition(name, order, "unknown", None),)
-        cancelled = _cancel(method, order, timed=True)
-    if cancelled is False:
-        return tuple(found.values())
-    left = tuple(c for tree, c in found.items() if tree not in wrong)
+        vanishes = _cancel(method, order, timed=True)
+    if vanishes is False:
+        return tuple(conditions.values())
+    others = tuple(c for tree, c in conditions.items() if tree not in wrong)
     name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
-    return *left, Condition(name, order, "0", cancelled)
+    return *others, Condition(name, order, "0", vanishes)
 
 
 def _cancel(method: TreeConditions, order: int, *, timed: bool) -> bool | None:
-    """Whether the trees of so many vertices do, for every H; `timed`: that depends on time."""
+    """Return True if the trees of so many vertices cancel, for every H; `timed`: that depends on
+    time."""
     numbers = method.tableau.numbers
     weights, parts = numbers.tree_weights, len(numbers.blocks)
-    gaps = {tree: weights.gap(tree) for tree in all_trees(of_all(parts, timed), order)}
+    gaps = {
+        tree: weights.gap(tree) for tree in all_trees(unrestricted_grammar(parts, timed), order)
+    }
     jets = _JetsOfClass(order, method.kinetic, timed=timed)
-    return cancel(numbers.ring, gaps, Differentials(jets, parts))
+    return cancels(numbers.ring, gaps, Differentials(jets, parts))
 
 
 class _JetsOfClass:
-    """∂_pⁱ ∂_q^j ∂_t^k H in the plane, free but for those of H = T + V with T of a class; None: of
-    every H."""
+    """The jets ∂_pⁱ ∂_q^j ∂_t^k H in the plane, free except for those of H = T + V with T of a
+    class; None: of every H."""
 
     def __init__(self, order: int, kinetic: Kinetic | None, *, timed: bool) -> None:
         self.kinetic, self.quadratic = kinetic, kinetic is not None and kinetic.quadratic
-        most = order + self.quadratic  # where the second derivative by p stands for the first
+        max_order = order + self.quadratic  # where the second derivative by p stands for the first
         separable, self.timed = kinetic is not None, timed
-        self.jets = JetsInDegrees(("p", "q"), most, separable=separable, timed=timed)
+        self.jets = JetsInDegrees(("p", "q"), max_order, separable=separable, timed=timed)
         self.zero = self.jets.zero
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
-        """H_ijk."""
-        if i and k and self.kinetic is not None and "D" not in self.kinetic.timed:
+        """Return H_ijk."""
+        if i and k and self.kinetic is not None and "D" not in self.kinetic.timed_letters:
             return self.zero
         by_t = (k,) if self.timed else ()
         if i and self.quadratic:  # of p² m(t)/2 the derivative by p is p times the second one
-            second = self.jets.of((2, j, *by_t))
+            second = self.jets.derivative((2, j, *by_t))
             return self.zero if i > 2 else second if i == 2 else self.jets.variable("p") * second
-        return self.jets.of((i, j, *by_t))
+        return self.jets.derivative((i, j, *by_t))
 
 
 @lru_cache(maxsize=256)
 def gaps_of(tableau: ImplicitTableau, order: int) -> Mapping[Tree, Poly]:
-    """b·Φ(t) − 1/γ(t) for the trees of so many vertices, in the ring of the tableau's numbers."""
+    """Return b·Φ(t) − 1/γ(t) for the trees of so many vertices, in the ring of the tableau's
+    numbers."""
     weights = tableau.numbers.tree_weights
     return {tree: weights.gap(tree) for tree in trees(order)}
 
 
-def all_trees_hold(tableau: ImplicitTableau, order: int) -> bool:
-    """Whether the condition of every tree of up to so many vertices holds exactly.
+def holds_for_all_trees(tableau: ImplicitTableau, order: int) -> bool:
+    """Return True if the condition of every tree of up to so many vertices holds exactly.
 
     In the plane fewer do, as the module says; in n degrees of freedom, for every n, all.
     """

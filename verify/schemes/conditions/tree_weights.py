@@ -1,10 +1,10 @@
-"""What a table's entries put into the conditions of trees, over any numbers.
+"""The factors that a tableau's entries contribute to the conditions of trees, over any numbers.
 
-k_i = f(z + h Σ a_ij k_j), of each colour with a matrix, weights and times of its own: Φ_i(t) is the
-product over the root's branches of Σ_j a_ij Φ_j, a leaf of time being c_i, and a condition says
-Σ b_i Φ_i(t) = 1/γ(t). Of a Nyström method a vertex of q' = p is no stage: with
-Q_i = q + c_i h p + h² Σ ā_ij k_j it is c_i as a leaf, and Σ ā_ij Φ_j with a branch of its own.
-Entries that are 0 by their form are None, so that what they would be multiplied with is left out.
+k_i = f(z + h Σ a_ij k_j), each colour with its own matrix, weights and times: Φ_i(t) is the product
+over the root's branches of Σ_j a_ij Φ_j, a leaf of time being c_i, and a condition says Σ b_i
+Φ_i(t) = 1/γ(t). Of a Nyström method a vertex of q' = p is no stage: with Q_i = q + c_i h p + h² Σ
+ā_ij k_j it is c_i as a leaf, and Σ ā_ij Φ_j with a branch of its own. Entries that are 0 by their
+form are None, so that products with them are left out.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +21,8 @@ Vector: TypeAlias = tuple[E | None, ...]
 
 @dataclass(frozen=True)
 class Tableau(Generic[T_co]):
-    """Of one colour: a_ij, b_i, and the stages' times c_i, None where there are none."""
+    """The tableau of one colour: a_ij, b_i, and the stages' times c_i, None where there are
+    none."""
 
     matrix: tuple[tuple[T_co, ...], ...]
     weights: tuple[T_co, ...]
@@ -29,14 +30,14 @@ class Tableau(Generic[T_co]):
 
     @property
     def entries(self) -> list[T_co]:
-        """One after the other: rows, weights, and times that are there."""
+        """All entries one after the other: rows, weights, and times where there are any."""
         return [*(x for row in self.matrix for x in row), *self.weights, *(self.times or ())]
 
-    def mapped(self, made: Callable[[T_co, str], S]) -> "Tableau[S]":
-        """The same with what is made of each entry, of "a", "b" or "c", in that order."""
-        rows = tuple(tuple(made(x, "a") for x in row) for row in self.matrix)
-        weights = tuple(made(x, "b") for x in self.weights)
-        times = None if self.times is None else tuple(made(x, "c") for x in self.times)
+    def map_entries(self, transform: Callable[[T_co, str], S]) -> "Tableau[S]":
+        """Return the same with each entry transformed; `transform` also gets "a", "b" or "c"."""
+        rows = tuple(tuple(transform(x, "a") for x in row) for row in self.matrix)
+        weights = tuple(transform(x, "b") for x in self.weights)
+        times = None if self.times is None else tuple(transform(x, "c") for x in self.times)
         return Tableau(rows, weights, times)
 
 
@@ -44,9 +45,9 @@ Block: TypeAlias = Tableau[E | None]
 
 
 class TreeWeights(Generic[E]):
-    """b·Φ(t) of trees, each vector made once; `nystrom`: colour 1 is of q' = p, with ā and b̄ as its
-    matrix and weights, and with c as its times. `reduce`: what sums and products are put through,
-    as those of a ring are."""
+    """The weights b·Φ(t) of trees, each vector computed once; `nystrom`: colour 1 is of q' = p,
+    with ā and b̄ as its matrix and weights, and with c as its times. `reduce`: applied to sums and
+    products, as a ring needs it."""
 
     def __init__(
         self,
@@ -58,37 +59,39 @@ class TreeWeights(Generic[E]):
         self.blocks, self.one, self.nystrom, self.reduce = tuple(blocks), one, nystrom, reduce
         self.stages = len(blocks[0].weights)
         self._vectors: dict[Tree, Vector[E]] = {}
-        self._summed: dict[tuple[int, Tree], Vector[E]] = {}
+        self._branch_sums: dict[tuple[int, Tree], Vector[E]] = {}
 
     def weight(self, tree: Tree) -> E:
-        """b·Φ(t)."""
+        """Return b·Φ(t)."""
         root, branches = tree
         if self.nystrom and root == 1:
             if not branches:
                 return self.one
+            # A vertex of q' = p at the root is no stage: its one branch is weighted with b̄
+            # instead.
             ((root, branches),) = branches
             return self._or_zero(self.dot(self.blocks[1].weights, self.vector((root, branches))))
         return self._or_zero(self.dot(self.blocks[root].weights, self.vector(tree)))
 
     def gap(self, tree: Tree) -> E:
-        """b·Φ(t) − 1/γ(t)."""
+        """Return b·Φ(t) − 1/γ(t)."""
         return self.weight(tree) - self.one / density(tree)
 
     def bound(self, tree: Tree) -> E:
-        """b·Φ(t) + 1/γ(t)."""
+        """Return b·Φ(t) + 1/γ(t)."""
         return self.weight(tree) + self.one / density(tree)
 
     def _or_zero(self, x: E | None) -> E:
         return self.one * 0 if x is None else x
 
     def vector(self, tree: Tree) -> Vector[E]:
-        """Φ_i."""
+        """Return Φ_i(t) for all stages."""
         if tree not in self._vectors:
             self._vectors[tree] = self._product(tree)
         return self._vectors[tree]
 
     def _product(self, tree: Tree) -> Vector[E]:
-        """Over the branches; all but the last are those of a smaller tree."""
+        """Return the product over the branches; all but the last are those of a smaller tree."""
         root, branches = tree
         if not branches:
             return (self.one,) * self.stages
@@ -96,13 +99,14 @@ class TreeWeights(Generic[E]):
         return sums if len(branches) == 1 else self.times(self.vector((root, branches[:-1])), sums)
 
     def _sums(self, root: int, tree: Tree) -> Vector[E]:
-        """A branch's factor."""
+        """Return a branch's factor."""
+        # The times depend on the colour of the root, the sums of a tree on its own colour alone.
         key = (root, tree) if tree == TIME else (0, tree)
-        if key not in self._summed:
-            self._summed[key] = self._made(root, tree)
-        return self._summed[key]
+        if key not in self._branch_sums:
+            self._branch_sums[key] = self._make_sums(root, tree)
+        return self._branch_sums[key]
 
-    def _made(self, root: int, tree: Tree) -> Vector[E]:
+    def _make_sums(self, root: int, tree: Tree) -> Vector[E]:
         clock = self.blocks[root].times
         if tree == TIME and clock is not None:
             return clock
@@ -116,22 +120,22 @@ class TreeWeights(Generic[E]):
         return tuple(self.dot(row, inner) for row in block.matrix)
 
     def dot(self, x: Vector[E], y: Vector[E]) -> E | None:
-        """Σ x_i y_i; None where no product is there."""
-        (found,) = self._reduced((dot(x, y),))
-        return found
+        """Return Σ x_i y_i; None where there is no product."""
+        (value,) = self._reduce((dot(x, y),))
+        return value
 
     def times(self, x: Vector[E], y: Vector[E]) -> Vector[E]:
-        """By component."""
-        return self._reduced(times(x, y))
+        """Return the product by component."""
+        return self._reduce(times(x, y))
 
-    def _reduced(self, vector: Vector[E]) -> Vector[E]:
+    def _reduce(self, vector: Vector[E]) -> Vector[E]:
         if self.reduce is None:
             return vector
         return tuple(None if x is None else self.reduce(x) for x in vector)
 
 
 def dot(x: Vector[E], y: Vector[E]) -> E | None:
-    """Σ x_i y_i; None where no product is there."""
+    """Return Σ x_i y_i; None where there is no product."""
     total: E | None = None
     for a, b in zip(x, y, strict=True):
         if a is not None and b is not None:
@@ -141,6 +145,6 @@ def dot(x: Vector[E], y: Vector[E]) -> E | None:
 
 
 def times(x: Vector[E], y: Vector[E]) -> Vector[E]:
-    """By component."""
+    """Return the product by component."""
     pairs = zip(x, y, strict=True)
     return tuple(None if a is None or b is None else a * b for a, b in pairs)

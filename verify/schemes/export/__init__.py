@@ -1,9 +1,9 @@
-"""Step maps written out in other languages: `languages/` has one a file, found by itself."""
+"""Step maps written as code: `languages/` has one language a file, found by its name."""
 
 from typing import TYPE_CHECKING, Protocol
 
 from verify.discovery import Catalogue
-from verify.errors import unknown
+from verify.errors import unknown_name
 
 if TYPE_CHECKING:
     from verify.schemes.export.program import Program
@@ -17,23 +17,23 @@ _OF_C = '; what c writes is C++ too; check-integrator checks a C++ step that is 
 
 class Language(Protocol):
     """A language's file: `SUFFIX`, that of its files; `RESERVED`, words that are no names there;
-    and `written(program)`, the whole text."""
+    and `render(program)`, which returns the whole text."""
 
     SUFFIX: str
     RESERVED: frozenset[str]
 
-    def written(self, program: "Program") -> str: ...
+    def render(self, program: "Program") -> str: ...
 
 
 def names() -> tuple[str, ...]:
-    """The languages."""
+    """Return the names of the languages."""
     return _FILES.names
 
 
 def get(name: str) -> Language:
-    """The language of that name, in any case; InputError where there is none."""
+    """Return the language of that name, in any case; InputError where there is none."""
     plain = name.strip().lower() if isinstance(name, str) else name
     if plain not in _FILES:
-        raise unknown("language", name, names(), _OF_C if plain in _C else "", _C)
-    found: Language = _FILES.module(plain)
-    return found
+        raise unknown_name("language", name, names(), _OF_C if plain in _C else "", _C)
+    language: Language = _FILES.module(plain)
+    return language

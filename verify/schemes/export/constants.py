@@ -1,4 +1,4 @@
-"""Numbers of a formula as double literals that are right: each the double nearest to the number.
+"""Numbers of a formula as correctly rounded double literals.
 
 Integers of up to 53 bits stay as they are. A rational number n/d is divided by Python, which rounds
 correctly; an irrational one is enclosed by ball arithmetic, with more bits until both ends of the
@@ -39,47 +39,48 @@ class Constant:
 
     @property
     def comment(self) -> str:
-        """What the literal is, for a comment beside it, in ASCII."""
+        """A description of the literal, for a comment beside it, in ASCII."""
         if self.enclosure:
             return f"{self.exact} in [{', '.join(self.enclosure)}], rounded to nearest"
         return f"{self.exact}, {'exactly' if self.exactly else 'rounded to nearest'}"
 
 
 class Constants:
-    """Takes the numbers out of expressions, and keeps each once; `named(k)` is the k-th name."""
+    """Extracts the numbers of expressions, and keeps each once; `name_for(k)` is the k-th name."""
 
-    def __init__(self, named: Callable[[int], str]) -> None:
-        self._named = named
-        self._found: dict[sympy.Expr, Constant] = {}
+    def __init__(self, name_for: Callable[[int], str]) -> None:
+        self._name_for = name_for
+        self._constants: dict[sympy.Expr, Constant] = {}
 
     def __iter__(self) -> Iterator[Constant]:
-        return iter(self._found.values())
+        return iter(self._constants.values())
 
-    def taken_out(self, x: sympy.Expr) -> sympy.Expr:
-        """x with a symbol for each number that is no small integer; exponents stay."""
+    def extract(self, x: sympy.Expr) -> sympy.Expr:
+        """Return x with a symbol for each number that is no small integer; exponents stay."""
         if x.is_number and not x.free_symbols:
             return x if _is_small(x) else self._symbol(x)
         if x.is_Pow:
-            return sympy.Pow(self.taken_out(x.base), self._exponent(x.exp), evaluate=False)
+            return sympy.Pow(self.extract(x.base), self._exponent(x.exp), evaluate=False)
         if not x.args:
             return x
         if x.is_Add or x.is_Mul:
             numbers = [a for a in x.args if a.is_number]
-            rest = [self.taken_out(a) for a in x.args if not a.is_number]
+            others = [self.extract(a) for a in x.args if not a.is_number]
             number = x.func(*numbers)
-            return x.func(self.taken_out(number), *rest) if numbers else x.func(*rest)
-        return x.func(*map(self.taken_out, x.args))
+            return x.func(self.extract(number), *others) if numbers else x.func(*others)
+        return x.func(*map(self.extract, x.args))
 
     def _exponent(self, x: sympy.Expr) -> sympy.Expr:
-        return x if x.is_Rational else self.taken_out(x)
+        return x if x.is_Rational else self.extract(x)
 
     def _symbol(self, number: sympy.Expr) -> sympy.Symbol:
         # A sign stands better before the name.
+        # x and −x share one constant.
         if number.could_extract_minus_sign():
             return -self._symbol(-number)
-        if number not in self._found:
-            self._found[number] = constant(self._named(len(self._found)), number)
-        return sympy.Symbol(self._found[number].name, real=True)
+        if number not in self._constants:
+            self._constants[number] = constant(self._name_for(len(self._constants)), number)
+        return sympy.Symbol(self._constants[number].name, real=True)
 
 
 def _is_small(x: sympy.Expr) -> bool:
@@ -87,7 +88,8 @@ def _is_small(x: sympy.Expr) -> bool:
 
 
 def constant(name: str, number: sympy.Expr) -> Constant:
-    """The number under that name. Raises LimitError where no double is shown to be the nearest."""
+    """Return the number under that name. Raises LimitError where no double is shown to be the
+    nearest."""
     exact = to_text(number)
     if number.is_Rational:
         value = Fraction(int(number.p), int(number.q))
@@ -99,6 +101,8 @@ def constant(name: str, number: sympy.Expr) -> Constant:
         if ball is None:
             continue
         low, high = bounds(ball)
+        # Rounding is monotonic: if both ends have the same nearest double, so has the number
+        # between.
         if low and high and _nearest(low, exact) == _nearest(high, exact):
             return Constant(name, exact, _nearest(low, exact), _outward(low, high))
     raise LimitError("constant", exact, "is not enclosed closely enough to be rounded to a double")
@@ -106,19 +110,20 @@ def constant(name: str, number: sympy.Expr) -> Constant:
 
 def _nearest(value: Fraction, exact: str) -> str:
     try:
-        found = value.numerator / value.denominator  # Python rounds the quotient correctly
+        quotient = value.numerator / value.denominator  # Python rounds the quotient correctly
     except OverflowError:
-        found = 0.0
-    if value and (not found or abs(found) < 2.0**-1022):
+        quotient = 0.0
+    if value and (not quotient or abs(quotient) < 2.0**-1022):
         raise LimitError("constant", exact, "lies outside of the range of float64")
-    return repr(found)
+    return repr(quotient)
 
 
 def _outward(low: Fraction, high: Fraction) -> tuple[str, str]:
-    """Decimals of 20 digits that enclose them: each moved outward by one unit of its last digit."""
-    found = []
+    """Return decimals of 20 digits that enclose both: each moved outward by one unit of its last
+    digit."""
+    ends = []
     for value, sign in ((low, -1), (high, 1)):
         middle = Fraction(decimal(value, _DIGITS))
         unit = abs(middle) / 10 ** (_DIGITS - 1)
-        found.append(decimal(middle + sign * unit, _DIGITS))
-    return found[0], found[1]
+        ends.append(decimal(middle + sign * unit, _DIGITS))
+    return ends[0], ends[1]

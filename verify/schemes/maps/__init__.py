@@ -15,8 +15,8 @@ _FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path_
 
 
 def kind_of(every_h: object, name: str) -> Any:
-    """The module of `kinds/` for these coefficients of a scheme of that name; InputError where
-    there is none."""
+    """Return the module of `kinds/` for these coefficients of a scheme of that name; InputError
+    where there is none."""
     kind = getattr(every_h, "kind", "")
     if kind not in _FILES:
         raise InputError("scheme", name, "is known in one degree of freedom only")

@@ -1,7 +1,8 @@
-"""A step in balls, with its derivatives by z: what a scheme's step is made of, read with balls.
+"""A step in balls, with its derivatives by z: the operations of a scheme's step, evaluated in
+balls.
 
-A value is a change of one coordinate and its gradient. Nothing of a kernel's program is in it, and
-no Jacobian that is written out: the slopes' own derivatives are enclosed at each stage.
+A value is a change of one coordinate and its gradient. It shares nothing with a kernel's program,
+and uses no Jacobian that is written out: the derivatives of the slopes are enclosed at each stage.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -33,13 +34,14 @@ class Change:
     gradient: tuple[Ball, ...]
 
     def plus(self, factor: Ball, other: "Change") -> "Change":
-        """self + factor · other."""
+        """Return self + factor · other."""
         pairs = zip(self.gradient, other.gradient, strict=True)
         return Change(self.value + factor * other.value, tuple(x + factor * y for x, y in pairs))
 
 
 class BallAlgebra(StepAlgebra[Change]):
-    """At a point of balls, with t where H depends on it; in flint's present precision."""
+    """The step algebra at a point of balls, with t where H depends on it; in flint's present
+    precision."""
 
     def __init__(self, field: CanonicalField, point: Mapping[str, Ball], h: Ball) -> None:
         self.field, self.point, self.h = field, point, h
@@ -53,12 +55,12 @@ class BallAlgebra(StepAlgebra[Change]):
         return len(self.field.names)
 
     def along_flow(self, eta: int) -> list[Change]:
-        found, power = [self.nothing] * self.size, flint.arb(1)
+        changes, power = [self.nothing] * self.size, flint.arb(1)
         for n in range(1, eta + 1):
             power *= self.h
-            terms = self._at(_of_flow(self.field, n), self.point)
-            found = [x.plus(power, y) for x, y in zip(found, terms, strict=True)]
-        return found
+            terms = self._evaluate(_of_flow(self.field, n), self.point)
+            changes = [x.plus(power, y) for x, y in zip(changes, terms, strict=True)]
+        return changes
 
     def slopes(
         self, changes: Sequence[Change], clock: Number, places: Sequence[int]
@@ -68,25 +70,25 @@ class BallAlgebra(StepAlgebra[Change]):
             box[name] = box[name] + change.value
         if self.field.timed:
             box["t"] = box["t"] + self._number(clock) * self.h
-        found = self._at(_of_slopes(self.field, tuple(places)), box)
-        return [Change(x.value, self._chained(x.gradient, changes)) for x in found]
+        elements = self._evaluate(_of_slopes(self.field, tuple(places)), box)
+        return [Change(x.value, self._chain(x.gradient, changes)) for x in elements]
 
-    def moved(self, change: Change, weights: Sequence[Number], slopes: Sequence[Change]) -> Change:
+    def move(self, change: Change, weights: Sequence[Number], slopes: Sequence[Change]) -> Change:
         for weight, slope in zip(weights, slopes, strict=True):
             change = change.plus(self.h * self._number(weight), slope)
         return change
 
-    def between(self, x: Change, y: Change, share: Fraction) -> Change:
+    def add_share(self, x: Change, y: Change, share: Fraction) -> Change:
         return x.plus(rational_ball(share), y)
 
-    def solved(
+    def solve(
         self, count: int, right: Callable[[StepAlgebra[Change], Sequence[Change]], list[Change]]
     ) -> list[Change]:
         raise UndefinedError  # equations are not solved here
 
-    def closed(self, closed: ClosedForm) -> list[Change]:
-        """z' − z of a map that is written out."""
-        return self._at(_of_closed(closed), {**self.point, "h": self.h})
+    def from_closed_form(self, closed_form: ClosedForm) -> list[Change]:
+        """Return z' − z of a map that is written out."""
+        return self._evaluate(_of_closed_form(closed_form), {**self.point, "h": self.h})
 
     def _number(self, x: Number) -> Ball:
         if isinstance(x, Fraction):
@@ -96,21 +98,21 @@ class BallAlgebra(StepAlgebra[Change]):
             raise UndefinedError
         return ball
 
-    def _at(self, wanted: Enclosures, box: Mapping[str, Ball]) -> list[Change]:
-        """Elements with their gradients; UndefinedError where one may not be defined."""
-        balls = wanted.over(box)
+    def _evaluate(self, enclosures: Enclosures, box: Mapping[str, Ball]) -> list[Change]:
+        """Return elements with their gradients; UndefinedError where one may not be defined."""
+        balls = enclosures.enclose_over(box)
         if balls is None or not all(x.is_finite() for x in balls):
             raise UndefinedError
         width = self.size + 1
         rows = [balls[k : k + width] for k in range(0, len(balls), width)]
         return [Change(row[0], tuple(row[1:])) for row in rows]
 
-    def _chained(self, gradient: Sequence[Ball], changes: Sequence[Change]) -> tuple[Ball, ...]:
-        """The derivative of f(z + change): f_j (δ_jm + ∂change_j/∂z_m), summed over j."""
-        found = list(gradient)
+    def _chain(self, gradient: Sequence[Ball], changes: Sequence[Change]) -> tuple[Ball, ...]:
+        """Return the derivative of f(z + change): f_j (δ_jm + ∂change_j/∂z_m), summed over j."""
+        total = list(gradient)
         for slope, change in zip(gradient, changes, strict=True):
-            found = [x + slope * y for x, y in zip(found, change.gradient, strict=True)]
-        return tuple(found)
+            total = [x + slope * y for x, y in zip(total, change.gradient, strict=True)]
+        return tuple(total)
 
 
 @lru_cache(maxsize=64)
@@ -124,8 +126,8 @@ def _of_flow(field: CanonicalField, n: int) -> Enclosures:
 
 
 @lru_cache(maxsize=64)
-def _of_closed(closed: ClosedForm) -> Enclosures:
-    return _with_gradients(closed.field, closed.increments)
+def _of_closed_form(closed_form: ClosedForm) -> Enclosures:
+    return _with_gradients(closed_form.field, closed_form.increments)
 
 
 def _with_gradients(field: CanonicalField, elements: Sequence[Poly]) -> Enclosures:
@@ -139,10 +141,10 @@ def step_in_balls(
     point: Mapping[str, Ball],
     h: Ball,
 ) -> tuple[list[Ball], flint.arb_mat]:
-    """(z' − z, K = J − 1) over a box, in flint's present precision; UndefinedError where the step
-    may not be defined, or solves equations."""
+    """Return (z' − z, K = J − 1) over a box, in flint's present precision; UndefinedError where the
+    step may not be defined, or solves equations."""
     algebra = BallAlgebra(field, point, h)
-    changes = algebra.closed(step) if isinstance(step, ClosedForm) else step(algebra)
+    changes = algebra.from_closed_form(step) if isinstance(step, ClosedForm) else step(algebra)
     return [x.value for x in changes], flint.arb_mat([list(x.gradient) for x in changes])
 
 
@@ -151,34 +153,36 @@ Point = Mapping[str, Ball]
 
 
 def may_preserve(field: CanonicalField, step: Step) -> bool:
-    """Whether no point is seen at which S = JᵀΩJ − Ω is not 0; most steps show one at once."""
+    """Return True if no tested point shows that S = JᵀΩJ − Ω is not 0; most steps show one at
+    once."""
     n = len(field.names) // 2
     omega = flint.arb_mat(2 * n, 2 * n)
     for i in range(n):
         omega[i, n + i], omega[n + i, i] = flint.arb(1), flint.arb(-1)
 
     def gap(_: Point, __: Sequence[Ball], slopes: flint.arb_mat) -> Sequence[Ball]:
+        # S = KᵀΩ + ΩK + KᵀΩK with K = J − 1: no entry near 1 cancels.
         across = slopes.transpose() * omega
-        found: Sequence[Ball] = (across + omega * slopes + across * slopes).entries()
-        return found
+        entries: Sequence[Ball] = (across + omega * slopes + across * slopes).entries()
+        return entries
 
     return _may_vanish(field, step, gap)
 
 
 def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
-    """Whether no point is seen at which H changes in a step."""
+    """Return True if no tested point shows that H changes in a step."""
     energy = Enclosures(field.ring, [field.energy])
 
     def gap(point: Point, changes: Sequence[Ball], _: flint.arb_mat) -> Sequence[Ball]:
-        moved = {name: point[name] + x for name, x in zip(field.names, changes, strict=True)}
-        before, after = energy.over(point), energy.over({**point, **moved})
+        end_point = {name: point[name] + x for name, x in zip(field.names, changes, strict=True)}
+        before, after = energy.enclose_over(point), energy.enclose_over({**point, **end_point})
         return [after[0] - before[0]] if before and after else []
 
     return _may_vanish(field, step, gap)
 
 
 def may_be_uniform(field: CanonicalField, step: Step | ClosedForm) -> bool:
-    """Whether no two points are seen at which det J differs."""
+    """Return True if no two tested points show different det J."""
     first: list[Ball] = []
 
     def gap(_: Point, __: Sequence[Ball], slopes: flint.arb_mat) -> Sequence[Ball]:
@@ -195,15 +199,16 @@ def _may_vanish(
     step: Step | ClosedForm,
     gap: Callable[[Point, Sequence[Ball], flint.arb_mat], Sequence[Ball]],
 ) -> bool:
-    """Whether no point is seen at which one of these balls, made of a step, excludes 0."""
+    """Return True if at no tested point one of these balls, computed from a step, excludes 0."""
     names, h = [name for name in field.ring.variables if name != "h"], Fraction(1, 16)
     with working_precision(_BITS):
-        for at in islice(points(names), _POINTS):
-            point = {name: rational_ball(x) for name, x in at.items()}
+        # h is a fixed 1/16: a defect that vanishes identically does so for every h.
+        for numbers in islice(points(names), _POINTS):
+            point = {name: rational_ball(x) for name, x in numbers.items()}
             try:
-                found = gap(point, *step_in_balls(field, step, point, rational_ball(h)))
+                balls = gap(point, *step_in_balls(field, step, point, rational_ball(h)))
             except UndefinedError:
                 continue
-            if any(x.is_finite() and not x.contains(0) for x in found):
+            if any(x.is_finite() and not x.contains(0) for x in balls):
                 return False
     return True

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 
 from verify.algebra.domain import Domain
 from verify.algebra.formula import read, symbol
-from verify.algebra.requirement import of_expression
-from verify.effort import limited
+from verify.algebra.requirement import requirements_of_expression
+from verify.effort import limit_effort
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -18,10 +18,10 @@ from verify.structures import AREA, SYMPLECTIC
 _NEXT = "_next"
 
 
-def map_by_formulas(
+def step_map_from_formulas(
     hamiltonian: Hamiltonian, formulas: Mapping[str, str], numbers: Collection[str] = ()
 ) -> StepMap:
-    """The map that has a formula for each coordinate, by its name with `_next`.
+    """Return the map that has a formula for each coordinate, by its name with `_next`.
 
     A formula may use the coordinates, h, H's parameters, t where H has it, and what was defined
     before it, and the names of `numbers`. Raises InputError.
@@ -33,34 +33,44 @@ def map_by_formulas(
     names = [*coordinates, "h", *time, *hamiltonian.parameters, *numbers]
     if "p_next" in formulas and "p_next" in names:
         raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
-    put: dict[sympy.Symbol, sympy.Expr] = {}
-    asked = Domain.of(())
+    substitutions: dict[sympy.Symbol, sympy.Expr] = {}
+    domain = Domain.from_requirements(())
     for name, formula in formulas.items():
-        expression, required = read(formula, names, source=name)
-        with limited(name, formula, "to put what stands before into it"):
-            asked &= Domain.of(required).replaced(put).replaced(hamiltonian.put)
-            put[symbol(name)] = hamiltonian.put_in(expression.xreplace(put))
+        expression, requirements = read(formula, names, source=name)
+        # Formulas may use those before them, so nested texts can grow exponentially when
+        # substituted.
+        with limit_effort(name, formula, "to put what stands before into it"):
+            domain &= (
+                Domain.from_requirements(requirements)
+                .substitute(substitutions)
+                .substitute(hamiltonian.value_substitutions)
+            )
+            substitutions[symbol(name)] = hamiltonian.substitute_values(
+                expression.xreplace(substitutions)
+            )
         names.append(name)
-    exact = [put[symbol(name + _NEXT)] for name in coordinates]
-    return map_by_expressions(hamiltonian, exact, asked)
+    exact = [substitutions[symbol(name + _NEXT)] for name in coordinates]
+    return map_from_expressions(hamiltonian, exact, domain)
 
 
 def _other_coordinates(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> InputError:
-    written = "; ".join(map(" = ".join, formulas.items()))
-    needed = ", ".join(name + _NEXT for name in hamiltonian.coordinates)
-    shown, problem = {
-        AREA: (written, "H has other coordinates; allowed: formulas of p_next and q_next"),
-        SYMPLECTIC: ("; ".join(formulas), f"H needs {needed}, once each"),
+    formula_text = "; ".join(map(" = ".join, formulas.items()))
+    required_names = ", ".join(name + _NEXT for name in hamiltonian.coordinates)
+    value, problem = {
+        AREA: (formula_text, "H has other coordinates; allowed: formulas of p_next and q_next"),
+        SYMPLECTIC: ("; ".join(formulas), f"H needs {required_names}, once each"),
     }[hamiltonian.structure]
-    return InputError("scheme", shown, problem)
+    return InputError("scheme", value, problem)
 
 
-def map_by_expressions(
-    hamiltonian: Hamiltonian, exact: Sequence[sympy.Expr], asked: Domain | None = None
+def map_from_expressions(
+    hamiltonian: Hamiltonian, exact: Sequence[sympy.Expr], domain: Domain | None = None
 ) -> StepMap:
-    """The map of z' as expressions in z, h, t where H has it, and parameters; `asked`: where more
-    than they is defined. InputError where they are not smooth."""
-    field, closed = canonical_field(hamiltonian, *exact)
-    smooth = Domain.of(r for x in exact for r in of_expression(x, smooth=True))
-    asked = smooth if asked is None else smooth & asked
-    return StepMap(hamiltonian, field, formulas=tuple(closed), asked=asked)
+    """Return the map of z' as expressions in z, h, t where H has it, and parameters; `domain`:
+    where more than these expressions is defined. InputError where they are not smooth."""
+    field, elements = canonical_field(hamiltonian, *exact)
+    smooth = Domain.from_requirements(
+        r for x in exact for r in requirements_of_expression(x, smooth=True)
+    )
+    domain = smooth if domain is None else smooth & domain
+    return StepMap(hamiltonian, field, formulas=tuple(elements), formula_domain=domain)

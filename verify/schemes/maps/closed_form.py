@@ -1,6 +1,6 @@
 """A map z → z' that is written out: its Jacobian, S = JᵀΩJ − Ω and det J − 1 in closed form.
 
-S is made coefficient by coefficient of h where the map is a polynomial in h, so that nothing
+S is computed coefficient by coefficient of h where the map is a polynomial in h, so that nothing
 cancels in it; in the plane it is ΔJ dp∧dq.
 """
 
@@ -22,7 +22,7 @@ _MOST_TERMS = 300  # of J's entries together, beyond which det J is not multipli
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """z' as `elements` of the ring of H's `field`, one for each of its names."""
+    """The map z' as `elements` of the ring of H's `field`, one for each of its names."""
 
     field: CanonicalField
     elements: tuple[Poly, ...]
@@ -34,17 +34,17 @@ class ClosedForm:
 
     @property
     def increments(self) -> tuple[Poly, ...]:
-        """z' − z."""
+        """The increments z' − z."""
         return tuple(x - z for x, z in zip(self.elements, self.field.start, strict=True))
 
     @cached_property
     def jacobian(self) -> tuple[tuple[Poly, ...], ...]:
-        """∂z'/∂z by rows."""
+        """The Jacobian ∂z'/∂z by rows."""
         return tuple(map(self.field.gradient, self.elements))
 
     @cached_property
     def degree(self) -> int | None:
-        """In h, of a map that is a polynomial in it; else None."""
+        """The degree in h, of a map that is a polynomial in it; else None."""
         if h_inside(self.ring, *self.elements):
             return None
         return max((max(powers, default=0) for powers in self._powers), default=0)
@@ -55,30 +55,33 @@ class ClosedForm:
 
     @cached_property
     def flow_up_to(self) -> int:
-        """The power of h up to which they are the exact flow's own terms, to the letter; −1 where
-        they are no polynomials in h."""
+        """The power of h up to which the elements are the exact flow's own terms, to the letter; −1
+        where they are no polynomials in h."""
         for n in range((-1 if self.degree is None else self.degree) + 1):
-            own = (powers.get(n, self.ring.zero) for powers in self._powers)
-            if any(x != y for x, y in zip(own, self.field.term(n), strict=True)):
+            coefficients = (powers.get(n, self.ring.zero) for powers in self._powers)
+            if any(x != y for x, y in zip(coefficients, self.field.term(n), strict=True)):
                 return n - 1
         return -1 if self.degree is None else self.degree
 
     def series(self, most: int) -> State | None:
-        """z' up to h^most; None where it is no polynomial in h."""
+        """Return z' up to h^most; None where it is no polynomial in h."""
         if self.degree is None:
             return None
         ring = self.ring
-        each = ([own.get(n, ring.zero) for n in range(most + 1)] for own in self._powers)
-        return tuple(Series.of(ring, own, most) for own in each)
+        each = (
+            [coefficients.get(n, ring.zero) for n in range(most + 1)]
+            for coefficients in self._powers
+        )
+        return tuple(Series.from_coefficients(ring, coefficients, most) for coefficients in each)
 
     @property
     def length(self) -> int:
-        """How many terms there are in all its parts."""
+        """The number of terms in all its parts."""
         return terms_of(self.ring, self.elements)
 
     @property
     def products(self) -> int:
-        """A bound of the number of terms that S has when it is written out."""
+        """A bound on the number of terms that S has when it is written out."""
         bound, names = self.ring.terms_of_diff, self.field.names
         rows = [[bound(x, name) for name in names] for x in self.increments]
         n = len(rows) // 2
@@ -98,16 +101,16 @@ class ClosedForm:
         if self.degree is None:
             return {0: self.defect} if self.defect.entries else {}
         highest = 2 * self.degree
-        made = self.series(highest)
-        assert made is not None  # noqa: S101 - it is a polynomial in h
-        series = DefectSeries(lambda _: (self.field, made), highest, self.flow_up_to)
+        state = self.series(highest)
+        assert state is not None  # noqa: S101 - it is a polynomial in h
+        series = DefectSeries(lambda _: (self.field, state), highest, self.flow_up_to)
         # Up to `flow_up_to` the map is the flow, which is symplectic.
         each = ((m, series.form(m)) for m in range(self.flow_up_to + 1, highest + 1))
         return {m: form for m, form in each if form.entries}
 
     @cached_property
     def defect(self) -> TwoForm:
-        """S as one form, h being one more variable of its ring."""
+        """The form S, h being one more variable of its ring."""
         return defect_of(self.ring, self.field.names, self.elements)
 
     @cached_property
@@ -119,36 +122,37 @@ class ClosedForm:
         return all(self.ring.vanishes(x) is True for x in entries)
 
     def form(self, power: int) -> TwoForm:
-        """The coefficient of h^power in S, of a map that is a polynomial in h."""
+        """Return the coefficient of h^power in S, of a map that is a polynomial in h."""
         empty = TwoForm(self.ring, self.field.names)
         return (self.forms or {}).get(power, empty)
 
     @cached_property
     def delta_j(self) -> Poly:
-        """det J − 1."""
+        """The element det J − 1."""
         if self.field.degrees > 1 or self.forms is None:
             return determinant(self.ring, self.jacobian) - 1
         h = self.ring.variable("h")
-        parts = (h**m * form.at(0, 1) for m, form in self.forms.items())
+        parts = (h**m * form.entry(0, 1) for m, form in self.forms.items())
         return sum(parts, self.ring.zero)
 
     def preserves_volume(self) -> bool | None:
-        """Whether det J ≡ 1; None where that is not decided, or there is too much to multiply."""
+        """Return True if det J ≡ 1; None where that is not decided, or there is too much to
+        multiply."""
         return preserves_volume(self.ring, self.jacobian)
 
 
 def h_inside(ring: Ring, *elements: Poly) -> bool:
-    """Whether h occurs inside a generator, so that an element is not a polynomial in h."""
+    """Return True if h occurs inside a generator, so that an element is not a polynomial in h."""
     return any(ring.depends(a, "h") for a in arguments(ring, *elements))
 
 
 def arguments(ring: Ring, *elements: Poly) -> list[Poly]:
-    """The arguments of the generators that the elements are made of."""
+    """Return the arguments of the generators that occur in the elements."""
     return [g.argument for g in ring.generators_in(*elements) if g.argument is not None]
 
 
 def terms_of(ring: Ring, elements: Sequence[Poly]) -> int:
-    """How many terms there are in elements and in what their generators are functions of."""
+    """Return the number of terms in elements and in the arguments of their generators."""
     return sum(map(len, [*elements, *arguments(ring, *elements)]))
 
 
@@ -156,7 +160,7 @@ def terms_of(ring: Ring, elements: Sequence[Poly]) -> int:
 
 
 def defect_of(ring: Ring, names: tuple[str, ...], elements: Sequence[Poly]) -> TwoForm:
-    """S of z ↦ `elements`, z being the variables of these names."""
+    """Return S of z ↦ `elements`, z being the variables of these names."""
     n, rows = len(names) // 2, [[ring.diff(x, name) for name in names] for x in elements]
 
     def entry(a: int, b: int) -> Poly:
@@ -165,11 +169,11 @@ def defect_of(ring: Ring, names: tuple[str, ...], elements: Sequence[Poly]) -> T
             total += wedge(rows[i], rows[n + i], a, b)
         return total
 
-    return TwoForm.of(ring, names, entry)
+    return TwoForm.from_entries(ring, names, entry)
 
 
 def preserves_volume(ring: Ring, jacobian: Sequence[Sequence[Poly]]) -> bool | None:
-    """Whether the determinant is 1; None where that is not decided, or there is too much to
+    """Return True if the determinant is 1; None where that is not decided, or there is too much to
     multiply."""
     if sum(len(x) for row in jacobian for x in row) > _MOST_TERMS:
         return None
@@ -177,22 +181,24 @@ def preserves_volume(ring: Ring, jacobian: Sequence[Sequence[Poly]]) -> bool | N
 
 
 def determinant(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> Poly:
-    """Of a square matrix, without division.
+    """Return the determinant of a square matrix, without division.
 
     R. S. Bird, A simple division-free algorithm for computing determinants, Inf. Process. Lett. 111
     (2011).
     """
-    size, own = len(matrix), [list(row) for row in matrix]
-    found = own
+    size, entries = len(matrix), [list(row) for row in matrix]
+    product = entries
+    # Bird's algorithm: F_(k+1) = μ(F_k) A, where μ keeps the upper part and puts negative partial
+    # traces on the diagonal.
     for _ in range(size - 1):
         below = ring.zero
         upper = [[ring.zero] * size for _ in range(size)]
         for i in reversed(range(size)):
-            upper[i][i + 1 :] = found[i][i + 1 :]
+            upper[i][i + 1 :] = product[i][i + 1 :]
             upper[i][i] = -below
-            below = below + found[i][i]
-        found = [[_product(ring, row, own, j) for j in range(size)] for row in upper]
-    return found[0][0] if size % 2 else -found[0][0]
+            below = below + product[i][i]
+        product = [[_product(ring, row, entries, j) for j in range(size)] for row in upper]
+    return product[0][0] if size % 2 else -product[0][0]
 
 
 def _product(ring: Ring, row: Sequence[Poly], matrix: Sequence[Sequence[Poly]], j: int) -> Poly:

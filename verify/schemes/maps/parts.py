@@ -1,4 +1,4 @@
-"""A step as maps made in turn, each in closed form: the kicks and drifts of a splitting."""
+"""A step as maps applied in turn, each in closed form: the kicks and drifts of a splitting."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.late import sympy
 from verify.schemes.maps.closed_form import ClosedForm
@@ -20,7 +20,7 @@ from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 @dataclass(frozen=True)
 class _Shear:
-    """Those places move by h `size` f, f taken at t + `clock` h."""
+    """A shear: the places move by h `size` f, f taken at t + `clock` h."""
 
     size: Poly
     clock: Poly
@@ -28,10 +28,10 @@ class _Shear:
 
 
 class _Shears(StepAlgebra[None]):
-    """Notes the shears that a step is made of, and nothing else."""
+    """A step algebra that records the shears of a step, and nothing else."""
 
     def __init__(self, field: CanonicalField) -> None:
-        self.field, self.noted = field, list[_Shear]()
+        self.field, self.shears = field, list[_Shear]()
 
     @property
     def nothing(self) -> None:
@@ -41,23 +41,25 @@ class _Shears(StepAlgebra[None]):
     def size(self) -> int:
         return len(self.field.names)
 
-    def sheared(
+    def shear(
         self, changes: Sequence[None], size: Number, clock: Number, places: Sequence[int]
     ) -> list[None]:
         ring = self.field.ring
-        share, at = (ring.constant(x) if isinstance(x, Fraction) else x for x in (size, clock))
-        self.noted.append(_Shear(share, at, tuple(places)))
+        share, clock_share = (
+            ring.constant(x) if isinstance(x, Fraction) else x for x in (size, clock)
+        )
+        self.shears.append(_Shear(share, clock_share, tuple(places)))
         return list(changes)
 
     def _no_shear(self, *_: Any) -> NoReturn:
         raise TooLongError
 
-    along_flow = slopes = moved = between = solved = _no_shear  # type: ignore[assignment]
+    along_flow = slopes = move = add_share = solve = _no_shear  # type: ignore[assignment]
 
 
 def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
-    """The maps that it is made of, first one first, in the ring of one field: its shears, or itself
-    where it is given in closed form; None of others."""
+    """Return the maps that it is made of, in their order, in the ring of one field: its shears, or
+    itself where it is defined in closed form; None for others."""
     if step_map.formulas is not None:
         return (step_map.flat,)
     if step_map.step is None or step_map.implicit:
@@ -67,28 +69,29 @@ def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
         step_map.step(reading)
     except TooLongError:
         return None
-    field, moves = _moves(step_map, reading.noted)
-    left, parts = iter(moves), []
-    for shear in reading.noted:
-        moved = list(field.start)
+    field, moves = _moves(step_map, reading.shears)
+    # The moves come in the order of the shears and, within one, of its places.
+    remaining_moves, parts = iter(moves), []
+    for shear in reading.shears:
+        elements = list(field.start)
         for k in shear.places:
-            moved[k] += next(left)
-        parts.append(ClosedForm(field, tuple(moved)))
+            elements[k] += next(remaining_moves)
+        parts.append(ClosedForm(field, tuple(elements)))
     return tuple(parts)
 
 
 def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField, Sequence[Poly]]:
-    """By how much each place moves, one shear after the other, with the field in their ring; in
-    time by H's derivative at the shear's own."""
+    """Return by how much each place moves, one shear after the other, with the field in their ring;
+    in time by H's derivative at the shear's own."""
     field, exact = step_map.field, step_map.hamiltonian
     if not field.timed:
         return field, [x for each in shears for x in field.shears(each.size, each.places)]
-    written, t, h = field.ring.expression, symbol("t"), symbol("h")
+    expression_of, t, h = field.ring.expression, symbol("t"), symbol("h")
     moves: list[sympy.Expr] = []
-    slopes = [written(x) for x in field.slopes]
-    with limited("hamiltonian", str(exact.expression), "to put the parts' times into it"):
+    slopes = [expression_of(x) for x in field.slopes]
+    with limit_effort("hamiltonian", str(exact.expression), "to put the parts' times into it"):
         for shear in shears:
-            later = t + h * written(shear.clock)
-            share = h * written(shear.size)
+            later = t + h * expression_of(shear.clock)
+            share = h * expression_of(shear.size)
             moves += [share * slopes[k].subs(t, later) for k in shear.places]
     return canonical_field(exact, *moves)

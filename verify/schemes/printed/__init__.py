@@ -1,1 +1,1 @@
-"""Coefficients as they are printed: whether exact ones near them satisfy a method's conditions."""
+"""Coefficients as they are printed: do exact ones near them satisfy a method's conditions?"""

@@ -18,8 +18,8 @@ _WRAPPED = re.compile(r"\([^()]*\)")
 
 
 class Naming:
-    """Gives decimals that stand in a table without a name one, and long quotients: `entry` returns
-    what to write there.
+    """Gives names to decimals and long quotients that stand in a table without one: `entry` returns
+    the text to write there.
 
     Two that are printed alike to 8 decimals or more are one number.
     """
@@ -30,47 +30,49 @@ class Naming:
                 problem = "is no name of a number: letters, digits and _, and no function's name"
                 raise InputError("numbers", name, problem)
         self.numbers = {**numbers}
-        self._known = {_size(text): name for name, text in numbers.items() if _is_long(text)}
+        self._names = {_size(text): name for name, text in numbers.items() if _is_long(text)}
 
     def entry(self, text: str, label: str) -> str:
-        """A formula in names; `label` is the name of a decimal that has none, and begins that of
-        long ones within a formula."""
+        """Return a formula in names; `label` is the name of a decimal that has none, and begins
+        that of long ones within a formula."""
         text = text.strip()
+        # Brackets around a whole entry say nothing, and would hide a plain decimal.
         while _WRAPPED.fullmatch(text):
             text = text[1:-1].strip()
         if not text:
             return "0"
         if unit_of(text) is not None or unit_of_quotient(text) is not None:
-            return self._named(text, label)
-        found = iter(range(1, MOST_ENTRIES))
+            return self._name_of(text, label)
+        counter = iter(range(1, MOST_ENTRIES))
         return _LONG_INSIDE.sub(
-            lambda m: self._named(m[0], f"{label}_{next(found)}") if _is_long(m[0]) else m[0], text
+            lambda m: self._name_of(m[0], f"{label}_{next(counter)}") if _is_long(m[0]) else m[0],
+            text,
         )
 
-    def _named(self, text: str, label: str) -> str:
-        name = self._known.get(_size(text)) if _is_long(text) else None
+    def _name_of(self, text: str, label: str) -> str:
+        name = self._names.get(_size(text)) if _is_long(text) else None
         if name is None:
             name = label
             while name in self.numbers:
                 name += "_"
             self.numbers[name] = text
             if _is_long(text):
-                self._known[_size(text)] = name
+                self._names[_size(text)] = name
         same = self.numbers[name].startswith("-") == text.startswith("-")
         return name if same else f"(-{name})"
 
     def entries(self, texts: Iterable[str], label: str) -> tuple[str, ...]:
-        """One after the other, counted from 1."""
+        """Return the entries of several texts, counted from 1."""
         return tuple(self.entry(x, f"{label}{_place(k)}") for k, x in enumerate(texts))
 
     @property
-    def printed(self) -> PrintedNumbers:
-        """All numbers that there are by now."""
+    def printed_numbers(self) -> PrintedNumbers:
+        """All numbers that have been named by now."""
         return PrintedNumbers(self.numbers)
 
 
 def _size(text: str) -> str:
-    """Without its sign."""
+    """Return the text without its sign."""
     return text.lstrip("+-")
 
 

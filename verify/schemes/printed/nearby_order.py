@@ -12,16 +12,16 @@ from typing import TypeAlias, TypeVar
 
 import sympy
 
-from verify.arithmetic.arb import middle_and_radius, rational_ball
+from verify.arithmetic.arb import midpoint_and_radius, rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.schemes.conditions.condition import Condition, NearbyOrder
-from verify.schemes.printed.asked import BITS, ball_of
+from verify.schemes.printed.condition_set import BITS, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import entries_at
-from verify.schemes.printed.sentences import of_printed
+from verify.schemes.printed.sentences import judgement_of_order
 from verify.schemes.printed.splitting_order import judge_order
 from verify.schemes.printed.splitting_table import PrintedTable
 
@@ -31,39 +31,40 @@ _DIGITS = 12  # of a residue
 
 
 def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
-    """What finds the order of kicks and drifts with these sizes and times, None for the right time;
-    None where they stand for nothing but themselves."""
+    """Return the function that finds the order of kicks and drifts with these sizes and times, None
+    for the right time; None where they are exact."""
     naming = Naming({})
     try:
         sizes = naming.entries((size for _, size, _ in parts), "size")
         texts = enumerate(time for _, _, time in parts)
         times = tuple(None if x is None else naming.entry(x, f"time_{k + 1}") for k, x in texts)
-        named = tuple((kind, size) for (kind, *_), size in zip(parts, sizes, strict=True))
-        table = PrintedTable("splitting", named, naming.printed, times, both=True)
-        tables = [table.read(numbers) for numbers in naming.printed.of_a_method()]
-        rounded = tuple(table for table in tables if table.printed.units)
-        for table in rounded:
+        named_parts = tuple((kind, size) for (kind, *_), size in zip(parts, sizes, strict=True))
+        table = PrintedTable("splitting", named_parts, naming.printed_numbers, times, both=True)
+        tables = [table.read(numbers) for numbers in naming.printed_numbers.of_a_method()]
+        rounded_tables = tuple(table for table in tables if table.printed.units)
+        for table in rounded_tables:
             parts_at(table, table.printed.values)
             times_at(table, table.printed.values)
     except InputError:  # numbers beyond all coefficients, or no polynomials in the decimals
         return None
-    return PrintedParts(rounded) if rounded else None
+    return PrintedParts(rounded_tables) if rounded_tables else None
 
 
 @dataclass(frozen=True)
 class PrintedParts:
-    """`tables`: one for each way in which the numbers may be read, the first before others."""
+    """The parts of a printed splitting; `tables`: one for each way in which the numbers may be
+    read, the first before others."""
 
     tables: tuple[PrintedTable, ...]
 
     def __call__(self, most: int) -> NearbyOrder | None:
-        """The highest order up to `most` that exact numbers near these have."""
-        if most not in self._known:
-            self._known[most] = _highest(self.tables, most)
-        return self._known[most]
+        """Return the highest order up to `most` that exact numbers near these have."""
+        if most not in self._by_limit:
+            self._by_limit[most] = _highest(self.tables, most)
+        return self._by_limit[most]
 
     @cached_property
-    def _known(self) -> dict[int, NearbyOrder | None]:
+    def _by_limit(self) -> dict[int, NearbyOrder | None]:
         return {}
 
 
@@ -71,23 +72,25 @@ def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
     best, failing = highest(tables, min(most, tables[0].most_order), judge_order)
     if best is None:
         return None
-    order, table, found = best
-    verdict, said, _ = of_printed(found, order)
+    order, table, judged = best
+    verdict, explanation, _ = judgement_of_order(judged, order)
     wrong = None if failing is None else _wrong(failing, order + 1)
-    if found.nearest is None:
-        return NearbyOrder(order, verdict, said, wrong, ())
-    parts, times = parts_at(table, found.nearest), times_at(table, found.nearest)
-    return NearbyOrder(order, verdict, said, wrong, parts, times)
+    if judged.nearest is None:
+        return NearbyOrder(order, verdict, explanation, wrong, ())
+    parts, times = parts_at(table, judged.nearest), times_at(table, judged.nearest)
+    return NearbyOrder(order, verdict, explanation, wrong, parts, times)
 
 
 def highest(
     readings: Sequence[T], most: int, judge: Callable[[T, int], Judged]
 ) -> tuple[tuple[int, T, Judged] | None, Judged | None]:
-    """The highest order up to `most` that numbers near the printed ones have, with the reading and
-    what was judged of it, None where there is none; and what was judged of the next order."""
+    """Return the highest order up to `most` that numbers near the printed ones have, with the
+    reading and its judgement, None where there is none; and the judgement of the next order."""
     best: tuple[int, T, Judged] | None = None
     for order in range(1, most + 1):
         judged = [(reading, judge(reading, order)) for reading in readings]
+        # One reading of the numbers that fits is enough: which decimals are exact is a matter of
+        # reading.
         near = next((pair for pair in judged if is_near(pair[1])), None)
         if near is None:
             return best, judged[-1][1]
@@ -95,32 +98,32 @@ def highest(
     return best, None
 
 
-def is_near(found: Judged) -> bool:
-    """Whether it is the digits that leave what residues there are."""
-    return found.holds and (
-        found.digits is not False or (found.off is not None and found.off <= WITHIN)
+def is_near(judged: Judged) -> bool:
+    """Return True if the residuals are caused by the digits alone."""
+    return judged.holds and (
+        judged.digits is not False or (judged.off is not None and judged.off <= WITHIN)
     )
 
 
-def _wrong(found: Judged, order: int) -> Condition | None:
-    failing = found.failing
+def _wrong(judged: Judged, order: int) -> Condition | None:
+    failing = judged.failing
     if failing is None or failing.order > order:
         return None
-    return Condition(failing.name, failing.order, decimal(found.residue, _DIGITS), False)
+    return Condition(failing.name, failing.order, decimal(judged.residue, _DIGITS), False)
 
 
 def parts_at(
     table: PrintedTable, numbers: Mapping[str, Fraction]
 ) -> tuple[tuple[str, Fraction], ...]:
-    """The parts with these numbers, to some 90 digits."""
+    """Return the parts with these numbers, to some 90 digits."""
     sizes = _values(table.sizes, table.printed.units, numbers)
     return tuple((kind, size) for (kind, _), size in zip(table.parts, sizes, strict=True))
 
 
 def times_at(table: PrintedTable, numbers: Mapping[str, Fraction]) -> tuple[Fraction | None, ...]:
-    """The times of the parts with these numbers, None for the right one."""
+    """Return the times of the parts with these numbers, None for the right one."""
     values = _values(table.entries[len(table.sizes) :], table.printed.units, numbers)
-    times = dict(zip(table.judged, values, strict=True))
+    times = dict(zip(table.judged_parts, values, strict=True))
     return tuple(times.get(k) for k in range(len(table.parts)))
 
 
@@ -128,5 +131,5 @@ def _values(
     entries: Sequence[sympy.Expr], names: Iterable[str], numbers: Mapping[str, Fraction]
 ) -> list[Fraction]:
     with working_precision(BITS):
-        at = {name: rational_ball(numbers[name]) for name in names}
-        return [middle_and_radius(x)[0] for x in entries_at(entries, at, ball_of)]
+        balls = {name: rational_ball(numbers[name]) for name in names}
+        return [midpoint_and_radius(x)[0] for x in entries_at(entries, balls, ball_of)]

@@ -1,11 +1,11 @@
-"""Numbers as they are printed: which of them are rounded, to which digit, and what stands exactly.
+"""Numbers as they are printed: which of them are rounded, to which digit, and which are exact.
 
-A decimal that stands for an algebraic number is rounded; 0.5 is not. Of a short one it cannot be
-seen, so it is a matter of reading. First what has few digits is exact, by itself or beside others:
-0.037109375 among numbers of 17 digits has lost zeros at its end, or is 19/512. Then it is not.
-Quotients are exact, and yet some stand for irrational numbers, as 2365592473904/8146167614645 does:
-where a table does not hold with them they are taken to be known to 100/q² of what they are divided
-by, q: a continued fraction has 1/q², and some are less good.
+A decimal that stands for an algebraic number is rounded; 0.5 is not. A short one does not show
+which it is, so it is a matter of reading. First, numbers with few digits are exact, by themselves
+or among others: 0.037109375 among numbers of 17 digits has lost zeros at its end, or is 19/512.
+Then they are not. Quotients are exact, and yet some stand for irrational numbers, as
+2365592473904/8146167614645 does: where a table does not hold with them they are taken to be known
+to 100/q², q being the denominator: a continued fraction has 1/q², and some are less good.
 """
 
 import math
@@ -20,7 +20,7 @@ import sympy
 from verify.algebra.formula import parse, symbol
 from verify.arithmetic.exact import rational
 from verify.arithmetic.number import E
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import InputError
 
 FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
@@ -51,15 +51,15 @@ class PrintedNumbers:
 
     @cached_property
     def units(self) -> dict[str, Fraction]:
-        """To what each number that is rounded is known: one unit of its last digit, or half an ulp
-        where that is more and a program has printed it of a double."""
-        found = ((name, unit_known(text)) for name, text in self.numbers.items())
-        most = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
+        """The precision of each number that is rounded: one unit of its last digit, or half an ulp
+        where that is more and a program has printed a double."""
+        units_by_name = ((name, precision_unit(text)) for name, text in self.numbers.items())
+        threshold = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
         decimals = {
             name: unit
-            for name, unit in found
+            for name, unit in units_by_name
             if unit is not None
-            and (most is None or unit < most)
+            and (threshold is None or unit < threshold)
             and _digits(self.numbers[name]) > self.exact_digits
         }
         if self.exact_quotients:
@@ -70,24 +70,25 @@ class PrintedNumbers:
     @cached_property
     def values(self) -> dict[str, Fraction]:
         """The rounded numbers exactly as they are printed."""
-        found = {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
-        for name, x in found.items():
+        numbers = {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
+        for name, x in numbers.items():
             _check_size(x, name, self.numbers[name])
-        return found
+        return numbers
 
     @cached_property
     def last_digits(self) -> dict[str, Fraction]:
-        """One unit of the last digit that each of them has; of a quotient to what it is known."""
+        """One unit of the last digit of each of them; of a quotient its precision."""
         return {name: unit_of(self.numbers[name]) or unit for name, unit in self.units.items()}
 
     @cached_property
     def digits(self) -> int:
-        """Decimals after the point of the number that has fewest."""
+        """The number of decimals after the point of the number that has fewest."""
         return min(places_of(unit) for unit in self.last_digits.values())
 
     @cached_property
     def slack(self) -> int:
-        """Units within which a number is right: many of quotients, which promise no digits."""
+        """The number of units within which a number is right: many for quotients, which promise no
+        digits."""
         quotients = (unit_of_quotient(self.numbers[name]) for name in self.units)
         return _OF_QUOTIENTS if any(quotients) else 1
 
@@ -100,34 +101,38 @@ class PrintedNumbers:
         }
 
     def entry(self, text: str, source: str = "sizes") -> sympy.Expr:
-        """A formula in the numbers, in the symbols of those that are rounded."""
-        found = parse(text, self.numbers, source=source)
-        with limited(source, text, "to expand it"):
-            found = sympy.expand(found.subs(self._exact)) if found.free_symbols else found
-        if found.is_Rational:
-            _check_size(Fraction(int(found.p), int(found.q)), source, text)
-        return found
+        """Return a formula in the numbers, in the symbols of those that are rounded."""
+        expression = parse(text, self.numbers, source=source)
+        with limit_effort(source, text, "to expand it"):
+            expression = (
+                sympy.expand(expression.subs(self._exact))
+                if expression.free_symbols
+                else expression
+            )
+        if expression.is_Rational:
+            _check_size(Fraction(int(expression.p), int(expression.q)), source, text)
+        return expression
 
     def at_print(self, entry: sympy.Expr) -> sympy.Expr:
-        """An entry with the rounded numbers as they are printed."""
+        """Return an entry with the rounded numbers as they are printed."""
         values = self.values.items()
-        at = {symbol(n): sympy.Rational(x.numerator, x.denominator) for n, x in values}
-        return entry.subs(at)
+        substitutions = {symbol(n): sympy.Rational(x.numerator, x.denominator) for n, x in values}
+        return entry.subs(substitutions)
 
     @property
     def closely(self) -> "PrintedNumbers":
-        """With almost all of them rounded: then they must be so to half a unit."""
+        """The same with almost all of them rounded: then they must be so to half a unit."""
         return replace(
             self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False, tentative=True
         )
 
     def with_number(self, name: str, text: str) -> "PrintedNumbers":
-        """The same with one of them printed so, to see whether it holds."""
+        """Return the same with one of them printed so, to see whether it holds."""
         return replace(self, numbers={**self.numbers, name: text}, tentative=True)
 
     def of_a_method(self) -> list["PrintedNumbers"]:
-        """As those of a method are read that stands alone: what has few digits is exact, and long
-        quotients are where it holds so."""
+        """Return the readings for the numbers of a single method: those with few digits are exact,
+        and long quotients are where the method holds so."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
         first = replace(
             self, exact_up_to=FIRST, exact_digits=max(FIRST, longest - _FEWER), tentative=True
@@ -136,7 +141,7 @@ class PrintedNumbers:
         return [first] if first.units == last.units else [first, last]
 
     def readings(self) -> list["PrintedNumbers"]:
-        """The same as they may be read: with more of the decimals exact first."""
+        """Return the same as they may be read: with more of the decimals exact first."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
         first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
         last = replace(self, exact_up_to=LAST, exact_quotients=False)
@@ -144,25 +149,26 @@ class PrintedNumbers:
 
 
 def _check_size(x: Fraction, name: str, text: str) -> None:
-    """InputError for a number that is beyond all coefficients, and would fill memory in powers."""
+    """Raise InputError for a number that is beyond all coefficients, and would fill memory in
+    powers."""
     if abs(x) > LARGEST:
         raise InputError(name, text, f"is beyond {LARGEST:,}, which no coefficient is")
 
 
 def unit_of(text: str) -> Fraction | None:
-    """One unit of the last digit of a decimal with a point; None for anything else.
+    """Return one unit of the last digit of a decimal with a point; None for anything else.
 
     >>> unit_of("-1.250"), unit_of("3/4")
     (Fraction(1, 1000), None)
     """
-    found = _DECIMAL.fullmatch(text.replace(" ", ""))
-    if found is None or not found[1] + found[2]:
+    match = _DECIMAL.fullmatch(text.replace(" ", ""))
+    if match is None or not match[1] + match[2]:
         return None
-    return Fraction(10) ** (int(found[3] or 0) - len(found[2]))
+    return Fraction(10) ** (int(match[3] or 0) - len(match[2]))
 
 
 def places_of(unit: Fraction) -> int:
-    """Decimal places of a number that is known to that unit.
+    """Return the decimal places of a number that is known to that unit.
 
     >>> places_of(Fraction(1, 1000)), places_of(Fraction(1, 800)), places_of(Fraction(1))
     (3, 2, 0)
@@ -173,12 +179,13 @@ def places_of(unit: Fraction) -> int:
     return places
 
 
-def unit_known(text: str) -> Fraction | None:
-    """As `unit_of`; but of what a program has printed of a double, as 0.054293734116568765, at
-    least half an ulp, to which such digits are known."""
+def precision_unit(text: str) -> Fraction | None:
+    """Return `unit_of`; but for a decimal that a program has printed from a double, as
+    0.054293734116568765, at least half an ulp, to which such digits are known."""
     unit = unit_of(text)
     if unit is None or _digits(text) not in _OF_DOUBLES:
         return unit
+    # If the decimal is the shortest text of a double, a program has printed it.
     x = float(text.replace(" ", ""))
     if rational(repr(x)) != rational(text.replace(" ", "")):
         return unit
@@ -186,19 +193,20 @@ def unit_known(text: str) -> Fraction | None:
 
 
 def _digits(text: str) -> int:
-    """How many significant digits a decimal has."""
+    """Return the number of significant digits of a decimal."""
     mantissa = text.lower().replace(" ", "").lstrip("+-").partition("e")[0]
     return len(mantissa.replace(".", "").lstrip("0"))
 
 
 def unit_of_quotient(text: str) -> Fraction | None:
-    """To what a long quotient is known that stands for another number; None for anything else."""
-    found = _QUOTIENT.fullmatch(text.replace(" ", ""))
-    return Fraction(100, int(found[1]) ** 2) if found and int(found[1]) >= _LONG else None
+    """Return the precision of a long quotient that stands for another number; None for anything
+    else."""
+    match = _QUOTIENT.fullmatch(text.replace(" ", ""))
+    return Fraction(100, int(match[1]) ** 2) if match and int(match[1]) >= _LONG else None
 
 
 def rounded_to(x: Fraction, unit: Fraction) -> str:
-    """A number to the place of that unit.
+    """Return a number to the place of that unit.
 
     >>> rounded_to(Fraction(-2, 3), Fraction(1, 1000))
     '−0.667'
@@ -214,32 +222,34 @@ def rounded_to(x: Fraction, unit: Fraction) -> str:
 
 
 def power(x: E, n: int) -> E:
-    """xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
+    """Return xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
     result = x
     for _ in range(n - 1):
         result = result * x
     return result
 
 
-def evaluated(expression: sympy.Expr, at: Mapping[str, E], number: Callable[[sympy.Expr], E]) -> E:
-    """A polynomial in the numbers, at `at`; `number` makes what its coefficients are there."""
+def evaluate(
+    expression: sympy.Expr, values: Mapping[str, E], number: Callable[[sympy.Expr], E]
+) -> E:
+    """Return a polynomial in the numbers, at `values`; `number` converts its coefficients."""
     total: E | None = None
     for powers, coefficient in _terms(expression):
         term = number(coefficient)
         for name, n in powers:
-            term = term * power(at[name], n)
+            term = term * power(values[name], n)
         total = term if total is None else total + term
     return number(sympy.S.Zero) if total is None else total
 
 
 @lru_cache(maxsize=4096)
 def _terms(expression: sympy.Expr) -> tuple[tuple[tuple[tuple[str, int], ...], sympy.Expr], ...]:
-    """((number, exponent), …) and the coefficient, of each term."""
+    """Return ((number, exponent), …) and the coefficient, of each term."""
     if not expression.free_symbols:
         return (((), expression),)
     names = sorted(expression.free_symbols, key=lambda x: x.name)
     try:
-        with limited("entry", str(expression), "to expand it"):
+        with limit_effort("entry", str(expression), "to expand it"):
             polynomial = sympy.Poly(expression, *names)
     except sympy.PolynomialError:
         problem = "is no polynomial in the numbers that are rounded; give it as one of `numbers`"
@@ -251,7 +261,7 @@ def _terms(expression: sympy.Expr) -> tuple[tuple[tuple[tuple[str, int], ...], s
 
 
 def entries_at(
-    entries: Sequence[sympy.Expr], at: Mapping[str, E], number: Callable[[sympy.Expr], E]
+    entries: Sequence[sympy.Expr], values: Mapping[str, E], number: Callable[[sympy.Expr], E]
 ) -> list[E]:
-    """All of them."""
-    return [evaluated(entry, at, number) for entry in entries]
+    """Return the values of all entries."""
+    return [evaluate(entry, values, number) for entry in entries]

@@ -1,4 +1,4 @@
-"""What is said of a printed table's conditions and digits, from what was found of them."""
+"""Sentences on a printed table's conditions and digits, from their judgement."""
 
 from fractions import Fraction
 
@@ -10,160 +10,175 @@ from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]
 Judgement = tuple[Verdict, Prose, Details]
-_MOST = 8  # numbers of which each would explain what is found
+_MOST = 8  # numbers, each of which alone would explain the residuals
 
 
-def of_printed(found: Judged, claimed: int) -> Judgement:
-    """Whether the order can be had within ten units of the digits."""
-    if found.verdict is Verdict.REFUTED:
-        return Verdict.REFUTED, read_prose(_excluded(found, claimed)), _moved(found)
-    return found.verdict, read_prose(_held(found)), ()
+def judgement_of_order(judged: Judged, claimed: int) -> Judgement:
+    """Return the judgement that the order can be had within ten units of the digits."""
+    if judged.verdict is Verdict.REFUTED:
+        return (
+            Verdict.REFUTED,
+            read_prose(_text_of_excluded(judged, claimed)),
+            _rows_of_moved(judged),
+        )
+    return judged.verdict, read_prose(_text_of_holding(judged)), ()
 
 
-def of_conditions(found: Judged, what: str) -> Judgement:
-    """The same of conditions that are of no order, such as `what`: "symplectic"."""
-    if found.verdict is not Verdict.REFUTED:
-        return found.verdict, read_prose(_held(found)), ()
-    failing = found.failing
+def judgement_of_conditions(judged: Judged, what: str) -> Judgement:
+    """Return the same for conditions that have no order, such as `what`: "symplectic"."""
+    if judged.verdict is not Verdict.REFUTED:
+        return judged.verdict, read_prose(_text_of_holding(judged)), ()
+    failing = judged.failing
     if failing is None:
-        return Verdict.REFUTED, read_prose(_excluded(found, 1)), _moved(found)
-    rounded = _none_near(found)
-    said = f"not {what}: `{failing.name}` fails by {_short(found.residue)}{rounded}{_alone(found)}"
-    if not found.checked:  # no equation: it is said of the table's form
-        said = f"not {what}: {failing.name}"
-    return Verdict.REFUTED, read_prose(said), _moved(found)
+        return Verdict.REFUTED, read_prose(_text_of_excluded(judged, 1)), _rows_of_moved(judged)
+    notes = f"{_none_near(judged)}{_alone(judged)}"
+    sentence = f"not {what}: `{failing.name}` fails by {_short(judged.residue)}{notes}"
+    if not judged.checked:  # no equation: it is said of the table's form
+        sentence = f"not {what}: {failing.name}"
+    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judged)
 
 
-def _held(found: Judged) -> str:
-    conditions = count(found.checked, "condition")
-    if found.checked == 1 and found.verdict is Verdict.PROVED:
+def _text_of_holding(judged: Judged) -> str:
+    conditions = count(judged.checked, "condition")
+    if judged.checked == 1 and judged.verdict is Verdict.PROVED:
         return "its one condition holds exactly"
-    if found.verdict is Verdict.PROVED:
-        decimals = found.read is not None and found.read.exact_up_to
+    if judged.verdict is Verdict.PROVED:
+        decimals = judged.read is not None and judged.read.exact_up_to
         why = "" if decimals else ", for its coefficients are no decimals"
         return f"all {conditions} hold exactly{why}"
-    if found.verdict is Verdict.UNDECIDED:
+    if judged.verdict is Verdict.UNDECIDED:
         return f"whether all {conditions} hold exactly is not decided"
-    assert found.read is not None  # noqa: S101 - of rounded numbers it is known
-    enclosed = found.verdict is Verdict.ENCLOSED  # then all are shown to hold there
-    if found.off is not None and (enclosed or found.digits is not False):
-        rest = "" if found.shown in (None, found.checked) else (
-            f"; of these {found.shown} are shown to hold there, and the others, which depend on "
+    assert judged.read is not None  # noqa: S101 - of rounded numbers it is known
+    is_enclosed = judged.verdict is Verdict.ENCLOSED  # then all are shown to hold there
+    if judged.off is not None and (is_enclosed or judged.digits is not False):
+        shown_note = "" if judged.shown in (None, judged.checked) else (
+            f"; of these {judged.shown} are shown to hold there, and the others, which depend on "
             "them, to 60 digits"
         )  # fmt: skip
-        if found.off < AS_PRINTED:
-            return f"all {conditions} hold with the numbers as they are printed{rest}"
+        # The printed numbers solve the conditions themselves, to all digits of the balls.
+        if judged.off < AS_PRINTED:
+            return f"all {conditions} hold with the numbers as they are printed{shown_note}"
         return (
-            f"exact coefficients that satisfy all {conditions} lie within {_far(found)} of those "
-            f"printed to {found.read.digits} decimals, whose residues are up to "
-            f"{_short(found.largest)}{rest}"
+            f"exact coefficients that satisfy all {conditions} lie within {_far(judged)} of those "
+            f"printed to {judged.read.digits} decimals, whose residues are up to "
+            f"{_short(judged.largest)}{shown_note}"
         )
-    small = "as small as the digits make them" if found.digits is None else "of wrong digits"
+    small = "as small as the digits make them" if judged.digits is None else "of wrong digits"
     near = "that exact ones exist nearby is not shown"
-    if found.off is not None:
-        near = f"the nearest exact ones are up to {_far(found)} away"
-    return f"all {conditions} hold but for residues up to {_short(found.largest)}, {small}; {near}"
+    if judged.off is not None:
+        near = f"the nearest exact ones are up to {_far(judged)} away"
+    return f"all {conditions} hold but for residues up to {_short(judged.largest)}, {small}; {near}"
 
 
-def _excluded(found: Judged, claimed: int) -> str:
-    if found.order >= claimed:  # each condition alone could hold; together they cannot
-        far = f"; the nearest exact ones are {_far(found)} away" if found.off else ""
+def _text_of_excluded(judged: Judged, claimed: int) -> str:
+    if judged.order >= claimed:  # each condition alone could hold; together they cannot
+        far = f"; the nearest exact ones are {_far(judged)} away" if judged.off else ""
         return (
             f"no coefficients within {WITHIN} units of the last printed digits satisfy all "
-            f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
+            f"{judged.checked} conditions together{far}; residues are up to "
+            f"{_short(judged.largest)}"
         )
-    assert found.failing is not None  # noqa: S101 - it is what excludes more
+    assert judged.failing is not None  # noqa: S101 - it is what excludes more
     but = ""
-    if found.lower is not None:
-        lower, by = found.lower[0], _short(found.lower[1])
+    if judged.lower is not None:
+        lower, by = judged.lower[0], _short(judged.lower[1])
         but = f", but for wrong digits (of `h^{lower.order}`, `{lower.name}` fails by {by})"
-    said = (
-        f"its order is {found.order}{but}: of `h^{found.failing.order}`, `{found.failing.name}` "
-        f"fails by {_short(found.residue)}{_none_near(found)}"
+    sentence = (
+        f"its order is {judged.order}{but}: of `h^{judged.failing.order}`, `{judged.failing.name}` "
+        f"fails by {_short(judged.residue)}{_none_near(judged)}"
     )
-    return said + _alone(found)
+    return sentence + _alone(judged)
 
 
-def _none_near(found: Judged) -> str:
-    if found.read is None or not found.read.units:
+def _none_near(judged: Judged) -> str:
+    if judged.read is None or not judged.read.units:
         return ""
     return f", and no coefficients within {WITHIN} units of the last digits satisfy it"
 
 
-def _alone(found: Judged) -> str:
-    """The one misprinted number that explains what is found; or that each of several does."""
+def _alone(judged: Judged) -> str:
+    """Return the one misprinted number that explains the residuals; or that each of several
+    does."""
     m, several = (
-        found.misprint,
-        [f"`{m.name}` = `{mended_text(found, m)}`" for m in found.misprints],
+        judged.misprint,
+        [f"`{m.name}` = `{mended_text(judged, m)}`" for m in judged.misprints],
     )
     if m is not None:
-        printed = f"`{m.name}`, printed `{m.printed.strip()}`, would be `{mended_text(found, m)}`"
-        return f". One number alone explains it: {printed}"
-    listed = ", ".join(several[:_MOST]) + (", …" if len(several) > _MOST else "")
-    said = f"Each of {len(several)} numbers alone would explain it, and none is singled out"
-    return f". {said}: {listed}" if several else ""
+        explanation = (
+            f"`{m.name}`, printed `{m.printed.strip()}`, would be `{mended_text(judged, m)}`"
+        )
+        return f". One number alone explains it: {explanation}"
+    candidates = ", ".join(several[:_MOST]) + (", …" if len(several) > _MOST else "")
+    sentence = f"Each of {len(several)} numbers alone would explain it, and none is singled out"
+    return f". {sentence}: {candidates}" if several else ""
 
 
-def mended_text(found: Judged, m: Misprint) -> str:
-    """What would be printed in its place, with as many digits."""
-    unit = None if found.read is None else found.read.last_digits.get(m.name)
+def mended_text(judged: Judged, m: Misprint) -> str:
+    """Return the text that would be printed in its place, with as many digits."""
+    unit = None if judged.read is None else judged.read.last_digits.get(m.name)
     return str(m.value) if unit is None else rounded_to(m.value, unit)
 
 
-def of_digits(found: Judged) -> Judgement:
-    """Whether all digits are right to one unit of the last."""
-    if found.digits is None and found.off is not None and found.off < AS_PRINTED:
-        said = (
+def judgement_of_digits(judged: Judged) -> Judgement:
+    """Return the judgement that all digits are right to one unit of the last."""
+    if judged.digits is None and judged.off is not None and judged.off < AS_PRINTED:
+        sentence = (
             "the conditions hold with the numbers as they are printed, and leave some of them free"
         )
-        return Verdict.UNDECIDED, prose(said), ()
-    if found.digits is None:
-        said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
-        return Verdict.UNDECIDED, prose(said), ()
-    if found.off is None:
-        said = "no coefficients within one unit of the last printed digits satisfy all conditions"
-        told = read_prose(f"{said}; the nearest are not known{_alone(found)}")
-        return Verdict.REFUTED, told, ()
-    if found.digits:
-        said = f"exact coefficients lie within {_far(found)} of the printed ones"
-        shown = Verdict.ENCLOSED if found.verdict is Verdict.ENCLOSED else Verdict.MEASURED
-        return shown, read_prose(said), ()
-    said = (
+        return Verdict.UNDECIDED, prose(sentence), ()
+    if judged.digits is None:
+        sentence = (
+            "the conditions do not tell all of its digits, or exact ones are not shown to exist"
+        )
+        return Verdict.UNDECIDED, prose(sentence), ()
+    if judged.off is None:
+        sentence = (
+            "no coefficients within one unit of the last printed digits satisfy all conditions"
+        )
+        message = read_prose(f"{sentence}; the nearest are not known{_alone(judged)}")
+        return Verdict.REFUTED, message, ()
+    if judged.digits:
+        sentence = f"exact coefficients lie within {_far(judged)} of the printed ones"
+        verdict = Verdict.ENCLOSED if judged.verdict is Verdict.ENCLOSED else Verdict.MEASURED
+        return verdict, read_prose(sentence), ()
+    sentence = (
         "no coefficients within one unit of the last printed digits satisfy all conditions; the "
-        f"nearest that do are up to {_far(found)} away{_alone(found)}"
+        f"nearest that do are up to {_far(judged)} away{_alone(judged)}"
     )
-    return Verdict.REFUTED, read_prose(said), _moved(found)
+    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judged)
 
 
-def _moved(found: Judged) -> Details:
-    """The numbers whose last digits are off by more than a unit, and exact ones with two more."""
-    if found.nearest is None or found.read is None or not found.read.units:
+def _rows_of_moved(judged: Judged) -> Details:
+    """Return the numbers whose last digits are off by more than a unit, and exact ones with two
+    more digits."""
+    if judged.nearest is None or judged.read is None or not judged.read.units:
         return ()
-    numbers: PrintedNumbers = found.read
+    numbers: PrintedNumbers = judged.read
     rows = [("number", "printed", "nearest exact", f"off, in {_units(numbers)}")]
-    for name, exact in found.nearest.items():
+    for name, exact in judged.nearest.items():
         off = (numbers.values[name] - exact) / numbers.units[name]
         if abs(off) > 1:
-            printed = numbers.numbers[name].strip()
-            shown = rounded_to(exact, numbers.last_digits[name] / 100)
-            rows.append((name, printed, shown, decimal(off, 3)))
+            printed_text = numbers.numbers[name].strip()
+            exact_text = rounded_to(exact, numbers.last_digits[name] / 100)
+            rows.append((name, printed_text, exact_text, decimal(off, 3)))
     return tuple(rows) if len(rows) > 1 else ()
 
 
-def _far(found: Judged) -> str:
-    """How far the nearest exact coefficients are: in units, or, where it is far, absolutely."""
-    assert found.off is not None  # noqa: S101 - the callers have one
-    assert found.nearest is not None  # noqa: S101 - and so its numbers
-    assert found.read is not None  # noqa: S101 - which are rounded
-    if found.off < 100:
-        return f"`{float(found.off):.2g}` {_units(found.read)}"
-    values = found.read.values
-    most = max(abs(values[n] - x) for n, x in found.nearest.items())
-    return f"`{float(most):.1e}`"
+def _far(judged: Judged) -> str:
+    """Return how far the nearest exact coefficients are: in units, or, where it is far,
+    absolutely."""
+    assert judged.off is not None  # noqa: S101 - the callers have one
+    assert judged.nearest is not None  # noqa: S101 - and so its numbers
+    assert judged.read is not None  # noqa: S101 - which are rounded
+    if judged.off < 100:
+        return f"`{float(judged.off):.2g}` {_units(judged.read)}"
+    values = judged.read.values
+    largest = max(abs(values[n] - x) for n, x in judged.nearest.items())
+    return f"`{float(largest):.1e}`"
 
 
 def _units(read: PrintedNumbers) -> str:
-    """In what it is told how far a number is off."""
+    """Return the name of the unit in which a distance is stated."""
     of_doubles = read.units != read.last_digits
     return f"units of the last digit{' (half an ulp where that is more)' if of_doubles else ''}"
 

@@ -19,47 +19,49 @@ Matrix = list[list[Series]]
 
 
 class DefectSeries(Generic[F]):
-    """The coefficients of h⁰, h¹, … of z', S and ΔJ, made as far as they are looked at.
+    """The coefficients of h⁰, h¹, … of z', S and ΔJ, computed as far as they are read.
 
-    `made(most)`: z' up to h^most at least, over the ring of the flow that comes with it.
+    `expand(most)`: z' up to h^most at least, over the ring of the flow that comes with it.
     """
 
     def __init__(
-        self, made: Callable[[int], tuple[F, State]], first: int, flow_up_to: int = -1
+        self, expand: Callable[[int], tuple[F, State]], first: int, flow_up_to: int = -1
     ) -> None:
-        """`first`: so many are made at once. `flow_up_to`: so far they are the flow's own."""
-        self._make, self._first, self._flow_up_to = made, first, flow_up_to
-        self._made: tuple[F, State] | None = None
+        """`first`: so many coefficients are computed at once. `flow_up_to`: so far they are the
+        flow's own."""
+        self._expand, self._first, self._flow_up_to = expand, first, flow_up_to
+        self._expansion: tuple[F, State] | None = None
         self._gradients: list[list[tuple[Poly, ...]]] = []
         self._forms: dict[int, TwoForm] = {}
 
     @property
     def flow(self) -> F:
-        """H's field, in the ring of the coefficients."""
-        return self._reached(0)[0]
+        """The field of H, in the ring of the coefficients."""
+        return self._expand_to(0)[0]
 
-    def _reached(self, n: int) -> tuple[F, State]:
-        if self._made is None or self._made[1][0].most < n:
-            self._made = self._make(self._first if n <= self._first else n + 1)
+    def _expand_to(self, n: int) -> tuple[F, State]:
+        if self._expansion is None or self._expansion[1][0].most < n:
+            self._expansion = self._expand(self._first if n <= self._first else n + 1)
             self._gradients, self._forms = [], {}
-        return self._made
+        return self._expansion
 
     def coefficient(self, n: int) -> tuple[Poly, ...]:
-        """Those of hⁿ in z'."""
-        return tuple(series.coefficients[n] for series in self._reached(n)[1])
+        """Return the coefficients of hⁿ in z'."""
+        return tuple(series.coefficients[n] for series in self._expand_to(n)[1])
 
     def differences(self, n: int) -> tuple[Any, list[Poly]]:
-        """By what those of hⁿ in z' differ from the exact flow's, with their ring."""
-        flow, _ = self._reached(n)
+        """Return the differences of the coefficients of hⁿ in z' from the exact flow's, with their
+        ring."""
+        flow, _ = self._expand_to(n)
         pairs = zip(self.coefficient(n), flow.term(n), strict=True)
         return flow.ring, [flow.ring.reduce(x - y) for x, y in pairs]
 
     def agrees(
         self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
     ) -> tuple[bool | None, Any, Poly]:
-        """Whether those of hⁿ in z' are the exact flow's, and what differs, or may, with its ring;
-        `nearly`: which differences from a term are none."""
-        flow, _ = self._reached(n)
+        """Return True if the coefficients of hⁿ in z' are the exact flow's, and the difference, or
+        possible one, with its ring; `nearly`: says which differences from a term count as none."""
+        flow, _ = self._expand_to(n)
         for x, gap in zip(self.coefficient(n), self.differences(n)[1], strict=True):
             if nearly is not None and nearly(gap, x):
                 continue
@@ -69,16 +71,16 @@ class DefectSeries(Generic[F]):
         return True, flow.ring, flow.ring.zero
 
     def _gradient(self, n: int) -> list[tuple[Poly, ...]]:
-        """The coefficient of hⁿ in J, by rows."""
-        flow, _ = self._reached(n)
+        """Return the coefficient of hⁿ in J, by rows."""
+        flow, _ = self._expand_to(n)
         while (k := len(self._gradients)) <= n:
-            own = flow.gradients(k) if k <= self._flow_up_to else None
-            self._gradients.append(list(own or map(flow.gradient, self.coefficient(k))))
+            gradients = flow.gradients(k) if k <= self._flow_up_to else None
+            self._gradients.append(list(gradients or map(flow.gradient, self.coefficient(k))))
         return self._gradients[n]
 
     def form(self, m: int) -> TwoForm:
-        """The coefficient of hᵐ in S."""
-        flow, _ = self._reached(m)
+        """Return the coefficient of hᵐ in S."""
+        flow, _ = self._expand_to(m)
         if m not in self._forms:
             ring, n = flow.ring, flow.degrees
             rows = [self._gradient(k) for k in range(m + 1)]
@@ -87,27 +89,30 @@ class DefectSeries(Generic[F]):
                 total = -ring.one if m == 0 and b == a + n else ring.zero
                 for k in range(m + 1):
                     for i in range(n):
+                        # The Cauchy product of JᵀΩJ = Σ dp_i'∧dq_i', of which Ω is subtracted at
+                        # h⁰.
                         total += wedge(rows[k][i], rows[m - k][n + i], a, b)
                 return total
 
-            self._forms[m] = TwoForm.of(ring, flow.names, entry)
+            self._forms[m] = TwoForm.from_entries(ring, flow.names, entry)
         return self._forms[m]
 
     def volume(self, n: int) -> tuple[Any, Poly]:
-        """The coefficient of hⁿ in ΔJ, with its ring."""
+        """Return the coefficient of hⁿ in ΔJ, with its ring."""
         if self.flow.degrees == 1:
-            return self.flow.ring, self.form(n).at(0, 1)
+            return self.flow.ring, self.form(n).entry(0, 1)
         return self.flow.ring, self.delta_j(n)[n]
 
     def delta_j(self, most: int) -> tuple[Poly, ...]:
-        """The coefficients of h⁰ … h^most in ΔJ."""
-        flow, _ = self._reached(most)
+        """Return the coefficients of h⁰ … h^most in ΔJ."""
+        flow, _ = self._expand_to(most)
         forms = [self.form(m) for m in range(most + 1)]
         ring, size = flow.ring, len(flow.names)
         matrix = [[_of_inverse(ring, forms, a, b, flow.degrees) for b in range(size)]
                   for a in range(size)]  # fmt: skip
+        # N^k begins with h^(k·begins), so that few powers reach up to h^most.
         begins = next((m for m, form in enumerate(forms) if form.entries), most + 1)
-        total = Series.of(ring, [], most)
+        total = Series.from_coefficients(ring, [], most)
         product: Matrix | None = None
         for k in range(1, most // max(begins, 1) + 1):
             product = matrix if product is None else _times(product, matrix)
@@ -115,27 +120,31 @@ class DefectSeries(Generic[F]):
             for a in range(1, size):
                 trace += product[a][a]
             total += trace.times(Fraction((-1) ** (k + 1), 2 * k))
-        result, power = Series.of(ring, [], most), Series.of(ring, [ring.one], most)
+        result, power = (
+            Series.from_coefficients(ring, [], most),
+            Series.from_coefficients(ring, [ring.one], most),
+        )
         for k in range(1, most // max(begins, 1) + 1):
             power = (power * total).times(Fraction(1, k))
             result += power
         return result.coefficients
 
 
-def of_flow(flow: F, after: Sequence[Sequence[Poly]]) -> DefectSeries[F]:
-    """Of a map by the coefficients of h⁰, h¹, … in each coordinate's new value."""
+def defect_series_of(flow: F, after: Sequence[Sequence[Poly]]) -> DefectSeries[F]:
+    """Return the series of a map from the coefficients of h⁰, h¹, … in each coordinate's new
+    value."""
     state = tuple(Series(flow.ring, tuple(x)) for x in after)
     return DefectSeries(lambda _: (flow, state), state[0].most)
 
 
 def _of_inverse(ring: CoefficientRing, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
-    """The entry of Ω⁻¹S."""
+    """Return the entry of Ω⁻¹S."""
     row, sign = (a + n, -1) if a < n else (a - n, 1)
-    return Series(ring, tuple(form.at(row, b) * sign for form in forms))
+    return Series(ring, tuple(form.entry(row, b) * sign for form in forms))
 
 
 def _times(x: Matrix, y: Matrix) -> Matrix:
-    size, found = range(len(x)), []
+    size, rows = range(len(x)), []
     for a in size:
         row = []
         for b in size:
@@ -143,5 +152,5 @@ def _times(x: Matrix, y: Matrix) -> Matrix:
             for c in size[1:]:
                 total += x[a][c] * y[c][b]
             row.append(total)
-        found.append(row)
-    return found
+        rows.append(row)
+    return rows

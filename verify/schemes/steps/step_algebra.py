@@ -1,4 +1,4 @@
-"""What a step is made of, whatever its values are: series in h, closed forms, a kernel's program.
+"""The operations of a step, for any values: series in h, closed forms, a kernel's program.
 
 A scheme's step is written once, in these few operations, and read with any of them.
 """
@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, Protocol, TypeAlias, TypeVar
 
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, at_moved
+from verify.algebra.series.power_series import Series, expand_at
 from verify.hamiltonians.canonical_field import Flow
 
 V = TypeVar("V")
@@ -19,57 +19,58 @@ Number = Fraction | Poly  # a coefficient of a scheme, in the ring of H's field 
 
 
 class StepAlgebra(Protocol[V]):
-    """Changes of z are values `V`, each O(h); so many as there are names in the flow."""
+    """Operations on changes of z, which are values `V`, each O(h); as many as there are names in
+    the flow."""
 
     @property
     def nothing(self) -> V:
-        """0."""
+        """The change 0."""
         raise NotImplementedError
 
     @property
     def size(self) -> int:
-        """Of z: so many names."""
+        """The number of coordinates in z."""
 
     def along_flow(self, eta: int) -> list[V]:
-        """Σ hⁿ/n! Xⁿz, n = 1 … η."""
+        """Return Σ hⁿ/n! Xⁿz, n = 1 … η."""
 
     def slopes(self, changes: Sequence[V], clock: Number, places: Sequence[int]) -> list[V]:
-        """Those components of f at z + changes, and where H depends on it at t + clock h."""
+        """Return those components of f at z + changes, and where H depends on it at t + clock h."""
 
-    def moved(self, change: V, weights: Sequence[Number], slopes: Sequence[V]) -> V:
-        """change + h Σ weights · slopes."""
+    def move(self, change: V, weights: Sequence[Number], slopes: Sequence[V]) -> V:
+        """Return change + h Σ weights · slopes."""
 
-    def sheared(
+    def shear(
         self, changes: Sequence[V], size: Number, clock: Number, places: Sequence[int]
     ) -> list[V]:
-        """changes + h size f(z + changes) in these places: f is asked for nowhere else."""
+        """Return changes + h size f(z + changes) in these places: f is evaluated for no others."""
         result = list(changes)
         slopes = self.slopes(changes, clock, places)
         for place, slope in zip(places, slopes, strict=True):
-            result[place] = self.moved(result[place], [size], [slope])
+            result[place] = self.move(result[place], [size], [slope])
         return result
 
-    def between(self, x: V, y: V, share: Fraction) -> V:
-        """x + share · y."""
+    def add_share(self, x: V, y: V, share: Fraction) -> V:
+        """Return x + share · y."""
 
-    def solved(
+    def solve(
         self, count: int, right: "Callable[[StepAlgebra[V], Sequence[V]], list[V]]"
     ) -> list[V]:
-        """Z with Z = right(Z), so many of them, whose right side is O(h); Z[k] is a change of the
-        coordinate number k modulo that of coordinates."""
+        """Return Z with Z = right(Z), of `count` components, whose right side is O(h); Z[k] is a
+        change of the coordinate number k modulo the number of coordinates."""
 
 
 class SeriesAlgebra(StepAlgebra[Series]):
-    """Values are series up to h^most over the ring of a flow."""
+    """The step algebra of series up to h^most over the ring of a flow."""
 
     def __init__(self, flow: Flow, most: int, recent: "Recent | None" = None) -> None:
-        """`recent`: slopes that were made, which are asked for again where an iteration ends."""
+        """`recent`: slopes that were computed, which are read again where an iteration ends."""
         self.flow, self.most = flow, most
         self._recent: Recent = deque(maxlen=_RECENT) if recent is None else recent
 
     @property
     def nothing(self) -> Series:
-        return Series.of(self.flow.ring, [], self.most)
+        return Series.from_coefficients(self.flow.ring, [], self.most)
 
     @property
     def size(self) -> int:
@@ -79,18 +80,22 @@ class SeriesAlgebra(StepAlgebra[Series]):
         flow, ring = self.flow, self.flow.ring
         terms = [flow.term(n) for n in range(1, min(eta, self.most) + 1)]
         each = zip(*terms, strict=True) if terms else [()] * len(flow.names)
-        return [Series.of(ring, [ring.zero, *own], self.most) for own in each]
+        return [
+            Series.from_coefficients(ring, [ring.zero, *coefficients], self.most)
+            for coefficients in each
+        ]
 
     def slopes(
         self, changes: Sequence[Series], clock: Number, places: Sequence[int]
     ) -> list[Series]:
-        reach = max(self.most - 1, 0)  # as far as `moved` takes them, times h
+        # Slopes are multiplied by h, so that one power less is enough.
+        reach = max(self.most - 1, 0)  # as far as `move` takes them, times h
         key = reach, clock, places, [x.coefficients[: reach + 1] for x in changes]
-        made = next((made for asked, made in self._recent if asked == key), None)
-        if made is None:
-            made = self._slopes(changes, clock, places, reach)
-            self._recent.append((key, made))
-        return made
+        values = next((values for recent_key, values in self._recent if recent_key == key), None)
+        if values is None:
+            values = self._slopes(changes, clock, places, reach)
+            self._recent.append((key, values))
+        return values
 
     def _slopes(
         self, changes: Sequence[Series], clock: Number, places: Sequence[int], reach: int
@@ -100,30 +105,31 @@ class SeriesAlgebra(StepAlgebra[Series]):
         moves = [(name, x) for name, x in each if not x.vanishes]
         if flow.timed and clock != 0:
             late = ring.constant(clock) if isinstance(clock, Fraction) else clock
-            moves.append(("t", Series.of(ring, [ring.zero, late], self.most)))
-        return [at_moved(flow.derivatives[k], moves, reach) for k in places]
+            moves.append(("t", Series.from_coefficients(ring, [ring.zero, late], self.most)))
+        return [expand_at(flow.derivatives[k], moves, reach) for k in places]
 
-    def moved(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
+    def move(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
         total = self._cut(change)
         for w, slope in zip(weights, slopes, strict=True):
-            total += self._cut(slope).times(w).shifted(1)
+            total += self._cut(slope).times(w).shift(1)
         return total
 
-    def between(self, x: Series, y: Series, share: Fraction) -> Series:
+    def add_share(self, x: Series, y: Series, share: Fraction) -> Series:
         return self._cut(x) + self._cut(y).times(share)
 
-    def solved(
+    def solve(
         self, count: int, right: Callable[[StepAlgebra[Series], Sequence[Series]], list[Series]]
     ) -> list[Series]:
-        """By iteration: each makes one power of h more right."""
-        found = [SeriesAlgebra(self.flow, 0).nothing] * count
+        """Solve by iteration: each makes one more power of h right."""
+        solution = [SeriesAlgebra(self.flow, 0).nothing] * count
+        # The right side is O(h): if Z is right up to h^(k−1), right(Z) is up to h^k.
         for longest in range(1, self.most + 1):
             shorter = SeriesAlgebra(self.flow, longest, self._recent)
-            found = right(shorter, list(map(shorter._cut, found)))
-        return found
+            solution = right(shorter, list(map(shorter._cut, solution)))
+        return solution
 
     def _cut(self, x: Series) -> Series:
-        return Series.of(self.flow.ring, x.coefficients, self.most)
+        return Series.from_coefficients(self.flow.ring, x.coefficients, self.most)
 
 
 State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
@@ -132,7 +138,7 @@ Step = Callable[[StepAlgebra[Any]], list[Any]]
 
 
 def series_of(flow: Flow, step: Step, most: int) -> State:
-    """z' up to h^most."""
+    """Return z' up to h^most."""
     changes = step(SeriesAlgebra(flow, most))
-    start = (Series.of(flow.ring, [x], most) for x in flow.start)
+    start = (Series.from_coefficients(flow.ring, [x], most) for x in flow.start)
     return tuple(x + y for x, y in zip(start, changes, strict=True))

@@ -18,60 +18,70 @@ MOST_TERMS = 2000  # of a form that is written out
 
 @dataclass(frozen=True)
 class TwoForm:
-    """Its coefficients that are not 0 in normal form, by their places a < b."""
+    """A two-form: its coefficients that are not 0 in normal form, by their places a < b."""
 
     ring: Any  # of coefficients: see `verify.algebra.series.power_series.CoefficientRing`
     names: tuple[str, ...]
     entries: Mapping[Place, Poly] = field(default_factory=dict)
 
     @classmethod
-    def of(
+    def from_entries(
         cls, ring: CoefficientRing, names: tuple[str, ...], entry: Callable[[int, int], Poly]
     ) -> "TwoForm":
-        """With the coefficients c_ab, which are put in normal form."""
-        made = {place: ring.reduce(entry(*place)) for place in combinations(range(len(names)), 2)}
-        return cls(ring, names, {place: x for place, x in made.items() if not x.is_zero()})
+        """Return the form with the coefficients c_ab, which are put in normal form."""
+        coefficients = {
+            place: ring.reduce(entry(*place)) for place in combinations(range(len(names)), 2)
+        }
+        return cls(ring, names, {place: x for place, x in coefficients.items() if not x.is_zero()})
 
-    def at(self, a: int, b: int) -> Poly:
-        """The entry of its matrix."""
+    def entry(self, a: int, b: int) -> Poly:
+        """Return the entry of its matrix."""
         if a > b:
-            return -self.at(b, a)
+            return -self.entry(b, a)
         return self.entries.get((a, b), self.ring.zero)
 
     def __sub__(self, other: "TwoForm") -> "TwoForm":
-        return TwoForm.of(self.ring, self.names, lambda a, b: self.at(a, b) - other.at(a, b))
+        return TwoForm.from_entries(
+            self.ring, self.names, lambda a, b: self.entry(a, b) - other.entry(a, b)
+        )
 
-    def called(self, place: Place) -> str:
-        """An entry's name, such as dp1∧dq2."""
+    def entry_name(self, place: Place) -> str:
+        """Return an entry's name, such as dp1∧dq2."""
         a, b = (self.names[k] for k in place)
         return f"d{a}∧d{b}"
 
     @property
     def length(self) -> int:
-        """How many terms its entries have together."""
+        """The number of terms of its entries together."""
         return sum(map(len, self.entries.values()))
 
     @property
     def text(self) -> str:
-        """As a formula."""
-        terms = (self._term(self.ring.text(x), at) for at, x in self.entries.items())
+        """The form as a formula."""
+        terms = (self._term(self.ring.text(x), place) for place, x in self.entries.items())
         return " + ".join(terms) or "0"
 
     def _term(self, coefficient: str, place: Place) -> str:
-        return self.called(place) if coefficient == "1" else f"({coefficient})*{self.called(place)}"
+        return (
+            self.entry_name(place)
+            if coefficient == "1"
+            else f"({coefficient})*{self.entry_name(place)}"
+        )
 
     @property
     def divergence(self) -> Poly:
-        """Σ c_(p_i q_i): of S it is ΔJ, but for products of its entries."""
+        """The sum Σ c_(p_i q_i): of S it is ΔJ, up to products of its entries."""
         n = len(self.names) // 2
-        total: Poly = self.ring.reduce(sum((self.at(i, n + i) for i in range(n)), self.ring.zero))
+        total: Poly = self.ring.reduce(
+            sum((self.entry(i, n + i) for i in range(n)), self.ring.zero)
+        )
         return total
 
     def decide(
         self, decide: Callable[[Poly], Decision] | None = None
     ) -> tuple[Decision, Place | None]:
-        """Whether it is the zero form, and the entry that shows that it is not; `decide` in place
-        of the ring's own.
+        """Decide whether it is the zero form, and return an entry that shows that it is not;
+        `decide` in place of the ring's own.
 
         Undecided where no entry is shown not to be zero, and one is not shown to be.
         """
@@ -86,20 +96,21 @@ class TwoForm:
 
 
 def lie_derivative(flow: Flow, form: TwoForm) -> TwoForm:
-    """Along the flow, of D = ∂_t + X where H depends on time: D applied to the entries, and with
-    A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
+    """Return the Lie derivative along the flow, of D = ∂_t + X where H depends on time: D applied
+    to the entries, and with A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
     ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]
+    # In the plane the other terms are tr A = 0 times the entry.
     size = range(len(flow.names)) if flow.degrees > 1 else ()
 
     def entry(a: int, b: int) -> Poly:
-        total = flow.derive(form.at(a, b))
+        total = flow.derive(form.entry(a, b))
         for c in size:
-            total += slopes[c][a] * form.at(c, b) + form.at(a, c) * slopes[c][b]
+            total += slopes[c][a] * form.entry(c, b) + form.entry(a, c) * slopes[c][b]
         return total
 
-    return TwoForm.of(ring, flow.names, entry)
+    return TwoForm.from_entries(ring, flow.names, entry)
 
 
 def wedge(x: Sequence[Poly], y: Sequence[Poly], a: int, b: int) -> Poly:
-    """The entry ab of dx∧dy, of two gradients."""
+    """Return the entry ab of dx∧dy, of two gradients."""
     return x[a] * y[b] - x[b] * y[a]

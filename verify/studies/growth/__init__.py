@@ -1,1 +1,1 @@
-"""The growth law of Λ: what it predicts for an orbit, held against runs."""
+"""The growth law of Λ: its predictions for an orbit, compared with runs."""

@@ -1,6 +1,6 @@
-"""The growth law of Λ held against runs: ⟨g⟩ of an orbit, and Λ of each run as it predicts it.
+"""The growth law of Λ compared with runs: ⟨g⟩ of an orbit, and each run's Λ as the law predicts it.
 
-What is predicted is S = log(1 + Λ) up to the remainder that `verify.proof.plane.growth_law` states,
+The law predicts S = log(1 + Λ) up to the remainder that `verify.proof.plane.growth_law` states,
 and Λ = e^S − 1. The bounds printed are of the prediction's own numbers, not of that remainder. [B]
 is taken on the orbit of z₀, at the point nearest to z_N: that changes it by O(H(z_N) − H(z₀)),
 which is O(h^η T), and the prediction by less than the remainder.
@@ -16,10 +16,10 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import (
     UNKNOWN,
     Ball,
-    around,
     ball,
-    in_reach,
-    middle_and_radius,
+    is_representable,
+    make_ball,
+    midpoint_and_radius,
     precision,
     rational_ball,
 )
@@ -41,28 +41,28 @@ _PHASE_DIGITS = 15  # of the orbit on which a run's end point is placed
 _ROUNDED = Fraction(1, 10**10)  # of the bounded part, which is summed in float64
 
 
-def average_of(
+def compute_average(
     hamiltonian: Hamiltonian, scheme: str, *, q: Exact, p: Exact, digits: int
 ) -> AverageResult:
-    """⟨g⟩ of the scheme's growth law along the exact orbit through (q, p), to so many digits.
+    """Compute ⟨g⟩ of the scheme's growth law along the exact orbit through (q, p).
 
     Where there is no law, or no closed orbit is found, `orbit` is "undecided" and `reason` says
     why. Raises InputError for a parameter without a value, and for digits beyond 200.
     """
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     whole("digits", digits, 1, MOST_DIGITS)
     start = rational(p, "p"), rational(q, "q")
     law: GrowthLaw | None = None
-    found: Average | None = None
+    orbit_average: Average | None = None
     reason = Prose()
     try:
         law = growth_law(hamiltonian, scheme)
-        found = average(hamiltonian, law.g, start, digits)
+        orbit_average = average(hamiltonian, law.g, start, digits)
     except (NoLawError, NoFlowError) as error:
-        reason = error.said
-    period = found.period if found else None
+        reason = error.reason
+    period = orbit_average.period if orbit_average else None
     potential = (law.potential or law.telescoping.element) if law else None
-    at_rest = found is not None and period is None
+    at_rest = orbit_average is not None and period is None
     return AverageResult(
         **hamiltonian.texts,
         scheme=scheme,
@@ -70,74 +70,80 @@ def average_of(
         q=text(start[1]),
         p=text(start[0]),
         power=law.power if law else 0,
-        g=_shown(law.g) if law else "",
-        potential=_shown(potential) if potential else "",
+        g=_format_element(law.g) if law else "",
+        potential=_format_element(potential) if potential else "",
         telescopes=law.telescoping.holds if law else None,
         by_potential=law is not None and law.potential is not None,
-        orbit=found.orbit.kind if found else "undecided",
+        orbit=orbit_average.orbit.kind if orbit_average else "undecided",
         reason=reason,
-        average=Value.of(found.value, found.bound, digits) if found else None,
-        period=Value.of(*period, digits) if period else None,
+        average=Value.from_bound(orbit_average.value, orbit_average.bound, digits)
+        if orbit_average
+        else None,
+        period=Value.from_bound(*period, digits) if period else None,
         error_kind="enclosed" if at_rest else "estimated",
         error_method=ENCLOSED if at_rest else ESTIMATED,
-        seconds=time.perf_counter() - begun,
+        seconds=time.perf_counter() - start_time,
     )
 
 
-def predictions(
-    hamiltonian: Hamiltonian, of: AverageResult, runs: Sequence[RunResult]
+def predict_runs(
+    hamiltonian: Hamiltonian, average_result: AverageResult, runs: Sequence[RunResult]
 ) -> tuple[PredictionResult, ...]:
-    """Λ of each run from the initial value of `of`, as predicted.
+    """Predict Λ of each run from the initial value of `average_result`.
 
-    Left out are runs that give no p, q or Λ, or too little of p and q for G, or a Λ beyond any
-    range; and all of them where ⟨g⟩ is not known.
+    Runs that give no p, q or Λ, too few digits of p and q for G, or a Λ beyond any range are left
+    out; and all of them where ⟨g⟩ is not known.
     """
-    finished = [run for run in runs if {"lambda", "p", "q"} <= set(run.values)]
-    if of.average is None or not finished:
+    complete_runs = [run for run in runs if {"lambda", "p", "q"} <= set(run.values)]
+    if average_result.average is None or not complete_runs:
         return ()
-    law = growth_law(hamiltonian, of.scheme)
-    placed = _placing(hamiltonian, of.scheme, (Fraction(of.p), Fraction(of.q)))
-    oscillation, number = bounded_part(placed), placed.orbit.flow.number
-    found = []
-    for run in finished:
+    law = growth_law(hamiltonian, average_result.scheme)
+    orbit_average = _place_orbit(
+        hamiltonian, average_result.scheme, (Fraction(average_result.p), Fraction(average_result.q))
+    )
+    oscillation, number = bounded_part(orbit_average), orbit_average.orbit.flow.number
+    results = []
+    for run in complete_runs:
         end = number(Fraction(run.values["p"].value)), number(Fraction(run.values["q"].value))
         with precision():
-            found.append(_prediction(law, of.average, run, Fraction(oscillation(end))))
-    return tuple(each for each in found if each)
+            results.append(_predict(law, average_result.average, run, Fraction(oscillation(end))))
+    return tuple(each for each in results if each)
 
 
 @lru_cache(maxsize=16)
-def _placing(hamiltonian: Hamiltonian, scheme: str, start: Start) -> Average:
-    # The orbit of a scene is asked for by its page, and by each claim that is made of it.
+def _place_orbit(hamiltonian: Hamiltonian, scheme: str, start: Start) -> Average:
+    # A scene's page needs its orbit, and so does each claim about it.
     return average(hamiltonian, growth_law(hamiltonian, scheme).g, start, _PHASE_DIGITS)
 
 
-def _prediction(
+def _predict(
     law: GrowthLaw, mean: Value, run: RunResult, oscillation: Fraction
 ) -> PredictionResult | None:
-    h, measured = rational_ball(Fraction(run.step_size)), ball(run.values["lambda"])
+    h, measured_lambda = rational_ball(Fraction(run.step_size)), ball(run.values["lambda"])
     secular = h ** (law.power + 1) * run.steps * ball(mean)
-    boundary = h**law.power * around(oscillation, abs(oscillation) * _ROUNDED)
+    # S is h^r times the bounded part along the orbit, and h^(r+1) N ⟨g⟩, the secular one.
+    boundary = h**law.power * make_ball(oscillation, abs(oscillation) * _ROUNDED)
     if law.potential and law.leading:
-        boundary += h ** (law.power - 1) * _between(law.potential, run)
-        boundary -= h**law.power * _between(law.leading, run) / 2
-    predicted = (boundary + secular).expm1()
-    if not in_reach(predicted):
+        boundary += h ** (law.power - 1) * _difference_along(law.potential, run)
+        boundary -= h**law.power * _difference_along(law.leading, run) / 2
+    # Λ = e^S − 1.
+    prediction = (boundary + secular).expm1()
+    if not is_representable(prediction):
         return None
-    gap = (predicted - measured) / abs(measured)
+    relative_difference = (prediction - measured_lambda) / abs(measured_lambda)
     return PredictionResult(
         step_size=run.step_size,
         steps=run.steps,
         boundary=_value(boundary),
         secular=_value(secular),
-        predicted=_value(predicted),
+        predicted=_value(prediction),
         measured=run.values["lambda"],
-        difference=_value(gap) if in_reach(gap) else None,
+        difference=_value(relative_difference) if is_representable(relative_difference) else None,
     )
 
 
-def _between(f: Element, run: RunResult) -> Ball:
-    """[f] = f(z_N) − f(z₀), not finite where f may be undefined."""
+def _difference_along(f: Element, run: RunResult) -> Ball:
+    """Return [f] = f(z_N) − f(z₀), not finite where f may be undefined."""
     ring, x = f
     q, p = map(Fraction, run.plane_start)
     ends = (
@@ -149,9 +155,9 @@ def _between(f: Element, run: RunResult) -> Ball:
 
 
 def _value(x: Ball) -> Value:
-    return Value.of(*middle_and_radius(x), _SHOWN)
+    return Value.from_bound(*midpoint_and_radius(x), _SHOWN)
 
 
-def _shown(x: Element) -> str:
+def _format_element(x: Element) -> str:
     ring, element = x
-    return to_text(ring.factored(element))
+    return to_text(ring.as_product(element))

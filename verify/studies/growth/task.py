@@ -19,11 +19,11 @@ class GrowthTask(StartTask):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps it is worth."""
+        """About the number of float64 steps that it is worth."""
         return _COST
 
     def compute(self, keeper: Keeper) -> AverageResult:
-        """The law, its average enclosed."""
-        from verify.studies.growth.prediction import average_of
+        """Return the law, with its average enclosed."""
+        from verify.studies.growth.prediction import compute_average
 
-        return average_of(self.exact_hamiltonian(), **self.asked())
+        return compute_average(self.exact_hamiltonian(), **self.other_fields())

@@ -7,10 +7,10 @@ _FILES = Catalogue(__name__, __path__)
 
 
 def studies() -> list[Study]:
-    """All of them, in the order in which their tasks are asked for.
+    """Return all studies, in the order in which their tasks are requested.
 
     >>> [part.what for part in studies()[1].sections]
     ['proofs for every H']
     """
-    found: list[Study] = [_FILES.module(name).STUDY for name in _FILES.names]
-    return sorted(found, key=lambda study: study.order)
+    every_study: list[Study] = [_FILES.module(name).STUDY for name in _FILES.names]
+    return sorted(every_study, key=lambda study: study.order)

@@ -1,13 +1,13 @@
 """Reference data, which a command of its own makes."""
 
 from verify.execution.plan import Plan
-from verify.execution.study import Study, called
+from verify.execution.study import Study, scene_name
 from verify.scenes.scene import Scene
 
 
 def _need(plan: Plan, scene: Scene) -> None:
     if scene.reference:
-        plan.leave_out(f"{called(scene)}: reference data", "`verify reference make` makes it")
+        plan.leave_out(f"{scene_name(scene)}: reference data", "`verify reference make` makes it")
 
 
 STUDY = Study(10, need=_need)

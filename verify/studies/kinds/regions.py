@@ -6,7 +6,7 @@ from typing import Any
 
 from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, called, known_results, toml_section
+from verify.execution.study import Results, Study, results_of_tasks, scene_name, toml_section
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.frozen import PLAIN
 from verify.scenes.observables import carries_defect
@@ -18,8 +18,8 @@ from verify.studies.regions.task import FlowTask
 
 
 def need_flows(plan: Plan, scene: Scene) -> None:
-    """Adds what the scene asks for of regions carried by maps."""
-    name = called(scene)
+    """Add the scene's tasks of regions carried by maps to the plan."""
+    name = scene_name(scene)
     for flow in scene.flow:
         for task in flow_tasks(scene, flow):
             what = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"
@@ -30,36 +30,38 @@ def need_flows(plan: Plan, scene: Scene) -> None:
 
 def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
     exact = scene.exact_hamiltonian()
-    kept, known = exact.structure, {AREA: "proved", SYMPLECTIC: "shown"}[exact.structure]
-    why = f"{kept.identity} is {known}: {kept.accumulated} is exactly 0"
+    structure, evidence = exact.structure, {AREA: "proved", SYMPLECTIC: "shown"}[exact.structure]
+    why = f"{structure.identity} is {evidence}: {structure.accumulated} is exactly 0"
     if not step_map_of(exact, scheme).preserves_area:
-        why = f"{kept.accumulated} is not carried in {exact.degrees} degrees of freedom"
-    return f"{name}: mean of {kept.accumulated} over the region for {scheme}", why
+        why = f"{structure.accumulated} is not carried in {exact.degrees} degrees of freedom"
+    return f"{name}: mean of {structure.accumulated} over the region for {scheme}", why
 
 
 def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
-    """The exact flow, where it is asked for, then the schemes."""
+    """Return the exact flow, where it is requested, then the schemes."""
     schemes = flow.schemes or scene.schemes
     return (EXACT_FLOW, *schemes) if flow.exact else schemes
 
 
 def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
-    """One a map and number of steps, in that order."""
-    exact, given, shape = scene.exact_hamiltonian(), scene.hamiltonian_fields(), flow.placed_shape()
+    """Yield a task for each map and number of steps, in that order."""
+    exact = scene.exact_hamiltonian()
+    common = scene.hamiltonian_fields()
+    shape = flow.placed_shape()
     begin, point = scene.begin, _point(scene, flow)
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
-        kept = not by_scheme or step_map_of(exact, name).preserves_area
+        preserves_area = not by_scheme or step_map_of(exact, name).preserves_area
         for steps in flow.counts:
             yield FlowTask(
-                **given,
+                **common,
                 map=name,
                 shape=shape,
                 step_size=flow.step_size,
                 t0=begin,
                 steps=steps,
                 digits=flow.digits,
-                mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
+                mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(exact),
                 distance=by_scheme and flow.exact and exact.planar,  # of curves in it
                 point=point,
                 plane=flow.plane,
@@ -67,15 +69,15 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
 
 
 def _point(scene: Scene, flow: Flow) -> dict[str, Fraction]:
-    """Where the region lies, by the names of H's coordinates; empty in the plane."""
+    """Return the region's place, by the names of H's coordinates; empty in the plane."""
     exact = scene.exact_hamiltonian()
     return {} if exact.planar else flow.point(exact)
 
 
 def flows_of(scene: Scene, results: Results) -> tuple[FlowResult, ...]:
-    """One a section of the scene that was computed."""
-    found = (_flow(scene, flow, results) for flow in scene.flow)
-    return tuple(each for each in found if each.images)
+    """Return a result for each section of the scene that was computed."""
+    results_of_flows = (_flow(scene, flow, results) for flow in scene.flow)
+    return tuple(each for each in results_of_flows if each.images)
 
 
 def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
@@ -86,7 +88,7 @@ def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
         scale=text(flow.scale),
         step_size=text(flow.step_size),
         before=_outlines_to_draw(flow),
-        images=tuple(known_results(FlowImage, flow_tasks(scene, flow), results)),
+        images=tuple(results_of_tasks(FlowImage, flow_tasks(scene, flow), results)),
         source=flow.source,
         t0=None if scene.begin is None else text(scene.begin),
         plane=flow.plane if point else None,
@@ -95,28 +97,29 @@ def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
 
 
 def _outlines_to_draw(flow: Flow) -> tuple[DrawnOutline, ...]:
-    from verify.studies.regions.polyline import text as points_text
-    from verify.studies.regions.polyline import traced
+    from verify.studies.regions.polyline import format_points as points_text
+    from verify.studies.regions.polyline import trace_outlines
 
     shape = flow.placed_shape().to_shape()
     return tuple(
         DrawnOutline(name=outline.name, points=points_text(points))
-        for outline, points in zip(shape.outlines, traced(shape), strict=True)
+        for outline, points in zip(shape.outlines, trace_outlines(shape), strict=True)
     )
 
 
-def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
-    """The scene's first scheme after the most steps, then all images.
+def flow_json(flows: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
+    """Return the values of the first scheme after the most steps, then all images.
 
-    Those keys are null where there is no such scheme; `images` have no points.
+    They are null where there is no such scheme; `images` have no points.
     """
     images = [
         {"scene": name, "shape": flow.shape, "step_size": flow.step_size} | _without_points(image)
-        for name, flow in found
+        for name, flow in flows
         for image in flow.images
     ]
     first = next((i for i in images if not i["area_preserving"]), images[0])
     same = [i for i in images if i["map"] == first["map"] and i["scene"] == first["scene"]]
+    # Of the images of that map the one after the most steps stands for the scene.
     top = max(same, key=lambda image: image["steps"])
     keys = ("map", "steps", "area_change", "probe_error", "mean_lambda", "mean_defect")
     return {**{name: top[name] for name in keys}, "images": images}
@@ -125,8 +128,8 @@ def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
 def _without_points(image: FlowImage) -> dict[str, Any]:
     data = image.model_dump(mode="json", context=PLAIN)
     for outline in data["outlines"]:
-        for drawn in (outline, *outline["projections"]):
-            del drawn["points"]
+        for curve in (outline, *outline["projections"]):
+            del curve["points"]
     return data
 
 
@@ -135,5 +138,5 @@ STUDY = Study(
     8,
     (_SECTION,),
     need=need_flows,
-    found=lambda scene, results: {"flows": flows_of(scene, results)},
+    results_for_scene=lambda scene, results: {"flows": flows_of(scene, results)},
 )

@@ -4,28 +4,29 @@ from collections.abc import Iterator
 
 from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, called, known_results, toml_section
+from verify.execution.study import Results, Study, results_of_tasks, scene_name, toml_section
 from verify.runs.task import RunTask
-from verify.scenes.observables import observed
+from verify.scenes.observables import select_observables
 from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import Series
 from verify.scenes.scene import Scene
 
 
 def series_task(scene: Scene, scheme: str, series: Series) -> RunTask:
-    """The run of a `[[series]]`."""
-    at = series.initial_value
+    """Return the run of a `[[series]]`."""
+    initial_value = series.initial_value
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=series.step_size, steps=series.count, q=at.q, p=at.p, t0=scene.t0,
+        step_size=series.step_size, steps=series.count,
+        q=initial_value.q, p=initial_value.p, t0=scene.t0,
         arithmetic=series.arithmetic, digits=series.digits,
-        observables=observed(scene.exact_hamiltonian(), None), points=series.points,
+        observables=select_observables(scene.exact_hamiltonian(), None), points=series.points,
     )  # fmt: skip
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     for series in scene.series:
-        what = f"{called(scene)}: series of {scheme} at h = {text(series.step_size)}"
+        what = f"{scene_name(scene)}: series of {scheme} at h = {text(series.step_size)}"
         if preserves:
             plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
         else:
@@ -33,11 +34,11 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
 
 
 def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:
-    """The series that were run, each with what the scene says it repeats."""
+    """Yield the series that were run, each with the source that the scene names."""
     for scheme in scene.schemes:
-        for asked in scene.series:
-            for run in known_results(RunResult, [series_task(scene, scheme, asked)], results):
-                yield run.model_copy(update={"source": asked.source})
+        for series in scene.series:
+            for run in results_of_tasks(RunResult, [series_task(scene, scheme, series)], results):
+                yield run.model_copy(update={"source": series.source})
 
 
 _SECTION = toml_section(4, "trajectories and plots over time", "[[series]]")
@@ -45,5 +46,5 @@ STUDY = Study(
     5,
     (_SECTION,),
     need_of_scheme=_need,
-    found=lambda scene, results: {"series": tuple(_runs(scene, results))},
+    results_for_scene=lambda scene, results: {"series": tuple(_runs(scene, results))},
 )

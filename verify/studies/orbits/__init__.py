@@ -1,1 +1,1 @@
-"""Orbits looked at now and then: once in each period of H, or where they pass a surface."""
+"""Sections of orbits: states once in each period of H, or where orbits pass a surface."""

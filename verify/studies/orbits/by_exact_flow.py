@@ -1,8 +1,8 @@
-"""Where orbits of the exact flow pass a surface: all of them together, in long double.
+"""Passes of a surface by orbits of the exact flow, all of them together, in long double.
 
-They take common steps by an extrapolation (`verify.flows.extrapolation_of_many`), which are long; a
-pass within one is seen by a cubic through its ends, looked at in parts, and then found by Newton's
-iteration on the length of the step itself. A pass that lasts less than a part is not seen.
+They take common steps by an extrapolation (`verify.flows.extrapolation_of_many`), which are long. A
+pass within a step is detected by a cubic through its ends, sampled in parts, and then found by
+Newton's iteration on the length of the step itself. A pass that lasts less than a part is missed.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,43 +22,43 @@ _CLOSE = 1e-15  # to the surface, relative to the orbit so far
 
 
 def digits() -> int:
-    """Of long double."""
+    """Return the decimal digits of long double."""
     return int(WIDE.prec) * 3 // 10
 
 
-def passes_together(
+def find_all_passes(
     hamiltonian: Hamiltonian,
     starts: Sequence[Mapping[str, Fraction]],
     surface: Surface,
     time: Fraction,
     columns: int,
 ) -> list[Passes]:
-    """All passes of each orbit until the time, by so many columns of the extrapolation.
+    """Find all passes of each orbit until the time, by so many columns of the extrapolation.
 
-    Two different numbers of these have independent errors. One that cannot be followed to the end
-    ends the common steps; then each goes alone.
+    Two different numbers of columns have independent errors. An orbit that cannot be followed to
+    the end ends the common steps; then each is followed alone.
     """
     import numpy as np
 
     z = np.array([[WIDE.rational(s[n]) for s in starts] for n in surface.names], dtype=WIDE.type)
-    found: list[list[Mapping[str, Fraction]]] = [[] for _ in starts]
+    states_of: list[list[Mapping[str, Fraction]]] = [[] for _ in starts]
     with np.errstate(all="ignore"):
         walk = CommonSteps(slopes_of(hamiltonian), z, 1, columns, WIDE.mpf(0))
-        seen = _Watch(walk, surface)
+        watch = _Watch(walk, surface)
         try:
             for before, step in walk.steps_to(WIDE.rational(time)):
-                for orbit, state in seen.within(before, step):
-                    found[orbit].append(state)
+                for orbit, state in watch.find_passes(before, step):
+                    states_of[orbit].append(state)
         except NoFlowError:
             if len(starts) == 1:
-                return [Passes(found[0], left=True)]
-            alone = (passes_together(hamiltonian, [s], surface, time, columns) for s in starts)
+                return [Passes(states_of[0], left=True)]
+            alone = (find_all_passes(hamiltonian, [s], surface, time, columns) for s in starts)
             return [passes for (passes,) in alone]
-    return [Passes(states) for states in found]
+    return [Passes(states) for states in states_of]
 
 
 class _Watch:
-    """Looks at each step for passes."""
+    """A search for passes in each step."""
 
     def __init__(self, walk: CommonSteps, surface: Surface) -> None:
         self.walk, self.surface = walk, surface
@@ -66,15 +66,15 @@ class _Watch:
         self.sign = 1 if surface.rising else -1
 
     def heights(self, z: Array) -> tuple[Array, Array]:
-        """How far all points are beyond the surface, and how fast that grows."""
+        """Return the heights of all points above the surface, and their rates of change."""
         import numpy as np
 
         place = self.surface.place
         slope = self.walk.slopes(*z, 0)[place]
         return self.surface.height(z, self.value), self.sign * (slope + np.zeros_like(z[place]))
 
-    def within(self, before: Array, step: Any) -> list[tuple[int, Mapping[str, Fraction]]]:
-        """Each pass in the step that led from there: the orbit, and the state on the surface."""
+    def find_passes(self, before: Array, step: Any) -> list[tuple[int, Mapping[str, Fraction]]]:
+        """Return each pass in the step from `before`: the orbit, and the state on the surface."""
         import numpy as np
 
         part = np.arange(_PARTS + 1, dtype=WIDE.type)[:, None] / _PARTS
@@ -85,23 +85,28 @@ class _Watch:
         if not len(orbits):
             return []
         low, high = cubic[parts, orbits], cubic[parts + 1, orbits]
+        # The cubic's crossing by linear interpolation: the start of Newton's iteration.
         first = (part[parts, 0] - low / (high - low) / _PARTS) * step
-        z, good = self.on_surface(before[:, orbits], first, step)
+        z, good = self.solve_on_surface(before[:, orbits], first, step)
         order = np.lexsort((parts, orbits))
         return [(int(orbits[k]), self._state(z[:, k])) for k in order if good[k]]
 
-    def on_surface(self, before: Array, time: Array, step: Any) -> tuple[Array, Array]:
-        """The points after a time each, near `time`, at which they are on the surface; and which of
-        them are."""
+    def solve_on_surface(self, before: Array, time: Array, step: Any) -> tuple[Array, Array]:
+        """Return the points on the surface, each after its own time near `time`.
+
+        With them is returned which of them Newton's iteration has brought there.
+        """
         import numpy as np
 
         for _ in range(_TRIES):
-            z = before + self.walk.moved(before, time)
+            z = before + self.walk.change_over(before, time)
             height, speed = self.heights(z)
             last, time = time, time - height / speed
             if np.array_equal(time, last):  # the other tries would give the same
                 break
         size = np.maximum(np.abs(z).max(axis=0), WIDE.mpf(1))
+        # Newton's iteration may leave the step by a rounding or more; beyond one part the pass
+        # belongs to another step.
         room = step / _PARTS
         good = (np.abs(height) <= _CLOSE * size) & (time >= -room) & (time <= step + room)
         return z, good
@@ -112,7 +117,7 @@ class _Watch:
 
 
 def _cubic(s: Array, step: Any, f: Array, df: Array, g: Array, dg: Array) -> Array:
-    """Hermite's cubic on 0 ≤ s ≤ 1 by values and slopes at its ends."""
+    """Evaluate Hermite's cubic on 0 ≤ s ≤ 1 by values and slopes at its ends."""
     away, gap = 1 - s, g - f
     bend = s * away * (away * (df * step - gap) + s * (gap - dg * step))
     return away * f + s * g + bend

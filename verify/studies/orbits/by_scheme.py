@@ -1,4 +1,4 @@
-"""Where the orbit of a scheme passes a surface.
+"""Passes of a surface by the orbit of a scheme.
 
 Its states are z_0, z_1, …; where the surface lies between z_k and z_(k+1) = Φ_h(z_k) the orbit is
 taken to pass it at Φ_θ(z_k), the scheme's own step of length θ ≤ h that ends on it. For the exact
@@ -16,7 +16,7 @@ from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.studies.orbits.passes import Passes, State, Surface
 
 _BLOCK = 1000  # steps between looks at them
@@ -25,10 +25,10 @@ _SPARE = 3  # of the digits, beyond which θ is not looked for
 
 
 class OutOfRangeError(Exception):
-    """A step leaves where H is defined."""
+    """A step that leaves the domain of H."""
 
 
-def passes(
+def find_passes(
     hamiltonian: Hamiltonian,
     scheme: str,
     start: Mapping[str, Fraction],
@@ -38,65 +38,73 @@ def passes(
     steps: int,
     digits: int,
 ) -> Passes:
-    """All passes within so many steps from the start, p1 … qn by their names, with these digits."""
+    """Find all passes within so many steps from the start, p1 … qn by names, with these digits."""
     by = _Steps(hamiltonian, scheme, step_size, digits)
-    own = by.own
-    z = [own.number(start[name]) for name in surface.names]
-    value, found, done = own.number(surface.value), [], 0
-    with own.context(), contextlib.suppress(OutOfRangeError):
+    arithmetic = by.arithmetic
+    z = [arithmetic.number(start[name]) for name in surface.names]
+    value, states, done = arithmetic.number(surface.value), [], 0
+    with arithmetic.context(), contextlib.suppress(OutOfRangeError):
         for before, after in pairwise(chain([z], by.walk(z, steps))):
             done += 1
+            # A state on the surface itself counts with the step that ends there, not with the next
+            # one.
             if surface.height(before, value) < 0 <= surface.height(after, value):
-                at = by.on_surface(before, surface, value)
-                found.append({n: own.exact(x) for n, x in zip(surface.names, at, strict=True)})
-    return Passes(found, left=done < steps)
+                state = by.solve_on_surface(before, surface, value)
+                states.append(
+                    {n: arithmetic.exact(x) for n, x in zip(surface.names, state, strict=True)}
+                )
+    return Passes(states, left=done < steps)
 
 
 class _Steps:
     """Steps of a scheme from any state, in mpfr, which has every range."""
 
     def __init__(self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, digits: int) -> None:
-        self.own, self.digits = mpfr.make(digits), digits
-        given = {"h": h} | dict.fromkeys(hamiltonian.coordinates, Fraction(0))
-        run = KernelRun(hamiltonian, scheme, given, 1, frozenset(), 0)
-        self.kernel = kernel_for(run.hamiltonian, scheme, self.own, frozenset())
-        self.inputs = [self.own.number(x) for x in run.inputs(self.kernel, 0).values()]
+        self.arithmetic, self.digits = mpfr.make(digits), digits
+        start_values = {"h": h} | dict.fromkeys(hamiltonian.coordinates, Fraction(0))
+        run = KernelRun(hamiltonian, scheme, start_values, 1, frozenset(), 0)
+        self.kernel = kernel_for(run.hamiltonian, scheme, self.arithmetic, frozenset())
+        self.inputs = [self.arithmetic.number(x) for x in run.inputs(self.kernel, 0).values()]
 
     def walk(self, z: State, steps: int) -> Iterator[State]:
-        """The states after 1, 2, … steps; fewer where one leaves where H is defined."""
+        """Yield the states after 1, 2, … steps; fewer where one leaves the domain of H."""
         while steps > 0:
             count = min(_BLOCK, steps)
-            found = alone(self.own.states(self.kernel.function, 1, count, self.inputs, tuple(z)))
-            yield from found
-            if len(found) < count:
+            states = run_alone(
+                self.arithmetic.states(self.kernel.function, 1, count, self.inputs, tuple(z))
+            )
+            yield from states
+            if len(states) < count:
                 return
-            z, steps = found[-1], steps - count
+            z, steps = states[-1], steps - count
 
-    def after(self, z: State, time: Any) -> State:
-        """Φ_time(z). Raises OutOfRangeError."""
-        given = [time, *self.inputs[1:]]
-        found = alone(self.own.states(self.kernel.function, 1, 1, given, tuple(z)))
-        if not found:
+    def step_from(self, z: State, time: Any) -> State:
+        """Return Φ_time(z). Raises OutOfRangeError."""
+        arguments = [time, *self.inputs[1:]]
+        states = run_alone(self.arithmetic.states(self.kernel.function, 1, 1, arguments, tuple(z)))
+        if not states:
             raise OutOfRangeError
-        return found[0]
+        return states[0]
 
-    def on_surface(self, z: State, surface: Surface, value: Any) -> State:
-        """Φ_θ(z) on the surface, which lies between z and the end of its step."""
-        low, high = self.own.number(Fraction(0)), self.inputs[0]
-        near = high * self.own.number(Fraction(1, 10 ** (self.digits - _SPARE)))
-        end = self.after(z, high)
+    def solve_on_surface(self, z: State, surface: Surface, value: Any) -> State:
+        """Return Φ_θ(z) on the surface, which lies between z and the end of its step."""
+        low, high = self.arithmetic.number(Fraction(0)), self.inputs[0]
+        near = high * self.arithmetic.number(Fraction(1, 10 ** (self.digits - _SPARE)))
+        end = self.step_from(z, high)
         below, above = surface.height(z, value), surface.height(end, value)
-        kept = 0  # which end has stayed
+        last_side = (
+            0  # the end that has stayed: its height is halved (Illinois), lest it stay for ever
+        )
         for _ in range(_MOST_TRIES):
             time = high - above * (high - low) / (above - below)
-            at = self.after(z, time)
-            height = surface.height(at, value)
+            state = self.step_from(z, time)
+            height = surface.height(state, value)
             if height < 0:
-                low, below, above = time, height, above / 2 if kept > 0 else above
-                kept = 1
+                low, below, above = time, height, above / 2 if last_side > 0 else above
+                last_side = 1
             else:
-                high, above, below, end = time, height, below / 2 if kept < 0 else below, at
-                kept = -1
+                high, above, below, end = time, height, below / 2 if last_side < 0 else below, state
+                last_side = -1
             if height == 0 or high - low <= near:
-                return at
+                return state
         return end

@@ -1,5 +1,7 @@
-"""The surface that orbits pass: where one coordinate has one value, and which way; and how far two
-reckonings of an orbit are one."""
+"""The surface that orbits pass, and a comparison of two computations of one orbit.
+
+On the surface one coordinate has one value; passes count in one direction.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +13,10 @@ State = Sequence[Any]  # the numbers of p1 … pn, q1 … qn
 
 @dataclass(frozen=True)
 class Surface:
-    """`coordinate` = `value` among the coordinates `names`; passed upwards where it is `rising`."""
+    """The surface `coordinate` = `value` among the coordinates `names`.
+
+    It is passed upwards where it is `rising`, else downwards.
+    """
 
     names: tuple[str, ...]
     coordinate: str
@@ -20,31 +25,36 @@ class Surface:
 
     @property
     def place(self) -> int:
-        """Of the coordinate among all."""
+        """The index of the coordinate among all."""
         return self.names.index(self.coordinate)
 
     def height(self, z: State, value: Any) -> Any:
-        """How far z is beyond the surface, in the direction that counts; `value` in z's numbers."""
-        beyond = z[self.place] - value
-        return beyond if self.rising else -beyond
+        """Return z's height above the surface, in the direction that counts.
+
+        `value` in z's numbers.
+        """
+        distance = z[self.place] - value
+        return distance if self.rising else -distance
 
 
 @dataclass(frozen=True)
 class Passes:
-    """States at which an orbit is looked at, in their order; `left`: it did not reach its end."""
+    """States of an orbit at its passes, in their order; `left`: it did not reach its end."""
 
     states: Sequence[Mapping[str, Fraction]]
     left: bool = False
 
 
-def together(
-    one: Sequence[Mapping[str, Fraction]], other: Sequence[Mapping[str, Fraction]], within: Fraction
+def count_agreeing(
+    one: Sequence[Mapping[str, Fraction]],
+    other: Sequence[Mapping[str, Fraction]],
+    tolerance: Fraction,
 ) -> tuple[int, Fraction]:
-    """How many of the first states are nowhere farther apart, and how far these are at most."""
-    most = Fraction(0)
+    """Return the number of first states that agree within `tolerance`, and their difference."""
+    largest = Fraction(0)
     for k, (x, y) in enumerate(zip(one, other, strict=False)):
-        apart = max(abs(x[name] - y[name]) for name in x)
-        if apart > within:
-            return k, most
-        most = max(most, apart)
-    return min(len(one), len(other)), most
+        difference = max(abs(x[name] - y[name]) for name in x)
+        if difference > tolerance:
+            return k, largest
+        largest = max(largest, difference)
+    return min(len(one), len(other)), largest

@@ -13,7 +13,7 @@ _TIMES = 2  # each orbit is followed with many digits
 
 
 class StroboscopicTask(SchemeTask):
-    """Orbits from these initial values, looked at every `steps` steps, `periods` times."""
+    """Take states of orbits from these initial values every `steps` steps, `periods` times."""
 
     result = SchemeSections
     imports = ("verify.studies.orbits.at_periods",)
@@ -33,7 +33,10 @@ class StroboscopicTask(SchemeTask):
         from verify.studies.orbits.at_periods import sections_of
 
         common = {"h": self.step_size} | ({} if self.t0 is None else {"t": self.t0})
-        starts = [{"p": at.p, "q": at.q} | common for at in self.initial_values]
+        starts = [
+            {"p": initial_value.p, "q": initial_value.q} | common
+            for initial_value in self.initial_values
+        ]
         return sections_of(
             self.exact_hamiltonian(), self.scheme, starts,
             steps=self.steps, periods=self.periods, digits=self.digits,
@@ -41,8 +44,7 @@ class StroboscopicTask(SchemeTask):
 
 
 class PoincareTask(HamiltonianTask):
-    """Passes of `coordinate` = `value` within `steps` steps of a map: a scheme's, or the exact
-    flow's."""
+    """Find passes of `coordinate` = `value` within `steps` steps of a scheme or the exact flow."""
 
     result = MapSections
     imports = ("verify.studies.orbits.at_surface", "verify.studies.orbits.passes")
@@ -62,11 +64,14 @@ class PoincareTask(HamiltonianTask):
         return _TIMES * len(self.initial_values) * self.steps * step_cost("mpfr")
 
     def compute(self, keeper: Keeper) -> MapSections:
-        from verify.studies.orbits.at_surface import Asked, sections_of
+        from verify.studies.orbits.at_surface import SectionRequest, sections_of
         from verify.studies.orbits.passes import Surface
 
         exact = self.exact_hamiltonian()
-        starts = [point_of(exact, at.q, at.p) for at in self.initial_values]
+        starts = [
+            point_of(exact, initial_value.q, initial_value.p)
+            for initial_value in self.initial_values
+        ]
         surface = Surface(exact.coordinates, self.coordinate, self.value, self.rising)
-        asked = Asked(exact, surface, self.draw, self.step_size, self.steps, self.digits)
-        return sections_of(asked, self.map, starts)
+        request = SectionRequest(exact, surface, self.draw, self.step_size, self.steps, self.digits)
+        return sections_of(request, self.map, starts)

@@ -1,1 +1,1 @@
-"""What is proved of a scheme, for one H or for every H."""
+"""Proofs about a scheme, for one H or for every H."""

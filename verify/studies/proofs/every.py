@@ -11,8 +11,10 @@ _COST = 20_000_000  # of a proof, about
 
 
 class EveryTask(Task):
-    """What is proved of a scheme for every H, in so many degrees of freedom; `timed`: for every H
-    that depends on time."""
+    """Prove properties of a scheme for every H, in so many degrees of freedom.
+
+    `timed`: for every H that depends on time.
+    """
 
     result = EveryResult
     imports = (
@@ -29,14 +31,14 @@ class EveryTask(Task):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps it is worth."""
+        """About the number of float64 steps that it is worth."""
         return _COST
 
     def compute(self, keeper: Keeper) -> EveryResult:
-        """The proof for every H, as a result."""
+        """Return the proof for every H as a result."""
         from verify.proof.checked import marks
         from verify.proof.checked.paper_steps import steps_of
-        from verify.proof.checked.proved import ALL, of_every_hamiltonian
+        from verify.proof.checked.proved import ALL, proved_for_every
         from verify.proof.every import prove_every
         from verify.schemes import get
 
@@ -45,7 +47,7 @@ class EveryTask(Task):
             "steps": tuple(
                 StepResult(text=x.text, checked_by=x.checked_by) for x in steps_of(proof)
             ),
-            "checked_by": marks(of_every_hamiltonian(proof, get(self.scheme), ALL)),
+            "checked_by": marks(proved_for_every(proof, get(self.scheme), ALL)),
         }
         if not proof.planar:  # S is written out in its formula, where it has one
             differs |= {"formula": "", "leading": proof.formula or proof.leading}

@@ -15,7 +15,7 @@ from verify.proof.proof import Proof
 from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
-from verify.schemes.maps.step_map import StepMap, grouped
+from verify.schemes.maps.step_map import StepMap, group_by_powers
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.two_form import MOST_TERMS
 
@@ -27,8 +27,8 @@ _FORMULAS = ("delta_j", "p_next", "q_next", "jacobian")
 class ProofTask(SchemeTask):
     """Prove the order of ΔJ and of the map for one H and one scheme.
 
-    `formulas`: ΔJ, the map and its Jacobian are also written out, and it is told who else checked
-    the proof, which may take longer.
+    `formulas`: ΔJ, the map and its Jacobian are also written out, and the proof's other checkers
+    are named, which may take longer.
     """
 
     result = ProofResult
@@ -37,16 +37,16 @@ class ProofTask(SchemeTask):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps it is worth."""
+        """About the number of float64 steps that it is worth."""
         return _COST
 
     def compute(self, keeper: Keeper) -> ProofResult:
-        """The proof for this H, as a result."""
+        """Return the proof for this H as a result."""
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         step_map = scheme.step_map(hamiltonian)
         proof = prove(step_map, scheme)
-        more = _beside(proof, scheme, self.formulas)
+        more = _extra_fields(proof, scheme, self.formulas)
         return ProofResult(
             **hamiltonian.texts,
             scheme=self.scheme,
@@ -62,37 +62,37 @@ class ProofTask(SchemeTask):
             domain=proof.domain.texts,
             where=proof.domain.prose,
             **more,
-            checked_by=_marks(proof, hamiltonian, scheme) if self.formulas else (),
-            seconds=time.perf_counter() - begun,
+            checked_by=_mark_checkers(proof, hamiltonian, scheme) if self.formulas else (),
+            seconds=time.perf_counter() - start_time,
         )
 
 
-def _marks(proof: Proof, hamiltonian: Hamiltonian, scheme: Scheme) -> tuple[Prose, ...]:
-    """Who else checked it."""
+def _mark_checkers(proof: Proof, hamiltonian: Hamiltonian, scheme: Scheme) -> tuple[Prose, ...]:
+    """Return the marks of those who also checked the proof."""
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
+    from verify.proof.checked.proved import DEFECT, MAP, proved_for_one
 
-    return marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT | MAP))
+    return marks(proved_for_one(proof, hamiltonian, scheme, DEFECT | MAP))
 
 
-def _beside(proof: Proof, scheme: Scheme, formulas: bool) -> dict[str, Any]:
-    """What is written out beside it: in the plane closed forms, in n degrees of freedom S."""
+def _extra_fields(proof: Proof, scheme: Scheme, formulas: bool) -> dict[str, Any]:
+    """Return the fields written out in full: closed forms in the plane, S in n degrees."""
     if not proof.planar:
-        written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
-        return {**written, "form": _form(proof)}
+        texts = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
+        return {**texts, "form": _describe_form(proof)}
     hamiltonian = proof.step_map.hamiltonian
-    written = _written(proof.step_map) if formulas else dict.fromkeys(_FORMULAS)
-    symbolic = _symbolic(hamiltonian, scheme, proof.order) if formulas else None
-    return {**written, "symbolic": symbolic}
+    texts = _write_out(proof.step_map) if formulas else dict.fromkeys(_FORMULAS)
+    symbolic = _write_with_symbols(hamiltonian, scheme, proof.order) if formulas else None
+    return {**texts, "symbolic": symbolic}
 
 
-def _form(proof: Proof) -> FormResult:
-    """The leading coefficient of S, entry by entry where that is short."""
+def _describe_form(proof: Proof) -> FormResult:
+    """Return the leading coefficient of S, entry by entry where that is short."""
     leading = proof.first.form
     entries: tuple[tuple[str, str], ...] = ()
     if leading is not None and leading.length <= MOST_TERMS:
         each = leading.entries.items()
-        entries = tuple((leading.called(at), leading.ring.text(x)) for at, x in each)
+        entries = tuple((leading.entry_name(place), leading.ring.text(x)) for place, x in each)
     return FormResult(
         symplectic=proof.symplectic,
         entries=entries,
@@ -105,33 +105,36 @@ def _form(proof: Proof) -> FormResult:
     )
 
 
-def _written(step_map: StepMap) -> dict[str, Any]:
-    """The map, its Jacobian and ΔJ as texts, each None where it is too large."""
-    found: dict[str, Any] = dict.fromkeys(_FORMULAS)
-    found["delta_j"] = step_map.delta_j_text
-    if (closed := step_map.closed) is not None:
-        rows = closed.elements, *closed.jacobian
-        texts = [tuple(to_text(grouped(closed.ring, x)) for x in row) for row in rows]
+def _write_out(step_map: StepMap) -> dict[str, Any]:
+    """Return the map, its Jacobian and ΔJ as texts, each None where it is too large."""
+    fields: dict[str, Any] = dict.fromkeys(_FORMULAS)
+    fields["delta_j"] = step_map.delta_j_text
+    if (closed_form := step_map.closed) is not None:
+        rows = closed_form.elements, *closed_form.jacobian
+        texts = [tuple(to_text(group_by_powers(closed_form.ring, x)) for x in row) for row in rows]
         (p_next, q_next), *jacobian = texts
-        found |= {"p_next": p_next, "q_next": q_next, "jacobian": tuple(jacobian)}
-    return found
+        fields |= {"p_next": p_next, "q_next": q_next, "jacobian": tuple(jacobian)}
+    return fields
 
 
-def _symbolic(hamiltonian: Hamiltonian, scheme: Scheme, order: int | None) -> Formulas | None:
-    """The same with symbols for long values; None where no value is long.
+def _write_with_symbols(
+    hamiltonian: Hamiltonian, scheme: Scheme, order: int | None
+) -> Formulas | None:
+    """Return the same with symbols for long values; None where no value is long.
 
     A leading coefficient is given where it is of the same order: for a value of its own a
     parameter may have another one.
     """
+    # A parameter with a long value makes formulas unreadable, so that its symbol stays in them.
     long = tuple(name for name, value in hamiltonian.values if _digits(value) >= _LONG)
     if not long:
         return None
-    kept = tuple((name, value) for name, value in hamiltonian.values if name not in long)
-    step_map = scheme.step_map(replace(hamiltonian, values=kept))
+    kept_values = tuple((name, value) for name, value in hamiltonian.values if name not in long)
+    step_map = scheme.step_map(replace(hamiltonian, values=kept_values))
     proof = prove(step_map, scheme)
     same = order is not None and proof.order == order
     leading = proof.first.text if same else None
-    return Formulas(symbols=long, leading=leading, **_written(step_map))
+    return Formulas(symbols=long, leading=leading, **_write_out(step_map))
 
 
 def _digits(value: Fraction) -> int:

@@ -1,4 +1,4 @@
-"""The areas that a map gives to regions inside curves, measured far more finely than they change.
+"""Areas of the images of regions by a map, measured far more finely than the map changes them.
 
 In n degrees of freedom the area is that of ω, the sum of those of the projections to the planes
 (q_k, p_k), with their signs: ∮ p·dq.
@@ -32,33 +32,33 @@ Points = tuple[Any, ...]
 
 
 class PointCarrier(Protocol):
-    """Points in one number system, and a map of them."""
+    """A number system's points, and a map of them."""
 
-    bits: int  # about so many are right after the point
+    bits: int  # about so many bits after the point are right
     grid: int  # 2^grid is what `whole` multiplies by
     sampled: int  # panels that are carried in finer arithmetic
     radius: Fraction | None  # a bound of the images' error, where that is known otherwise
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
-        """An arc's points."""
+        """Return an arc's points."""
 
     def images(self, *points: Any) -> Points:
-        """Their images."""
+        """Return their images."""
 
     def finer(self, *points: Any) -> Points:
-        """Their images in finer arithmetic."""
+        """Return their images in finer arithmetic."""
 
     def whole(self, x: Any) -> np.ndarray:
-        """2^grid x, rounded to whole numbers; an array of int."""
+        """Return 2^grid x, rounded to whole numbers; an array of int."""
 
 
 class NoAreaError(Exception):
-    """A curve bounds an area that is not told from 0, so that its change has no meaning."""
+    """A curve whose area cannot be distinguished from 0, so that its change has no meaning."""
 
 
 @dataclass(frozen=True)
 class Goal:
-    """How small the quadrature's error is to be: `change` of the change of area, or `area` of it.
+    """The greatest error of the quadrature: `change` of the change of area, or `area` of the area.
 
     The greater of the two is enough, so that a change of nothing is not followed into rounding.
     """
@@ -100,7 +100,10 @@ _Part = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to w
 
 @dataclass(frozen=True)
 class Family:
-    """A panel in halves, with how much they differ from the whole: both areas, or the own alone."""
+    """A panel in halves, with their difference from the whole panel.
+
+    `difference`: of the areas before and after the map; `unsure`: of that before alone.
+    """
 
     halves: tuple[Panel, Panel]
     difference: int
@@ -118,26 +121,26 @@ class Family:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredArea:
     """The area inside a curve and its relative change by a map, with a bound of the change's error.
 
-    `truncated` and `rounded` are the parts of `error`: the quadrature's and the arithmetic's.
-    `parts`: the image's area in each plane (q_k, p_k), by the area before, and its error.
-    `panels` are the halves in their order along the curve. `exhausted`: the goals were not reached
-    with as many nodes as there may be.
+    `truncation_error` and `rounding_error` are the parts of `error`: the quadrature's and the
+    arithmetic's. `parts`: the image's area in each plane (q_k, p_k), by the area before, and its
+    error. `panels` are the halves in their order along the curve. `exhausted`: the goals were not
+    reached with as many nodes as there may be.
     """
 
     area: Fraction
     change: Fraction
-    truncated: Fraction
-    rounded: Fraction
+    truncation_error: Fraction
+    rounding_error: Fraction
     panels: tuple[Panel, ...]
     exhausted: bool
     parts: tuple[tuple[Fraction, Fraction], ...]
 
     @property
     def error(self) -> Fraction:
-        return self.truncated + self.rounded
+        return self.truncation_error + self.rounding_error
 
     @property
     def nodes(self) -> int:
@@ -145,7 +148,7 @@ class Measured:
 
 
 class Probe:
-    """Measures outlines in one plane, each to its goal."""
+    """A measurement of outlines in one plane, each to its goal."""
 
     def __init__(
         self, outlines: Sequence[Outline], plane: PointCarrier, goals: Sequence[Goal]
@@ -154,8 +157,8 @@ class Probe:
         self.rule: Rule = rule(plane.bits + 24)
         self.unit = Fraction(1, 2 ** (2 * plane.grid + self.rule.bits))
 
-    def measure(self) -> list[Measured]:
-        """Cuts until the errors are as small as they are to be, or no cut makes them smaller.
+    def measure(self) -> list[MeasuredArea]:
+        """Cut panels until the errors are small enough, or no cut makes them smaller.
 
         Raises NoAreaError, and what the plane's maps raise.
         """
@@ -167,18 +170,20 @@ class Probe:
                 parts += [(index, arc, a, b) for a, b in pairwise(ends)]
         families = self._families(self._panels(parts))
         for index in range(len(self.outlines)):
-            own = self._of(families, index)
-            if sum(family.unsure for family in own) <= self._nothing(own):
-                self._must_bound(own)  # before a goal that is a part of 0 is sought for long
-        cut = self._to_cut(families)
+            curve_families = self._select_outline(families, index)
+            unsure = sum(family.unsure for family in curve_families)
+            if unsure <= self._negligible_area(curve_families):
+                # Before a goal that is a part of 0 is sought for long.
+                self._check_area(curve_families)
+        cut = self._select_to_cut(families)
         for _ in range(_MOST_ROUNDS):
             if not cut or NODES * 2 * (len(families) + len(cut)) > MOST_NODES:
                 break
             families = self._cut(families, cut)
-            cut = self._to_cut(families)
+            cut = self._select_to_cut(families)
         rounding = self._roundings(families)
         return [
-            self._measured(self._of(families, i), rounding[i], bool(cut))
+            self._build_result(self._select_outline(families, i), rounding[i], bool(cut))
             for i in range(len(self.outlines))
         ]
 
@@ -194,22 +199,22 @@ class Probe:
         ]
 
     def _starts(self, parts: Sequence[_Part]) -> list[Points]:
-        """The nodes of each part, those of one arc in one call."""
-        found: dict[_Part, Points] = {}
+        """Return the nodes of each part, those of one arc in one call."""
+        points_of_part: dict[_Part, Points] = {}
         of_arc = groupby(sorted(parts), lambda part: part[:2])
         for (index, arc), group in of_arc:
-            own = list(group)
-            nodes = [s for _, _, a, b in own for s in nodes_between(self.rule.bits, a, b)]
+            group_parts = list(group)
+            nodes = [s for _, _, a, b in group_parts for s in nodes_between(self.rule.bits, a, b)]
             points = self.plane.points(self.outlines[index], arc, nodes)
-            found |= zip(own, _by_panel(points), strict=True)
-        return [found[part] for part in parts]
+            points_of_part |= zip(group_parts, _split_by_panel(points), strict=True)
+        return [points_of_part[part] for part in parts]
 
     def _images(self, starts: Sequence[Points], carry: Callable[..., Points]) -> list[Points]:
-        """All points in one call."""
-        return _by_panel(carry(*(np.concatenate(z) for z in zip(*starts, strict=True))))
+        """Map all points in one call."""
+        return _split_by_panel(carry(*(np.concatenate(z) for z in zip(*starts, strict=True))))
 
     def _areas(self, points: Sequence[Points]) -> list[tuple[int, ...]]:
-        """Of each panel the area in each plane (q_k, p_k)."""
+        """Return each panel's area in each plane (q_k, p_k)."""
         axes = [
             self.plane.whole(np.concatenate(z)).reshape(-1, NODES)
             for z in zip(*points, strict=True)
@@ -221,31 +226,31 @@ class Probe:
     def _families(self, panels: Sequence[Panel]) -> list[Family]:
         halves = self._panels([half for panel in panels for half in panel.halves])
         pairs = zip(halves[::2], halves[1::2], strict=True)
-        found = []
+        families = []
         for panel, (one, other) in zip(panels, pairs, strict=True):
             unsure = abs(panel.before - one.before - other.before)
-            apart = unsure + abs(panel.after - one.after - other.after)
+            difference = unsure + abs(panel.after - one.after - other.after)
             triples = zip(panel.parts, one.parts, other.parts, strict=True)
             each = tuple(abs(x - y - z) for x, y, z in triples)
-            found.append(Family((one, other), apart, unsure, each))
-        return found
+            families.append(Family((one, other), difference, unsure, each))
+        return families
 
     # -- where to cut -------------------------------------------------------------------------
 
     @staticmethod
-    def _of(families: Sequence[Family], index: int) -> list[Family]:
+    def _select_outline(families: Sequence[Family], index: int) -> list[Family]:
         return [family for family in families if family.halves[0].outline == index]
 
-    def _to_cut(self, families: Sequence[Family]) -> set[int]:
-        """The ids of families whose difference is more than their share of what is allowed."""
-        found: list[Family] = []
+    def _select_to_cut(self, families: Sequence[Family]) -> set[int]:
+        """Return the ids of families whose difference exceeds their share of the tolerance."""
+        selected: list[Family] = []
         for index, goal in enumerate(self.goals):
-            own = self._of(families, index)
-            change = abs(sum(family.change for family in own))
-            allowed = max(goal.change * change, goal.area * self._size(own))
-            share = allowed / (2 * len(own))
-            found += [f for f in own if f.difference > share and not f.stuck]
-        return set(map(id, found))
+            curve_families = self._select_outline(families, index)
+            change = abs(sum(family.change for family in curve_families))
+            tolerance = max(goal.change * change, goal.area * self._size(curve_families))
+            share = tolerance / (2 * len(curve_families))
+            selected += [f for f in curve_families if f.difference > share and not f.stuck]
+        return set(map(id, selected))
 
     @staticmethod
     def _size(families: Sequence[Family]) -> int:
@@ -253,90 +258,98 @@ class Probe:
 
     def _cut(self, families: Sequence[Family], cut: set[int]) -> list[Family]:
         parents = [half for family in families if id(family) in cut for half in family.halves]
-        made = iter(self._families(parents))
-        sizes = [self._size(self._of(families, i)) for i in range(len(self.outlines))]
+        halves = iter(self._families(parents))
+        sizes = [self._size(self._select_outline(families, i)) for i in range(len(self.outlines))]
         result: list[Family] = []
         for family in families:
             if id(family) not in cut:
                 result.append(family)
                 continue
-            two = [next(made), next(made)]
-            halved = _STUCK * sum(f.difference for f in two) <= family.difference
+            two = [next(halves), next(halves)]
+            is_smaller = _STUCK * sum(f.difference for f in two) <= family.difference
+            # A difference that halving hardly reduces, far below the area, comes from rounding: to
+            # cut on would never end.
             noise = sizes[family.halves[0].outline] >> (self.plane.bits // 2)
-            if not halved and family.difference < noise:
+            if not is_smaller and family.difference < noise:
                 two = [replace(f, stuck=True) for f in two]
             result += two
         return result
 
     # -- the result ---------------------------------------------------------------------------
 
-    def _measured(self, families: Sequence[Family], rounding: int, exhausted: bool) -> Measured:
+    def _build_result(
+        self, families: Sequence[Family], rounding: int, exhausted: bool
+    ) -> MeasuredArea:
         panels = tuple(half for family in families for half in family.halves)
         area, size = sum(panel.before for panel in panels), self._size(families)
-        self._must_bound(families)
-        rounded = Fraction(rounding + self._floor(panels), size)
+        self._check_area(families)
+        rounding_error = Fraction(rounding + self._rule_rounding(panels), size)
         sums = zip(*(panel.parts for panel in panels), strict=True)
-        apart = zip(*(family.parts for family in families), strict=True)
-        return Measured(
+        differences = zip(*(family.parts for family in families), strict=True)
+        return MeasuredArea(
             area=area * self.unit,
             change=Fraction(sum(panel.change for panel in panels), area),
-            truncated=Fraction(sum(family.difference for family in families), size),
-            rounded=rounded,
+            truncation_error=Fraction(sum(family.difference for family in families), size),
+            rounding_error=rounding_error,
             panels=panels,
             exhausted=exhausted,
             parts=tuple(
-                (Fraction(sum(x), area), Fraction(sum(y), size) + rounded)
-                for x, y in zip(sums, apart, strict=True)
+                (Fraction(sum(x), area), Fraction(sum(y), size) + rounding_error)
+                for x, y in zip(sums, differences, strict=True)
             ),
         )
 
-    def _nothing(self, families: Sequence[Family]) -> int:
-        """An area that is 0 beside those that the parts of the curve sweep."""
+    def _negligible_area(self, families: Sequence[Family]) -> int:
+        """Return an area that is 0 in comparison with those that the parts of the curve sweep."""
         swept = sum(abs(panel.before) for family in families for panel in family.halves)
         return swept >> (self.plane.bits // 2)
 
-    def _must_bound(self, families: Sequence[Family]) -> None:
-        """Raises NoAreaError for a curve that goes round nothing, as a figure of eight may: its
-        parts take each other away."""
-        if self._size(families) <= self._nothing(families):
+    def _check_area(self, families: Sequence[Family]) -> None:
+        """Raise NoAreaError for a curve that bounds no area, as a figure of eight may."""
+        if self._size(families) <= self._negligible_area(families):
             name = self.outlines[families[0].halves[0].outline].name
             raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
 
     def _roundings(self, families: Sequence[Family]) -> list[int]:
-        """Differences of the panels' areas from those in finer arithmetic, without their signs, in
-        all planes (q_k, p_k).
+        """Return the sizes of the panels' differences from finer arithmetic, in all planes.
 
-        Where the images' error is known, that times the length of the image.
+        Where the images' error is known, it is that error times the length of the image.
         """
-        own = [[h for f in self._of(families, i) for h in f.halves] for i in range(len(self.goals))]
+        panels_of_curves = [
+            [h for f in self._select_outline(families, i) for h in f.halves]
+            for i in range(len(self.goals))
+        ]
         if self.plane.radius is not None:
-            return [round(self.plane.radius * self._length(x) / self.unit) for x in own]
-        some = [panels[:: max(1, len(panels) // self.plane.sampled)] for panels in own]
+            return [
+                round(self.plane.radius * self._length(x) / self.unit) for x in panels_of_curves
+            ]
+        some = [panels[:: max(1, len(panels) // self.plane.sampled)] for panels in panels_of_curves]
         flat = [panel for panels in some for panel in panels]
         areas = iter(self._areas(self._images([p.start for p in flat], self.plane.finer)))
-        apart = [
+        differences = [
             sum(abs(x - y) for p in panels for x, y in zip(next(areas), p.parts, strict=True))
             for panels in some
         ]
+        # A sample of every k-th panel stands for all of them: its sum is scaled up, and doubled.
         return [
             2 * -(-x * len(panels) // len(few))
-            for x, panels, few in zip(apart, own, some, strict=True)
+            for x, panels, few in zip(differences, panels_of_curves, some, strict=True)
         ]
 
     def _length(self, panels: Sequence[Panel]) -> Fraction:
-        """The sum of |dz| of all coordinates along the image, by its nodes, and a quarter more."""
+        """Return the sum of |dz| of all coordinates along the image's nodes, and a quarter more."""
         images = zip(*(panel.image for panel in panels), strict=True)
         axes = [np.concatenate([self.plane.whole(z) for z in each]) for each in images]
         steps = sum(int(abs(np.diff(axis)).sum()) for axis in axes)
         return Fraction(steps * 5 // 4, 2**self.plane.grid)
 
-    def _floor(self, panels: Sequence[Panel]) -> int:
-        """The rounding of the rule's numbers."""
+    def _rule_rounding(self, panels: Sequence[Panel]) -> int:
+        """Return the rounding of the rule's numbers."""
         largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
         return len(panels[0].parts) * len(panels) * NODES**2 * largest**2
 
 
-def _by_panel(points: Points) -> list[Points]:
-    """Of each panel its own, of the points of many."""
+def _split_by_panel(points: Points) -> list[Points]:
+    """Split the points of many panels into those of each."""
     cut = [slice(i, i + NODES) for i in range(0, len(points[0]), NODES)]
     return [tuple(z[part] for z in points) for part in cut]

@@ -24,15 +24,15 @@ from verify.arithmetic.exact import decimal, known_text, text, upper
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.times_on_the_way import first_fault
+from verify.hamiltonians.times_on_the_way import find_first_fault
 from verify.kernels.many_points import LeftRangeError
 from verify.kernels.step.computation import step_map_of
 from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage, Projection
 from verify.scenes.shapes.outline import Outline, Shape
 from verify.structures import AREA, SYMPLECTIC
-from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
-from verify.studies.regions.mean_lambda import mean_over, middle_of
+from verify.studies.regions.area import Goal, MeasuredArea, NoAreaError, Probe
+from verify.studies.regions.mean_lambda import find_middle, mean_over
 from verify.studies.regions.place import ITSELF, Place
 from verify.studies.regions.point_carriers import (
     ExactFlowCarrier,
@@ -42,8 +42,8 @@ from verify.studies.regions.point_carriers import (
     distance_from_exact,
     smaller_than_one,
 )
-from verify.studies.regions.polyline import dense, to_draw
-from verify.studies.regions.polyline import text as points_text
+from verify.studies.regions.polyline import densify, thin_for_drawing
+from verify.studies.regions.polyline import format_points as points_text
 
 BELOW = 100  # how many times the probe's error is to be below the change of area
 _MORE_DIGITS = 33
@@ -60,23 +60,23 @@ _DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
 @dataclass(frozen=True)
 class _OutlineImage:
-    """One outline under the map, in float64: its panels' nodes before and after."""
+    """One outline under the map: its panels' nodes before and after, in float64."""
 
     outline: Outline
-    measured: Measured
+    measured: MeasuredArea
     before: list[tuple[np.ndarray, ...]]
     after: list[tuple[np.ndarray, ...]]
     place: Place
 
     def curve(self, index: int) -> np.ndarray:
-        """The image in the plane (q_k, p_k), k − 1 = index: points (n, 2)."""
+        """Return the image in the plane (q_k, p_k), k − 1 = index: points (n, 2)."""
         n = self.place.degrees
-        return dense([(z[index], z[n + index]) for z in self.after], _DRAWN_POINTS)[0]
+        return densify([(z[index], z[n + index]) for z in self.after], _DRAWN_POINTS)[0]
 
 
 @dataclass(frozen=True)
 class _Carrying:
-    """A map, the name of a scheme or EXACT_FLOW, that is applied so many times."""
+    """A map, by the name of a scheme or EXACT_FLOW, that is applied so many times."""
 
     hamiltonian: Hamiltonian
     map: str
@@ -109,41 +109,42 @@ def carry(
     t0: Fraction | None = None,
     place: Place = ITSELF,
 ) -> FlowImage:
-    """The image of the shape by so many steps of a scheme, or by the exact flow (EXACT_FLOW), from
-    t0 on where H depends on time; in n degrees of freedom of one in the plane of `place`.
+    """Return the image of the shape by so many steps of a scheme, or by EXACT_FLOW.
 
-    At least so many digits are worked with. `mean_lambda`: the mean of Λ over the region, too;
-    `distance`: how far its outlines are from the exact ones. `problem` says why there is no image.
+    Where H depends on time the map starts at t0; in n degrees of freedom the shape lies in the
+    plane of `place`. The arithmetic has at least so many digits. `mean_lambda`: the mean of Λ over
+    the region, too; `distance`: that of its outlines from the exact ones. In the result `problem`
+    says why there is no image.
     """
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     by = _Carrying(hamiltonian, map_name, step_size, steps, t0 or Fraction(0), place)
-    kept = by.preserves_area
-    found: dict[str, Any] = {}
+    preserves_area = by.preserves_area
+    fields: dict[str, Any] = {}
     try:
         _check_smooth(by)
-        with np.errstate(all="ignore"):  # what is not finite is looked for
-            carried, plane = _measured(by, shape, digits)
-            found = _areas(carried, plane, kept)
-            if mean_lambda and not kept and not found["problem"]:
-                found |= _mean(by, carried[0])
+        with np.errstate(all="ignore"):  # non-finite numbers are checked for
+            images, plane = _measure_outlines(by, shape, digits)
+            fields = _area_fields(images, plane, preserves_area)
+            if mean_lambda and not preserves_area and not fields["problem"]:
+                fields |= _mean_fields(by, images[0])
             if distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
-                    found |= _distance(by, carried)
+                    fields |= _distance_fields(by, images)
     except (LeftRangeError, NoFlowError, NoAreaError) as error:
-        found = {"problem": error.said if isinstance(error, NoFlowError) else prose(str(error))}
+        fields = {"problem": error.reason if isinstance(error, NoFlowError) else prose(str(error))}
     return FlowImage(
         map=map_name,
         steps=steps,
         time=text(by.time),
-        area_preserving=kept,
-        seconds=time.perf_counter() - begun,
-        **found,
+        area_preserving=preserves_area,
+        seconds=time.perf_counter() - start_time,
+        **fields,
     )
 
 
 def _check_smooth(by: _Carrying) -> None:
-    """NoFlowError where H is not smooth at some time on the way, which all points would meet."""
-    step, words = first_fault(by.hamiltonian, by.t0, by.step_size, by.steps)
+    """Raise NoFlowError if H is not smooth at some time on the way, which all points would meet."""
+    step, words = find_first_fault(by.hamiltonian, by.t0, by.step_size, by.steps)
     if words:
         begin = text(by.t0 + step * by.step_size)
         reason = (
@@ -155,68 +156,77 @@ def _check_smooth(by: _Carrying) -> None:
 # -- areas ----------------------------------------------------------------------------------------
 
 
-def _measured(
+def _measure_outlines(
     by: _Carrying, shape: Shape, digits: int
 ) -> tuple[list[_OutlineImage], SchemeCarrier | ExactFlowCarrier]:
-    """All outlines, in the arithmetic that tells the region's change from the probe's error."""
-    smaller, kept, place = smaller_than_one(shape.outlines[0]), by.preserves_area, by.place
+    """Measure all outlines, in arithmetic fine enough for the region's change of area."""
+    smaller = smaller_than_one(shape.outlines[0])
+    preserves_area = by.preserves_area
+    place = by.place
     if by.map == EXACT_FLOW:
         exact = ExactFlowCarrier(by.hamiltonian, by.time, by.t0, smaller, place)
-        return _all(shape, exact, _UNCHANGED), exact
-    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
+        return _carry_all(shape, exact, _UNCHANGED), exact
+    arguments = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
     if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
-            floats = FloatCarrier(*given, smaller, place)
-            carried = _all(shape, floats, _UNCHANGED if kept else _CHANGED)
-            measured = carried[0].measured
-            if kept or _is_sharp(measured) or _is_unresolved(measured):
-                return carried, floats
+            floats = FloatCarrier(*arguments, smaller, place)
+            images = _carry_all(shape, floats, _UNCHANGED if preserves_area else _CHANGED)
+            region = images[0].measured
+            # float64 suffices where nothing changes or its error is far below the change; more
+            # nodes, not more digits, would mend a curve that is too long.
+            if preserves_area or _is_sharp(region) or _is_unresolved(region):
+                return images, floats
     digits = max(digits, _MORE_DIGITS)
-    goal = _unchanged(digits) if kept else Goal(_PART, Fraction(100, 10**digits))
+    goal = (
+        _goal_without_change(digits) if preserves_area else Goal(_PART, Fraction(100, 10**digits))
+    )
     *faster, last = (system.name for system in number_systems.automatic())
     for name in faster:
+        # A fixed-point system may lack a function or the range; the last system has both.
         with contextlib.suppress(UnsupportedError, LeftRangeError):
-            wide = WideCarrier(*given, name, digits, smaller, place)
-            return _all(shape, wide, goal), wide
-    wide = WideCarrier(*given, last, digits, smaller, place)
-    return _all(shape, wide, goal), wide
+            wide = WideCarrier(*arguments, name, digits, smaller, place)
+            return _carry_all(shape, wide, goal), wide
+    wide = WideCarrier(*arguments, last, digits, smaller, place)
+    return _carry_all(shape, wide, goal), wide
 
 
-def _unchanged(digits: int) -> Goal:
-    """As fine as the arithmetic can tell, with some digits for what shear does to rounding."""
+def _goal_without_change(digits: int) -> Goal:
+    """Return a goal as fine as the arithmetic, less some digits for rounding under shear."""
     return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
 
 
-def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> list[_OutlineImage]:
+def _carry_all(
+    shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal
+) -> list[_OutlineImage]:
     goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
-    found = []
-    for outline, measured in zip(
+    images = []
+    for outline, area in zip(
         shape.outlines, Probe(shape.outlines, plane, goals).measure(), strict=True
     ):
-        before = [plane.floats(panel.start) for panel in measured.panels]
-        after = [plane.floats(panel.image) for panel in measured.panels]
-        found.append(_OutlineImage(outline, measured, before, after, plane.place))
-    return found
+        before = [plane.floats(panel.start) for panel in area.panels]
+        after = [plane.floats(panel.image) for panel in area.panels]
+        images.append(_OutlineImage(outline, area, before, after, plane.place))
+    return images
 
 
-def _is_sharp(measured: Measured) -> bool:
-    return BELOW * measured.error <= abs(measured.change)
+def _is_sharp(region: MeasuredArea) -> bool:
+    return BELOW * region.error <= abs(region.change)
 
 
-def _is_unresolved(measured: Measured) -> bool:
-    """Whether the curve is too long for the nodes there may be, which no digits mend."""
-    return measured.exhausted and measured.truncated > BELOW * measured.rounded
+def _is_unresolved(region: MeasuredArea) -> bool:
+    """Return True if the curve is too long for the number of nodes, which no digits mend."""
+    return region.exhausted and region.truncation_error > BELOW * region.rounding_error
 
 
-def _areas(
-    carried: Sequence[_OutlineImage], plane: SchemeCarrier | ExactFlowCarrier, kept: bool
+def _area_fields(
+    images: Sequence[_OutlineImage], plane: SchemeCarrier | ExactFlowCarrier, preserves_area: bool
 ) -> dict[str, Any]:
-    region = carried[0].measured
-    problem = _problem(region, kept)
+    region = images[0].measured
+    problem = _describe_problem(region, preserves_area)
     degrees = plane.place.degrees
-    seen = [to_draw([each.curve(k) for each in carried]) for k in range(degrees)]
-    curves = zip(*seen, strict=True)
-    change, error = _shown(region.change, region.error)
+    drawn_curves = [thin_for_drawing([each.curve(k) for each in images]) for k in range(degrees)]
+    curves = zip(*drawn_curves, strict=True)
+    change, error = _format_with_error(region.change, region.error)
     return {
         "problem": problem,
         "area_change": None if problem else change,
@@ -224,13 +234,13 @@ def _areas(
         "arithmetic": plane.name,
         "digits": plane.digits,
         "method": plane.method,
-        "outlines": tuple(map(_outline, carried, curves)),
+        "outlines": tuple(map(_build_outline, images, curves)),
     }
 
 
-def _problem(region: Measured, kept: bool) -> Prose:
-    """Why what was measured tells nothing; empty where it does."""
-    if not kept and not _is_sharp(region):
+def _describe_problem(region: MeasuredArea, preserves_area: bool) -> Prose:
+    """Describe why the measurement is no result; empty where it is one."""
+    if not preserves_area and not _is_sharp(region):
         return read_prose(
             f"the probe's error `{decimal(region.error, 2)}` is not {BELOW} times below the change "
             f"of area `{decimal(region.change, 2)}`"
@@ -241,63 +251,67 @@ def _problem(region: Measured, kept: bool) -> Prose:
     return Prose()
 
 
-def _outline(carried: _OutlineImage, curves: Sequence[np.ndarray]) -> CarriedOutline:
-    """`curves`: one for each plane (q_k, p_k)."""
-    measured, place = carried.measured, carried.place
-    area = abs(measured.area)  # of a curve that runs clockwise it has a sign
-    change, error = _shown(measured.change, measured.error)
+def _build_outline(image: _OutlineImage, curves: Sequence[np.ndarray]) -> CarriedOutline:
+    """Build the result of one outline; `curves`: one for each plane (q_k, p_k)."""
+    region, place = image.measured, image.place
+    area = abs(region.area)  # of a curve that runs clockwise it has a sign
+    change, error = _format_with_error(region.change, region.error)
     return CarriedOutline(
-        name=carried.outline.name,
-        area=_shown(area, area * measured.error)[0],
+        name=image.outline.name,
+        area=_format_with_error(area, area * region.error)[0],
         area_change=change,
         probe_error=error,
-        nodes=measured.nodes,
+        nodes=region.nodes,
         points=points_text(curves[place.index]),
-        projections=tuple(_projections(measured, curves)) if place.degrees > 1 else (),
+        projections=tuple(_build_projections(region, curves)) if place.degrees > 1 else (),
     )
 
 
-def _projections(measured: Measured, curves: Sequence[np.ndarray]) -> Iterator[Projection]:
-    for k, ((value, error), curve) in enumerate(zip(measured.parts, curves, strict=True)):
-        area, bound = _shown(value, error)
+def _build_projections(region: MeasuredArea, curves: Sequence[np.ndarray]) -> Iterator[Projection]:
+    for k, ((value, error), curve) in enumerate(zip(region.parts, curves, strict=True)):
+        area, bound = _format_with_error(value, error)
         yield Projection(plane=k + 1, area=area, area_error=bound, points=points_text(curve))
 
 
-def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
-    """The value with one digit more than is known, and its error with that of the text."""
-    shown = known_text(value, error / 10, _SHOWN)
-    return shown, upper(error + abs(value - Fraction(shown)))
+def _format_with_error(value: Fraction, error: Fraction) -> tuple[str, str]:
+    """Format the value with one digit more than is known, and its error with that of the text."""
+    value_text = known_text(value, error / 10, _SHOWN)
+    return value_text, upper(error + abs(value - Fraction(value_text)))
 
 
 # -- beside the areas -----------------------------------------------------------------------------
 
 
-def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
-    """The mean of Λ, or of W, over the region; nothing where the map is not defined on all rays to
-    it."""
-    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0, by.place
+def _mean_fields(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
+    """Return the fields of the mean of Λ, or of W, over the region.
+
+    There are none where the map is not defined on all rays to it.
+    """
+    arguments = by.hamiltonian, by.map, by.step_size, by.steps, by.t0, by.place
     try:
-        found = mean_over(region.outline, middle_of(region.outline), *given)
+        mean = mean_over(region.outline, find_middle(region.outline), *arguments)
     except LeftRangeError:
         return {}
-    if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range
+    if not (isfinite(mean.value) and isfinite(mean.error)):  # areas below float64's range
         return {}
-    value, error = Fraction(found.value), Fraction(found.error)
+    value, error = Fraction(mean.value), Fraction(mean.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
-    shown, bound = _shown(value, error)
+    mean_text, bound = _format_with_error(value, error)
     name = {AREA: "mean_lambda", SYMPLECTIC: "mean_defect"}[by.hamiltonian.structure]
-    return {name: shown, f"{name}_error": bound, "agree": agree}
+    return {name: mean_text, f"{name}_error": bound, "agree": agree}
 
 
-def _distance(by: _Carrying, carried: Sequence[_OutlineImage]) -> dict[str, Any]:
-    """How far the outlines are from their images by the exact flow; nothing where too few points of
-    the region's are known to tell even its area. Raises NoFlowError."""
-    region = carried[0].measured
-    if region.truncated > max(Fraction(1), abs(region.change)):
+def _distance_fields(by: _Carrying, images: Sequence[_OutlineImage]) -> dict[str, Any]:
+    """Return the fields of the outlines' distance from their images by the exact flow.
+
+    There are none where too few points of the region are known for its area. Raises NoFlowError.
+    """
+    region = images[0].measured
+    if region.truncation_error > max(Fraction(1), abs(region.change)):
         return {}
-    pairs = [(each.before, each.after) for each in carried]
-    found = distance_from_exact(by.hamiltonian, by.time, by.t0, pairs)
-    if found is None:
+    pairs = [(each.before, each.after) for each in images]
+    distance = distance_from_exact(by.hamiltonian, by.time, by.t0, pairs)
+    if distance is None:
         return {}
-    shown, told = _shown(*found)
-    return {"distance": shown, "distance_error": told}
+    distance_text, error_text = _format_with_error(*distance)
+    return {"distance": distance_text, "distance_error": error_text}

@@ -35,7 +35,7 @@ _HALVINGS = 40
 
 @dataclass(frozen=True)
 class Distance:
-    """|`value` − the distance| ≤ `bound`."""
+    """A distance: |`value` − the distance| ≤ `bound`."""
 
     value: float
     bound: float
@@ -47,7 +47,7 @@ def hausdorff(
     sagitta_first: float = 0.0,
     sagitta_second: float = 0.0,
 ) -> Distance:
-    """The Hausdorff distance of the unions of two sets of closed curves.
+    """Return the Hausdorff distance of the unions of two sets of closed curves.
 
     A curve is an array of shape (n, 2), its points in their order; the last is joined to the first.
     `sagitta_…` bounds the Hausdorff distance of each polyline from its curve, and is a part of the
@@ -58,8 +58,10 @@ def hausdorff(
     for name, sagitta in (("sagitta_first", sagitta_first), ("sagitta_second", sagitta_second)):
         if not (isfinite(sagitta) and sagitta >= 0):
             raise InputError(name, sagitta, "must be finite and at least 0")
+    # Relative to the greatest coordinate of both sets; `_LEAST` keeps it above 0 for points at the
+    # origin.
     rounding = max(_LEAST, *(_ROUNDING * float(abs(rows).max()) for rows in sets))
-    low, high = _both(sets[0], sets[1], rounding)
+    low, high = _enclose_distance(sets[0], sets[1], rounding)
     return Distance(low, high - low + sagitta_first + sagitta_second + rounding)
 
 
@@ -74,35 +76,37 @@ def _segments(name: str, curves: Sequence[Curve]) -> Any:
     return segments([np.asarray(curve, dtype=np.float64) for curve in curves])
 
 
-def _both(first: Any, second: Any, rounding: float) -> tuple[float, float]:
-    """The least and the greatest that the polylines' distance can be, up to `rounding`."""
-    forth = _one_way(first, second, 0.0, rounding)
+def _enclose_distance(first: Any, second: Any, rounding: float) -> tuple[float, float]:
+    """Return the least and the greatest that the polylines' distance can be, up to `rounding`."""
+    forth = _enclose_directed(first, second, 0.0, rounding)
     # What is nearer than the one direction's distance does not matter for the other's.
-    back = _one_way(second, first, forth[0], rounding)
+    back = _enclose_directed(second, first, forth[0], rounding)
     return back[0], max(forth[1], back[1])
 
 
-def _one_way(rows: Any, others: Any, known: float, rounding: float) -> tuple[float, float]:
+def _enclose_directed(
+    rows: Any, others: Any, at_least: float, rounding: float
+) -> tuple[float, float]:
     near = np.empty((len(rows), 2), dtype=np.int64)
     parts, nears = np.empty((_DEEP + 2, 4)), np.empty((_DEEP + 2, 3), dtype=np.int64)
     work = new_stack(), parts, nears
-    low, high = _compiled()(rows, others, boxes(others), near, *work, known, rounding)
+    low, high = _compile_loop()(rows, others, boxes(others), near, *work, at_least, rounding)
     return float(low), float(high)
 
 
 @cache
-def _compiled() -> Callable[..., tuple[float, float]]:
-    from verify.arithmetic.compiled.loops import compiled
+def _compile_loop() -> Callable[..., tuple[float, float]]:
+    from verify.arithmetic.compiled.loops import compile_function
 
-    return compiled(_directed)
+    return compile_function(_directed_distance)
 
 
 def _distance(x: float, y: float, row: Any) -> float:
     return sqrt(to_segment(x, y, row))
 
 
-def _upper(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float]:
-    """A bound on the distance along a part of a segment, and where to divide it (0 … 1).
+def _bound_on_part(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float]:
+    """Return a bound on the distance along a part of a segment, and where to divide it (0 … 1).
 
     `part` is x₀, y₀, x₁, y₁; up to some place on it the distance from the segment `start` bounds
     it, beyond that the one from `end`, these being the nearest to its ends. The place is looked for
@@ -137,7 +141,7 @@ def _greatest_on_segment(
     low: float,
     rounding: float,
 ) -> tuple[float, float]:
-    """The greatest distance of a point of one segment from `others`: at least, and at most.
+    """Return bounds, from below and above, of the greatest distance of a segment from `others`.
 
     The first is at least `low`. `near` has the indices of the segments nearest to its ends.
     """
@@ -154,7 +158,7 @@ def _greatest_on_segment(
         # The distance changes at most as fast as the place.
         bound, place = (ends + sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))) / 2, 0.5
         if bound > enough:
-            closer, place = _upper(parts[count], others[start], others[end], enough)
+            closer, place = _bound_on_part(parts[count], others[start], others[end], enough)
             bound = min(bound, closer)
         if bound <= enough or depth == _DEEP:
             high = max(high, bound)
@@ -171,7 +175,7 @@ def _greatest_on_segment(
     return low, high
 
 
-def _directed(
+def _directed_distance(
     rows: Any,
     others: Any,
     tree: Any,
@@ -179,15 +183,15 @@ def _directed(
     stack: Any,
     parts: Any,
     nears: Any,
-    known: float,
+    at_least: float,
     rounding: float,
 ) -> tuple[float, float]:
-    """The greatest distance of a point of `rows` from `others`: at least, and at most.
+    """Return bounds, from below and above, of the greatest distance of `rows` from `others`.
 
-    Both are at least `known`. `near`, one row for each segment, and what follows are to be written
-    on.
+    Both are at least `at_least`. `near`, with one row for each segment, `stack`, `parts` and
+    `nears` are work space.
     """
-    low, hint = known, 0
+    low, hint = at_least, 0
     for k in range(len(rows)):
         square, hint = nearest(rows[k, 0], rows[k, 1], others, tree, hint, stack)
         low, near[k, 0] = max(low, sqrt(square)), hint

@@ -40,7 +40,7 @@ _Cell = tuple[int, float, float, float, float]  # an arc, from where to where on
 
 @dataclass(frozen=True)
 class Mean:
-    """The mean with its error, by how much cells and their quarters differ altogether."""
+    """The mean with its error, the sum of the differences of cells and their quarters."""
 
     value: float
     error: float
@@ -56,39 +56,45 @@ def mean_over(
     t0: Fraction = _FROM_START,
     place: Place = ITSELF,
 ) -> Mean:
-    """The mean of Λ after N steps of a scheme, over the region inside the outline, in float64; from
-    t0 on, where H depends on time. In n degrees of freedom that of W, in the plane of `place`.
+    """Return the mean of Λ after N steps of a scheme over the outline's region, in float64.
 
-    By rays from the centre (q, p). Raises LeftRangeError.
+    Where H depends on time the steps start at t0. In n degrees of freedom it is the mean of W, in
+    the plane of `place`. The rays start at the centre (q, p). Raises LeftRangeError.
     """
     observables = frozenset({hamiltonian.structure.of_run})
-    carried = PointMap(
+    point_map = PointMap(
         hamiltonian, scheme, step_size=step_size, steps=steps, t0=t0,
         arithmetic=number_systems.get(float64.NAME, 17), observables=observables,
     )  # fmt: skip
     entry = f"w_{place.index}_{place.degrees + place.index}"
-    name = entry if entry in carried.kernel.state_names else "lam"
+    name = entry if entry in point_map.kernel.state_names else "lam"
 
     def density(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         points = place.embed(x, y, lambda value: np.full(len(x), float(value)))
-        found: np.ndarray = carried(**dict(zip(place.names, points, strict=True)))[name]
-        return found
+        values: np.ndarray = point_map(**dict(zip(place.names, points, strict=True)))[name]
+        return values
 
-    found = _mean_of(density, outline, centre)
-    written = name == "lam" or step_map_of(hamiltonian, scheme).written_defect is not None
-    return found if written else Mean(found.value, found.error + steps * _DEFECT)
+    mean = _compute_mean(density, outline, centre)
+    # Without a closed form S comes from rounded entries of J, whose rounding adds up over the
+    # steps.
+    has_written_defect = (
+        name == "lam" or step_map_of(hamiltonian, scheme).written_defect is not None
+    )
+    return mean if has_written_defect else Mean(mean.value, mean.error + steps * _DEFECT)
 
 
-def middle_of(outline: Outline) -> tuple[float, float]:
-    """Amid its points, whatever is made of them: rays from elsewhere may leave the region, and
-    there the map."""
+def find_middle(outline: Outline) -> tuple[float, float]:
+    """Return the mean of the outline's points.
+
+    Rays from elsewhere may leave the region, where the map may not be defined.
+    """
     s = (np.arange(_AMID) + 0.5) / _AMID
     points = [np.broadcast_arrays(s, *arc(FLOAT, s))[1:] for arc in outline.arcs]
     x, y = np.mean(points, axis=(0, 2))
     return float(x), float(y)
 
 
-def _mean_of(density: _Density, outline: Outline, centre: tuple[float, float]) -> Mean:
+def _compute_mean(density: _Density, outline: Outline, centre: tuple[float, float]) -> Mean:
     region = _Region(outline, centre, density)
     count = -(-_FIRST // len(outline.arcs))
     first = [
@@ -96,59 +102,65 @@ def _mean_of(density: _Density, outline: Outline, centre: tuple[float, float]) -
         for arc in range(len(outline.arcs))
         for k in range(count)
     ]
-    found = region.families(first, region.sums(first))
+    families = region.families(first, region.sums(first))
     points = 5 * NODES**2 * len(first)  # of each cell, and of its quarters
     while True:
-        area = sum(f.quarters[0].sum() for f in found)
-        mean = sum(f.quarters[1].sum() for f in found) / area
-        noise = _ROUNDING * sum(f.quarters[2].sum() for f in found) / abs(area)
-        error = sum(f.difference(mean) for f in found) / abs(area) + noise
-        share = _AGREED * abs(mean * area) / (2 * len(found))
-        cut = [f for f in found if f.difference(mean) > share]
+        area = sum(f.quarters[0].sum() for f in families)
+        mean = sum(f.quarters[1].sum() for f in families) / area
+        noise = _ROUNDING * sum(f.quarters[2].sum() for f in families) / abs(area)
+        error = sum(f.difference(mean) for f in families) / abs(area) + noise
+        share = _AGREED * abs(mean * area) / (2 * len(families))
+        # Cells with more than their share of the error are cut; the share is half of what an even
+        # spread allows.
+        cut = [f for f in families if f.difference(mean) > share]
         points += 16 * NODES**2 * len(cut)
         if error <= _AGREED * abs(mean) or not cut or points > _MOST_POINTS:
             return Mean(float(mean), float(error))
-        kept = [f for f in found if f.difference(mean) <= share]
+        sharp = [f for f in families if f.difference(mean) <= share]
         cells = [cell for f in cut for cell in _quarters(f.cell)]
         sums = np.concatenate([f.quarters for f in cut], axis=1)
-        found = kept + region.families(cells, sums)
+        families = sharp + region.families(cells, sums)
 
 
 @dataclass(frozen=True)
 class _Region:
-    """The region inside an outline, swept by rays from a centre, and what is looked at in it."""
+    """The region inside an outline, swept by rays from a centre, with a density in it."""
 
     outline: Outline
     centre: tuple[float, float]
     density: _Density
 
     def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_Family]":
-        """The cells, of which the sums are known, in quarters."""
+        """Cut the cells, whose sums are known, into quarters."""
         parts = [part for cell in cells for part in _quarters(cell)]
         quarters = self.sums(parts).reshape(3, len(cells), 4)
-        apart = quarters.sum(axis=2) - sums
-        return [_Family(cell, quarters[:, k], apart[:, k]) for k, cell in enumerate(cells)]
+        # Summed without signs later: two wrong totals may agree by chance, not all cells at once.
+        differences = quarters.sum(axis=2) - sums
+        return [_Family(cell, quarters[:, k], differences[:, k]) for k, cell in enumerate(cells)]
 
     def sums(self, cells: list[_Cell]) -> np.ndarray:
-        """Of each cell the area and the integrals of the density and its size: (3, cells)."""
-        x, y, weights = _cone(self.outline, self.centre, cells)
+        """Return each cell's area and the integrals of the density and of its size: (3, cells)."""
+        x, y, weights = _sample_cells(self.outline, self.centre, cells)
         lam = self.density(x, y)
         parts = np.array([weights, weights * lam, np.abs(weights * lam)])
-        summed: np.ndarray = parts.reshape(3, len(cells), -1).sum(axis=2)
-        return summed
+        totals: np.ndarray = parts.reshape(3, len(cells), -1).sum(axis=2)
+        return totals
 
 
 @dataclass(frozen=True)
 class _Family:
-    """A cell, what its quarters sum to (3, 4), and by how much that differs from the cell's."""
+    """A cell, the sums of its quarters (3, 4), and their differences from the cell's."""
 
     cell: _Cell
     quarters: np.ndarray
-    apart: np.ndarray
+    differences: np.ndarray
 
     def difference(self, mean: float) -> float:
-        """Of the integral of Λ − mean: where Λ, or W, is constant no area's error matters."""
-        return abs(float(self.apart[1] - mean * self.apart[0]))
+        """Return the difference of the integral of Λ − mean.
+
+        Where Λ, or W, is constant no area's error matters.
+        """
+        return abs(float(self.differences[1] - mean * self.differences[0]))
 
 
 def _quarters(cell: _Cell) -> list[_Cell]:
@@ -157,20 +169,24 @@ def _quarters(cell: _Cell) -> list[_Cell]:
     return [(arc, a, s, r, u), (arc, a, s, u, t), (arc, s, b, r, u), (arc, s, b, u, t)]
 
 
-def _cone(
+def _sample_cells(
     outline: Outline, centre: tuple[float, float], cells: Sequence[_Cell]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points of the region and the area that each stands for, cell by cell."""
-    made = rule(53)
-    nodes, weights = (np.array([float(v) for v in x]) for x in (made.nodes, made.weights))
-    derivative = np.array([[float(v) for v in row] for row in made.derivative])
+    """Return points of the region and the area that each stands for, cell by cell."""
+    gauss_rule = rule(53)
+    nodes, weights = (
+        np.array([float(v) for v in x]) for x in (gauss_rule.nodes, gauss_rule.weights)
+    )
+    derivative = np.array([[float(v) for v in row] for row in gauss_rule.derivative])
     xs, ys, areas = [], [], []
     for arc, a, b, inner, outer in cells:
         s, radius = a + (b - a) * nodes, inner + (outer - inner) * nodes
-        at = outline.arcs[arc](FLOAT, s)
-        x, y = (np.broadcast_to(v, (NODES,)) - c for v, c in zip(at, centre, strict=True))
-        swept = (x * (derivative @ y) - y * (derivative @ x)) * weights
+        curve_points = outline.arcs[arc](FLOAT, s)
+        x, y = (np.broadcast_to(v, (NODES,)) - c for v, c in zip(curve_points, centre, strict=True))
+        # The area swept by a ray from the centre, (γ − c) × γ' ds, by the panel's derivative
+        # matrix.
+        sweep = (x * (derivative @ y) - y * (derivative @ x)) * weights
         xs.append(np.outer(radius, x).ravel())
         ys.append(np.outer(radius, y).ravel())
-        areas.append(np.outer((outer - inner) * weights * radius, swept).ravel())
+        areas.append(np.outer((outer - inner) * weights * radius, sweep).ravel())
     return np.concatenate(xs) + centre[0], np.concatenate(ys) + centre[1], np.concatenate(areas)

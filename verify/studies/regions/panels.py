@@ -15,7 +15,7 @@ from math import lcm, prod
 import flint
 import numpy as np
 
-from verify.arithmetic.arb import Ball, middle_and_radius
+from verify.arithmetic.arb import Ball, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 
 NODES = 16
@@ -24,26 +24,26 @@ _GUARD = 40  # bits, of which differences of nodes take a few
 
 @dataclass(frozen=True)
 class Rule:
-    """On 0 ≤ s ≤ 1: nodes and weights, and 2^bits S rounded to whole numbers."""
+    """The rule on 0 ≤ s ≤ 1: nodes and weights, and 2^bits S rounded to whole numbers."""
 
     bits: int
     nodes: tuple[Fraction, ...]
     weights: tuple[Fraction, ...]
     derivative: tuple[tuple[Fraction, ...], ...]  # y'(s_i) = Σ_j derivative[i][j] y_j
-    swept: np.ndarray  # (n, n), of int
+    area_matrix: np.ndarray  # (n, n), of int
 
     def areas(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """½ ∫ (x dy − y dx) of each panel, times 2^(2k + bits), for whole x, y: (panels, n), 2^k.
+        """Return ½ ∫ (x dy − y dx) of each panel, times 2^(2k + bits), for x, y times 2^k.
 
-        Sums of whole numbers: nothing is rounded.
+        x and y are whole, of shape (panels, n): the sums round nothing.
         """
-        summed: np.ndarray = ((x @ self.swept) * y).sum(axis=1)
-        return summed
+        totals: np.ndarray = ((x @ self.area_matrix) * y).sum(axis=1)
+        return totals
 
 
 @cache
 def rule(bits: int) -> Rule:
-    """The rule whose numbers are good to 2^−bits."""
+    """Return the rule whose numbers are good to 2^−bits."""
     with working_precision(bits + _GUARD):
         roots = [_root(k) for k in range(NODES)]
         nodes, weights = [(1 - x) / 2 for x, _ in roots], [w / 2 for _, w in roots]
@@ -53,56 +53,60 @@ def rule(bits: int) -> Rule:
             for i in range(NODES)
         ]
     whole = [[round(x * 2 ** (bits - 1)) for x in _exact(row)] for row in pairs]
-    swept = np.array(whole, dtype=object)
-    return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), swept)
+    area_matrix = np.array(whole, dtype=object)
+    return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), area_matrix)
 
 
 @lru_cache(maxsize=8192)
-def nodes_between(bits: int, left: Fraction, right: Fraction) -> tuple[Fraction, ...]:
-    """The nodes of that rule on left ≤ s ≤ right. Each curve is cut first in the same places."""
-    width, (shares, whole) = right - left, _common(bits)
-    first, step = left.numerator * width.denominator * whole, width.numerator * left.denominator
-    below = left.denominator * width.denominator * whole
+def nodes_between(bits: int, start: Fraction, end: Fraction) -> tuple[Fraction, ...]:
+    """Return the nodes of that rule on left ≤ s ≤ right.
+
+    Curves are first cut in the same places.
+    """
+    width, (shares, whole) = end - start, _common(bits)
+    first, step = start.numerator * width.denominator * whole, width.numerator * start.denominator
+    below = start.denominator * width.denominator * whole
     return tuple(Fraction(first + step * share, below) for share in shares)
 
 
 @cache
 def _common(bits: int) -> tuple[list[int], int]:
-    """The nodes' numerators over one denominator, for one reduction a node, not three."""
+    """Return the nodes' numerators over one denominator, for one reduction a node, not three."""
     nodes = rule(bits).nodes
     whole = lcm(*(s.denominator for s in nodes))
     return [int(s * whole) for s in nodes], whole
 
 
 def _root(k: int) -> tuple[Ball, Ball]:
-    """The k-th root of Legendre's polynomial, from the right, and its weight on −1 … 1."""
+    """Return the k-th root of Legendre's polynomial, from the right, and its weight on −1 … 1."""
     return flint.arb.legendre_p_root(NODES, k, weight=True)
 
 
 def _derivative(nodes: Sequence[Ball]) -> list[list[Ball]]:
-    """The differentiation matrix of interpolation at these nodes, by barycentric weights."""
+    """Return the differentiation matrix of interpolation at these nodes, by barycentric weights."""
     others = [[x - y for y in nodes if y is not x] for x in nodes]
     weight = [1 / prod(apart, start=Ball(1)) for apart in others]
     d = [
         [Ball(0) if y is x else weight[j] / weight[i] / (x - y) for j, y in enumerate(nodes)]
         for i, x in enumerate(nodes)
     ]
+    # The derivative of a constant is 0, so that each row sums to 0.
     for i in range(len(nodes)):
         d[i][i] = -sum(d[i], Ball(0))
     return d
 
 
 def _exact(values: Sequence[Ball]) -> tuple[Fraction, ...]:
-    return tuple(middle_and_radius(x)[0] for x in values)
+    return tuple(midpoint_and_radius(x)[0] for x in values)
 
 
 @cache
 def interpolation(count: int) -> np.ndarray:
-    """(count, n) matrix in float64: values at s = 0, 1/count, … from those at a panel's nodes."""
+    """Return the (count, n) matrix from values at a panel's nodes to those at s = 0, 1/count, …"""
     nodes = np.array([float(x) for x in rule(53).nodes])
     targets = np.arange(count) / count
-    apart = nodes[:, None] - nodes[None, :] + np.eye(NODES)
-    weight = 1 / apart.prod(axis=1)
+    differences = nodes[:, None] - nodes[None, :] + np.eye(NODES)
+    weight = 1 / differences.prod(axis=1)
     # s = k/count is no node: the roots of Legendre's polynomials, but 0, are irrational.
     terms = weight / (targets[:, None] - nodes[None, :])
     matrix: np.ndarray = terms / terms.sum(axis=1, keepdims=True)

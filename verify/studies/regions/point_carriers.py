@@ -2,11 +2,11 @@
 
 A point is q and p, or q1 … qn and p1 … pn, in the order of its `Place`: a sequence of each.
 
-A scheme's map in float64 is held against the same steps with compensated sums. These see nothing of
-a clock's rounding: where H depends on time, and in wider number systems, it is held against a wider
-one. The exact flow comes with its own bound.
+A scheme's map in float64 is compared with the same steps with compensated sums. These show nothing
+of a clock's rounding: where H depends on time, and in wider number systems, the map is compared
+with a wider one. The exact flow comes with its own bound.
 
-How far outlines are from where it carries them is Hausdorff's distance.
+The distance of outlines from their exact images is Hausdorff's.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.area import Points
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
 from verify.studies.regions.place import ITSELF, Place
-from verify.studies.regions.polyline import dense
+from verify.studies.regions.polyline import densify
 
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
 _PRECISE = 2000  # bits with which the size of an outline is found
@@ -38,7 +38,7 @@ _SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
 
 
 def smaller_than_one(outline: Outline) -> int:
-    """Bits by which the outline's size is below 1: so many more after the point are looked at."""
+    """Return the bits by which the outline's size is below 1, to be added after the point."""
     mp = MPContext()
     mp.prec = _PRECISE
     points = [arc(mp, mp.mpf(k) / 7) for arc in outline.arcs for k in range(7)]
@@ -52,9 +52,11 @@ class _Floats:
     bits, grid, place = 53, _FLOAT_GRID, ITSELF
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
-        at = np.array([float(x) for x in s])
-        x, y = (np.broadcast_to(z, at.shape).copy() for z in outline.arcs[arc](FLOAT, at))
-        return self.place.embed(x, y, lambda value: np.full(at.shape, float(value)))
+        positions = np.array([float(x) for x in s])
+        x, y = (
+            np.broadcast_to(z, positions.shape).copy() for z in outline.arcs[arc](FLOAT, positions)
+        )
+        return self.place.embed(x, y, lambda value: np.full(positions.shape, float(value)))
 
     def floats(self, points: Points) -> tuple[np.ndarray, ...]:
         return points
@@ -62,9 +64,11 @@ class _Floats:
     def whole(self, x: np.ndarray) -> np.ndarray:
         with np.errstate(over="ignore"):
             scaled = np.ldexp(x, self.grid)
+        # Scaling by a power of 2 is exact unless it overflows; then Fractions, which are slower,
+        # take over.
         if np.isfinite(scaled).all():
-            return _objects([int(v) for v in scaled])
-        return _objects([int(Fraction(v) * (1 << self.grid)) for v in x.tolist()])
+            return _object_array([int(v) for v in scaled])
+        return _object_array([int(Fraction(v) * (1 << self.grid)) for v in x.tolist()])
 
 
 class FloatCarrier(_Floats):
@@ -84,6 +88,8 @@ class FloatCarrier(_Floats):
         arithmetic = number_systems.get(self.name, self.digits)
         steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
         self._map = steps_of(arithmetic=arithmetic)
+        # Compensated sums have the same clock, and would not show its rounding: a wider system
+        # does.
         if hamiltonian.time_dependent:
             wide = number_systems.automatic()[-1].make(self.digits + _WIDER)
             self._finer = steps_of(arithmetic=wide)
@@ -93,15 +99,15 @@ class FloatCarrier(_Floats):
             self._finer = steps_of(arithmetic=arithmetic, compensated=True)
 
     def images(self, *points: Any) -> Points:
-        return _image(self._map, self.place, points)
+        return _apply_map(self._map, self.place, points)
 
     def finer(self, *points: Any) -> Points:
-        own = self._finer.arithmetic
-        if own.name == self.name:
-            return _image(self._finer, self.place, points)
-        given = [[own.number(Fraction(v)) for v in z.tolist()] for z in points]
-        found = _image(self._finer, self.place, given)
-        return tuple(np.array([float(own.exact(v)) for v in z]) for z in found)
+        arithmetic = self._finer.arithmetic
+        if arithmetic.name == self.name:
+            return _apply_map(self._finer, self.place, points)
+        numbers = [[arithmetic.number(Fraction(v)) for v in z.tolist()] for z in points]
+        images = _apply_map(self._finer, self.place, numbers)
+        return tuple(np.array([float(arithmetic.exact(v)) for v in z]) for z in images)
 
 
 class ExactFlowCarrier(_Floats):
@@ -121,11 +127,12 @@ class ExactFlowCarrier(_Floats):
         self.method = ""
 
     def images(self, *points: Any) -> Points:
-        given = dict(zip(self.place.names, points, strict=True))
-        found = exact_points(self._hamiltonian, given, [self._time], self._t0)
-        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
-        self.method = found.method
-        return tuple(found.points[name][0] for name in self.place.names)
+        starts = dict(zip(self.place.names, points, strict=True))
+        solution = exact_points(self._hamiltonian, starts, [self._time], self._t0)
+        # Probe asks for images several times; one bound holds for all of them.
+        self.radius = max(self.radius or Fraction(0), Fraction(solution.bound))
+        self.method = solution.method
+        return tuple(solution.points[name][0] for name in self.place.names)
 
     def finer(self, *points: Any) -> Points:
         raise NotImplementedError("the exact flow's error is known")
@@ -141,9 +148,10 @@ class WideCarrier:
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
         name: str, digits: int, smaller: int = 0, place: Place = ITSELF,
     ) -> None:  # fmt: skip
-        """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
+        """Take `digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
         self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
         self.name, self.digits, self.place = name, digits, place
+        # A bit is 0.301 digits: `smaller` bits below 1 need 3/10 as many digits more, rounded up.
         self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
         self.bits, self.grid = bits_for(digits), bits_for(self._places)
@@ -158,11 +166,13 @@ class WideCarrier:
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
         mp = MPContext()
         mp.prec = self.grid + 20
-        at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
+        arc_points = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
         number = self.arithmetic.number
-        x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in at] for i in (0, 1))
+        x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in arc_points] for i in (0, 1))
         return self.place.embed(
-            _objects(x), _objects(y), lambda value: _objects([number(value)] * len(s))
+            _object_array(x),
+            _object_array(y),
+            lambda value: _object_array([number(value)] * len(s)),
         )
 
     def floats(self, points: Points) -> tuple[np.ndarray, ...]:
@@ -171,27 +181,27 @@ class WideCarrier:
 
     def whole(self, x: Any) -> np.ndarray:
         exact, size = self.arithmetic.exact, 1 << self.grid
-        return _objects([round(exact(v) * size) for v in x])
+        return _object_array([round(exact(v) * size) for v in x])
 
     def images(self, *points: Any) -> Points:
-        return tuple(map(_objects, _image(self._map, self.place, points)))
+        return tuple(map(_object_array, _apply_map(self._map, self.place, points)))
 
     def finer(self, *points: Any) -> Points:
-        own, wider = self.arithmetic, self._wider.arithmetic
-        given = [[wider.number(own.exact(v)) for v in z] for z in points]
-        found = _image(self._wider, self.place, given)
-        return tuple(_objects([own.number(wider.exact(v)) for v in z]) for z in found)
+        arithmetic, wider = self.arithmetic, self._wider.arithmetic
+        numbers = [[wider.number(arithmetic.exact(v)) for v in z] for z in points]
+        images = _apply_map(self._wider, self.place, numbers)
+        return tuple(_object_array([arithmetic.number(wider.exact(v)) for v in z]) for z in images)
 
 
-def _image(point_map: PointMap, place: Place, points: Sequence[Any]) -> Points:
-    found = point_map(**dict(zip(place.names, points, strict=True)))
-    return tuple(found[name] for name in place.names)
+def _apply_map(point_map: PointMap, place: Place, points: Sequence[Any]) -> Points:
+    image = point_map(**dict(zip(place.names, points, strict=True)))
+    return tuple(image[name] for name in place.names)
 
 
-def _objects(values: Sequence[Any]) -> np.ndarray:
-    made = np.empty(len(values), dtype=object)
-    made[:] = values
-    return made
+def _object_array(values: Sequence[Any]) -> np.ndarray:
+    array = np.empty(len(values), dtype=object)
+    array[:] = values
+    return array
 
 
 SchemeCarrier = FloatCarrier | WideCarrier
@@ -207,35 +217,42 @@ def distance_from_exact(
     t0: Fraction,
     outlines: Sequence[tuple[_Nodes, _Nodes]],
 ) -> tuple[Fraction, Fraction] | None:
-    """The greatest Hausdorff distance of an outline from its image by the exact flow, with its
-    error; None where an image is too far away for it.
+    """Return the greatest Hausdorff distance of an outline from its exact image, with its error.
 
-    `outlines`: of each its panels' nodes before and after. Raises NoFlowError.
+    None where an image is too far away for it. `outlines`: the nodes of each outline's panels
+    before and after the map. Raises NoFlowError.
     """
+    # Squares of such coordinates would overflow in float64.
     if any(np.abs(z).max() > FARTHEST for _, after in outlines for z in after):
         return None
     plane = ExactFlowCarrier(hamiltonian, time, t0)
     panels = [z for before, _ in outlines for z in before]
     q, p = plane.images(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
     images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
-    apart = [_apart(after, [next(images) for _ in before]) for before, after in outlines]
-    greatest, bound = _greatest(apart)
+    distances = [
+        _curve_distance(after, [next(images) for _ in before]) for before, after in outlines
+    ]
+    greatest, bound = _greatest_with_error(distances)
     return Fraction(greatest), Fraction(bound) + (plane.radius or 0)
 
 
-def _greatest(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """The greatest of values with errors, with its error: a smaller one may be less well known."""
+def _greatest_with_error(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Return the greatest of values with errors, and the error of the maximum."""
     greatest = max(value for value, _ in values)
     most, least = (max(value + sign * error for value, error in values) for sign in (1, -1))
     return greatest, max(most - greatest, greatest - least)
 
 
-def _apart(own: _Nodes, exact: _Nodes) -> tuple[float, float]:
-    """The Hausdorff distance of two curves with its error, from the nodes of their panels.
+def _curve_distance(nodes: _Nodes, exact: _Nodes) -> tuple[float, float]:
+    """Return the Hausdorff distance of two curves with its error, from the nodes of their panels.
 
-    It is at most the greatest distance of points that come from one and the same point.
+    It is at most the greatest distance of images of the same point.
     """
-    (one, sagitta), (other, other_sagitta) = dense(own), dense(exact)
-    found = hausdorff([one], [other], sagitta, other_sagitta)
+    (one, sagitta), (other, other_sagitta) = densify(nodes), densify(exact)
+    distance = hausdorff([one], [other], sagitta, other_sagitta)
+    # Points of the same index come from the same point of the outline, as both curves have the same
+    # panels and nodes.
     most = float(np.hypot(*(one - other).T).max()) * _SAFETY
-    return min(found.value, most), min(found.bound, max(most - found.value, found.value))
+    return min(distance.value, most), min(
+        distance.bound, max(most - distance.value, distance.value)
+    )

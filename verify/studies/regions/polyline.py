@@ -16,78 +16,83 @@ _TINY = float(np.finfo(np.float64).tiny)
 _MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
 
 
-def dense(
+def densify(
     panels: Sequence[tuple[np.ndarray, ...]], points: int = _MOST_POINTS
 ) -> tuple[np.ndarray, float]:
-    """A closed curve's points (n, 2), about so many, and how far it is from its chords at most.
+    """Return about so many points (n, 2) of a closed curve, and its distance from their chords.
 
-    From the nodes of its panels. The distance is an estimate, by points midway between those.
+    They are interpolated from the nodes of its panels. The distance is an estimate, by points
+    midway between those.
     """
     least, most = _BETWEEN
     between = min(most, max(least, points // len(panels)))
     matrix = interpolation(2 * between)
     nodes = np.array([np.stack(z, axis=1) for z in panels], dtype=np.float64).reshape(-1, NODES, 2)
     fine = np.einsum("kn,pnd->pkd", matrix, nodes).reshape(-1, 2)
-    found, middles = fine[::2], fine[1::2]
-    apart = middles - (found + np.roll(found, -1, axis=0)) / 2
-    return found, float(_MORE * np.hypot(*apart.T).max())
+    vertices, middles = fine[::2], fine[1::2]
+    sagittas = middles - (vertices + np.roll(vertices, -1, axis=0)) / 2
+    return vertices, float(_MORE * np.hypot(*sagittas.T).max())
 
 
-def thinned(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """The closed polyline with as few points as stay within the tolerance (Douglas–Peucker)."""
-    closed = np.concatenate([points, points[:1]])
-    at = closed[:, 0] + 1j * closed[:, 1]
-    kept = np.zeros(len(closed), dtype=bool)
-    far = int(abs(at - at[0]).argmax())
-    kept[[0, far, -1]] = True
-    todo = [(0, far), (far, len(closed) - 1)]
+def thin(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Thin a closed polyline to few points that stay within the tolerance (Douglas–Peucker)."""
+    ring = np.concatenate([points, points[:1]])
+    plane_points = ring[:, 0] + 1j * ring[:, 1]
+    keep = np.zeros(len(ring), dtype=bool)
+    # Two distant points of a closed curve start the division; a chord from a point to itself would
+    # have no direction.
+    far = int(abs(plane_points - plane_points[0]).argmax())
+    keep[[0, far, -1]] = True
+    todo = [(0, far), (far, len(ring) - 1)]
     while todo:
         first, last = todo.pop()
         if last - first < 2:
             continue
-        apart = _from_chord(at[first + 1 : last], at[first], at[last])
-        worst = int(apart.argmax())
-        if apart[worst] > tolerance:
+        distances = _from_chord(
+            plane_points[first + 1 : last], plane_points[first], plane_points[last]
+        )
+        worst = int(distances.argmax())
+        if distances[worst] > tolerance:
             middle = first + 1 + worst
-            kept[middle] = True
+            keep[middle] = True
             todo += [(first, middle), (middle, last)]
-    return closed[:-1][kept[:-1]]
+    return ring[:-1][keep[:-1]]
 
 
-def to_draw(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """The curves of one picture, each thinned as far as the picture does not show it."""
+def thin_for_drawing(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Thin the curves of one picture as far as the picture does not show it."""
     extent = float(np.ptp(np.concatenate(curves), axis=0).max())
-    return [thinned(curve, extent / _DRAWN) for curve in curves]
+    return [thin(curve, extent / _DRAWN) for curve in curves]
 
 
 def _from_chord(points: np.ndarray, start: complex, end: complex) -> np.ndarray:
-    """Distances of points of the complex plane from a segment."""
-    along, apart = end - start, points - start
+    """Return distances of points of the complex plane from a segment."""
+    along, offsets = end - start, points - start
     length = abs(along)
     if length < _TINY:  # a point, which nothing can be divided by
-        return abs(apart)
-    apart /= along
-    apart -= np.minimum(np.maximum(apart.real, 0), 1)
-    found: np.ndarray = abs(apart) * length
-    return found
+        return abs(offsets)
+    offsets /= along
+    offsets -= np.minimum(np.maximum(offsets.real, 0), 1)
+    distances: np.ndarray = abs(offsets) * length
+    return distances
 
 
-def text(points: np.ndarray) -> str:
-    """`x,y x,y …` with five significant digits."""
+def format_points(points: np.ndarray) -> str:
+    """Return `x,y x,y …` with five significant digits."""
     return " ".join(f"{x:.5g},{y:.5g}" for x, y in points)
 
 
-def parsed(points: str) -> np.ndarray:
-    """The array (n, 2) that `text` wrote."""
+def parse_points(points: str) -> np.ndarray:
+    """Return the array (n, 2) that `format_points` wrote."""
     pairs = [pair.split(",") for pair in points.split()]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
 
 
-def traced(shape: Shape) -> list[np.ndarray]:
-    """The shape's own outlines, thinned for drawing."""
+def trace_outlines(shape: Shape) -> list[np.ndarray]:
+    """Return the shape's own outlines, thinned for drawing."""
     s = np.arange(_TRACED) / _TRACED
     curves = []
     for outline in shape.outlines:
         arcs = (np.broadcast_arrays(*arc(FLOAT, s), s)[:2] for arc in outline.arcs)
         curves.append(np.concatenate([np.stack(arc, axis=1) for arc in arcs]))
-    return to_draw(curves)
+    return thin_for_drawing(curves)

@@ -1,4 +1,4 @@
-"""Which segment of a set of closed polylines is nearest to a point: a tree of boxes over them.
+"""A tree of boxes that finds the segment of a set of closed polylines nearest to a point.
 
 A node's box holds segments that follow each other along the curves, so that boxes are small where
 curves are smooth, however often they wind. Plain loops over float64 arrays, which LLVM compiles
@@ -19,30 +19,31 @@ _DEEP = 64  # a stack that no tree of fewer than 2^60 segments fills
 
 
 def segments(curves: Sequence[np.ndarray[Any, np.dtype[np.float64]]]) -> Any:
-    """Rows x₀, y₀, x₁, y₁ of the closed polylines through the points (x, y) of each curve."""
+    """Return rows x₀, y₀, x₁, y₁ of the closed polylines through each curve's points (x, y)."""
     rows = [np.hstack((curve, np.roll(curve, -1, axis=0))) for curve in curves]
     return np.ascontiguousarray(np.concatenate(rows))
 
 
 def boxes(rows: Any) -> Any:
-    """The tree: node k has the box x_min, y_min, x_max, y_max; its children are 2k and 2k + 1."""
+    """Build the tree: node k has the box x_min, y_min, x_max, y_max and the children 2k, 2k + 1."""
     leaves = 1
     while leaves * LEAF < len(rows):
         leaves *= 2
-    filled = np.concatenate((rows, np.repeat(rows[-1:], leaves * LEAF - len(rows), axis=0)))
-    corners = filled.reshape(leaves, 2 * LEAF, 2)
+    # Copies of the last segment fill the last leaves: they change no box and no nearest distance.
+    padded = np.concatenate((rows, np.repeat(rows[-1:], leaves * LEAF - len(rows), axis=0)))
+    corners = padded.reshape(leaves, 2 * LEAF, 2)
     tree = np.empty((2 * leaves, 4))
     tree[leaves:] = np.hstack((corners.min(axis=1), corners.max(axis=1)))
     while leaves > 1:
-        below = tree[leaves : 2 * leaves]
+        children = tree[leaves : 2 * leaves]
         leaves //= 2
-        tree[leaves : 2 * leaves, :2] = np.minimum(below[::2, :2], below[1::2, :2])
-        tree[leaves : 2 * leaves, 2:] = np.maximum(below[::2, 2:], below[1::2, 2:])
+        tree[leaves : 2 * leaves, :2] = np.minimum(children[::2, :2], children[1::2, :2])
+        tree[leaves : 2 * leaves, 2:] = np.maximum(children[::2, 2:], children[1::2, 2:])
     return tree
 
 
 def to_segment(x: float, y: float, row: Any) -> Any:
-    """The squared distance of a point from a segment."""
+    """Return the squared distance of a point from a segment."""
     along_x, along_y = row[2] - row[0], row[3] - row[1]
     from_x, from_y = x - row[0], y - row[1]
     length = along_x * along_x + along_y * along_y
@@ -51,22 +52,22 @@ def to_segment(x: float, y: float, row: Any) -> Any:
         if part >= 1.0:  # from the end itself: no rounding of it
             from_x, from_y = x - row[2], y - row[3]
         elif part > 0.0:
-            # Across it, by the cross product: what is left of a long difference would be rounded.
+            # By the cross product: the small residual of a long difference would be all rounding.
             cross = from_x * along_y - from_y * along_x
             return cross * cross / length
     return from_x * from_x + from_y * from_y
 
 
 def _to_box(x: float, y: float, box: Any) -> Any:
-    """The squared distance of a point from a box, 0 within."""
+    """Return the squared distance of a point from a box, 0 within."""
     out_x = max(box[0] - x, 0.0, x - box[2])
     out_y = max(box[1] - y, 0.0, y - box[3])
     return out_x * out_x + out_y * out_y
 
 
 def nearest(x: float, y: float, rows: Any, tree: Any, hint: int, stack: Any) -> tuple[float, int]:
-    """The squared distance of the nearest segment and its index, `hint` being looked at first."""
-    found, best = hint, to_segment(x, y, rows[hint])
+    """Return the squared distance of the nearest segment and its index, trying `hint` first."""
+    index, best = hint, to_segment(x, y, rows[hint])
     leaves, count = len(tree) // 2, 1
     stack[0] = 1
     while count > 0:
@@ -79,15 +80,15 @@ def nearest(x: float, y: float, rows: Any, tree: Any, hint: int, stack: Any) -> 
             for k in range(first, min(first + LEAF, len(rows))):
                 square = to_segment(x, y, rows[k])
                 if square < best:
-                    found, best = k, square
+                    index, best = k, square
             continue
         near = 2 * node
         if _to_box(x, y, tree[near + 1]) < _to_box(x, y, tree[near]):
             near += 1
-        # The nearer child is looked at first, so that the other is mostly left out.
+        # The nearer child is searched first, so that the other can mostly be skipped.
         stack[count], stack[count + 1] = near ^ 1, near
         count += 2
-    return best, found
+    return best, index
 
 
 def new_stack() -> Any:

@@ -38,20 +38,23 @@ class FlowTask(HamiltonianTask):
 
     @property
     def ensemble(self) -> str | None:
-        """Maps of one region, which carry mostly the same points of it, and are held against the
-        same exact ones."""
+        """A key of the maps of one region: they carry mostly the same points of it.
+
+        They are compared with the same exact ones, too.
+        """
         return f"{self.kind} {self.hamiltonian} {self.parameters} {self.shape} {self.t0 or 0}"
 
     @property
     def turn(self) -> float:
-        """What is carried for longest is last: its points go on from where they are."""
+        """The time: maps over longer ones come later, and carry on the points of the others."""
         return float(self.step_size * self.steps)
 
     def compute(self, keeper: Keeper) -> FlowImage:
-        """The images of the outline, as a result."""
+        """Return the images of the outline as a result."""
         from verify.studies.regions.carry import carry
         from verify.studies.regions.place import ITSELF, Place
 
-        place = Place.of(self.point, self.plane) if self.point else ITSELF
-        shape, asked = self.shape.to_shape(), self.asked("map", "shape", "point", "plane")
-        return carry(self.exact_hamiltonian(), self.map, shape, place=place, **asked)
+        place = Place.from_point(self.point, self.plane) if self.point else ITSELF
+        shape = self.shape.to_shape()
+        arguments = self.other_fields("map", "shape", "point", "plane")
+        return carry(self.exact_hamiltonian(), self.map, shape, place=place, **arguments)

@@ -16,7 +16,7 @@ QUANTITIES = (*_WHOLES, *PARTS)
 
 @dataclass(frozen=True)
 class Chain:
-    """Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`.
+    """The chain Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`.
 
     `parts`: of rounding, one between each link and the next.
     """
@@ -27,11 +27,11 @@ class Chain:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Λ, truncation, rounding, and its parts."""
+        """The names of Λ, truncation, rounding, and its parts."""
         return *_WHOLES, *self.parts
 
     def trail(self, name: str) -> tuple[Trail, Fraction]:
-        """A quantity of `quantities` at every checkpoint, and a bound of its error at all of them.
+        """Return a quantity of `quantities` at every checkpoint, and a bound of its error.
 
         truncation + all parts = lambda_working, exactly.
         """
@@ -40,17 +40,17 @@ class Chain:
         if before is None:
             return last.trail, last.bound
         first = self.links[before]
-        # What one object has from itself is exactly 0.
+        # Equal links are one object, whose difference from itself is exactly 0.
         bound = Fraction(0) if first is last else first.bound + last.bound
         return last.trail - first.trail, bound
 
     def final(self, name: str) -> tuple[Fraction, Fraction]:
-        """A quantity after the last step, and the bound of its error."""
+        """Return a quantity after the last step, and the bound of its error."""
         trail, bound = self.trail(name)
         return trail[-1], bound
 
     def _ends(self, name: str) -> tuple[int | None, int]:
-        """Between which links a quantity lies; None: nothing is before it."""
+        """Return the links that a quantity lies between; None: there is none before it."""
         if name in self.parts:
             k = self.parts.index(name)
             return k, k + 1
@@ -58,7 +58,7 @@ class Chain:
         return {"lambda_working": (None, last), "truncation": (None, 0), "total": (0, last)}[name]
 
     def lacking(self, digits: int, least: Fraction = Fraction(0)) -> list[int]:
-        """How many digits each link lacks for those wanted of the parts at its ends.
+        """Return the digits that each link lacks for those required of the parts at its ends.
 
         A part that is not greater than `least` may stay unknown.
         """
@@ -67,9 +67,10 @@ class Chain:
             value, bound = self.final(name)
             if not (abs(value) > least and bound):
                 continue
-            allowed = abs(value) / (4 * Fraction(10) ** digits)
+            # Two links share a part's error: each may have a quarter of a unit of the last digit.
+            tolerance = abs(value) / (4 * Fraction(10) ** digits)
             for k in (end for end in self._ends(name) if end is not None):
-                excess = self.links[k].bound / allowed
+                excess = self.links[k].bound / tolerance
                 if excess > 1:
                     lacking[k] = max(lacking[k], magnitude(excess) + 1)
         return lacking
@@ -81,12 +82,12 @@ class Chain:
 
     @property
     def methods(self) -> tuple[str, ...]:
-        """How the errors of the links were bounded, the last one's apart, each way once."""
+        """The methods that bounded the errors of all links but the last, each once."""
         return tuple(dict.fromkeys(link.method for link in self.links[:-1]))
 
 
 def lacking(chains: Sequence[Chain], digits: int, hidden: int | None = None) -> list[int]:
-    """How many digits each link lacks, for the chain in which it lacks most.
+    """Return the digits that each link lacks, for the chain in which it lacks most.
 
     A part may stay unknown that lies so many digits, and `hidden` ones, below the greatest.
     """

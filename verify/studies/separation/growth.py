@@ -1,11 +1,11 @@
-"""How rounding and W grow with N, and the step size where rounding overtakes truncation.
+"""The growth of rounding and of W with N, and the step size where rounding overtakes truncation.
 
 Growth. Rounding errors of one sign add up to a drift, proportional to N; errors of both signs, as
 good as independent, make a random walk, whose size is N^½ (P. Henrici, Discrete Variable Methods,
-1962, ch. 1.4). What is fitted is the envelope, the greatest |rounding| so far, which neither a
-change of sign nor an orbit's oscillation lets fall: the slope of its logarithm over log N, at
-checkpoints spread evenly in log N. Left out are the first checkpoints, whose maximum is of too few
-values, and those within 10 times the error bound of the values.
+1962, ch. 1.4). The fit is to the envelope, the greatest |rounding| so far, which neither a change
+of sign nor an orbit's oscillation reduces: the slope of its logarithm over log N, at checkpoints
+spread evenly in log N. Left out are the first checkpoints, whose maximum is of too few values, and
+those within 10 times the error bound of the values.
 
 One walk is one draw: a slope fitted to the envelope of a Brownian motion over L = ln(N₂/N₁) has
 standard deviation 1.65 L^(−3/2) about ½ (from 1500 simulated walks each for L from 3.5 to 6.2; a
@@ -20,9 +20,9 @@ W and the tangent map. W_N = Σ_k M_kᵀ S_k M_k, M_k the tangent map of k steps
 though no step's S does: it is a 2-form, and grows as areas do under M, like σ₁σ₂ of M's two
 greatest singular values, which is ‖M‖² at most. Where motion is quasi-periodic ‖M‖ grows like N at
 most; the same fit of max |W| says whether W stays bounded or grows like N or N². In chaos ‖M‖ grows
-exponentially and no power is fitted: what W grows by then is the motion's. Whether it grew so is
-told as everywhere (`verify.runs.tangent_growth`), and of an M that has hardly grown nothing is
-said. All of that is measured, and not proved.
+exponentially and no power is fitted: W then grows with the motion. `verify.runs.tangent_growth`
+decides if it grew so, and an M that has hardly grown is left undecided. All of that is measured,
+and not proved.
 
 Crossover. For each step size, the greatest |truncation| and |rounding| at any checkpoint stand for
 the run: Λ of an even-order scheme telescopes to a boundary term, which passes through 0 again and
@@ -64,7 +64,7 @@ _SHORT = "too few checkpoints above noise for a fit"
 
 @dataclass(frozen=True)
 class Fit:
-    """size ~ N^exponent as it was fitted, and the name of it; no exponent where nothing was."""
+    """A fit size ~ N^exponent with its name; the exponent is None where nothing was fitted."""
 
     exponent: float | None
     standard_error: float | None
@@ -73,14 +73,14 @@ class Fit:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """As results have them, numbers as decimals."""
+        """The fields of results, numbers as decimals."""
         numbers = {"exponent": self.exponent, "standard_error": self.standard_error}
         return vars(self) | {n: None if x is None else f"{x:.3f}" for n, x in numbers.items()}
 
 
 @dataclass(frozen=True)
 class Growth(Fit):
-    """That of |rounding|, from `first` to `last` steps."""
+    """The growth of |rounding|, from `first` to `last` steps."""
 
     name: Name
     first: int
@@ -90,14 +90,14 @@ class Growth(Fit):
 
 @dataclass(frozen=True)
 class PowerLaw(Fit):
-    """That of a greatest size."""
+    """The growth of a greatest size."""
 
     name: Law
 
 
 @dataclass(frozen=True)
 class Crossover:
-    """The step size below which rounding is the larger part, and the two it was found between."""
+    """The step size below which rounding is the larger part, and the two that bracket it."""
 
     step_size: float | None
     bracket: tuple[Fraction, Fraction] | None
@@ -105,62 +105,66 @@ class Crossover:
 
 
 class Envelope:
-    """The greatest |value| so far at equidistant numbers of steps, each known to within `noise`,
-    and the checkpoints that a fit takes of it."""
+    """The greatest |value| so far at equidistant numbers of steps, with the checkpoints of a fit.
+
+    Each value is known to within `noise`.
+    """
 
     def __init__(self, marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> None:
-        self.marks, self.tops = marks, Trail.of(values).envelope()
+        self.marks, self.tops = marks, Trail.from_values(values).envelope()
         usable = [k for k in self.tops.above(_ABOVE * noise) if k + 1 >= _FIRST]
-        self.chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
+        self.chosen = select_log_spaced(usable, [marks[k] for k in usable], _MOST)
         ends = (self.chosen[0], self.chosen[-1]) if self.chosen else ()
         self.first, self.last = [marks[k] for k in ends] or (0, 0)
 
     @property
     def reach(self) -> float:
-        """From the first to the last of them, in ln N."""
+        """The distance from the first to the last of these checkpoints, in ln N."""
         return math.log(self.last / self.first) if self.chosen else 0.0
 
     def reaches(self, decades: float) -> bool:
-        """Whether they are enough, over so many decades of N."""
+        """Return True if they are enough, over so many decades of N."""
         return len(self.chosen) >= _LEAST and self.reach >= decades * math.log(10)
 
     def slope(self) -> tuple[float, float]:
-        """The fitted exponent and its standard error."""
+        """Return the fitted exponent and its standard error."""
         return slope([(math.log(self.marks[k]), log(self.tops[k])) for k in self.chosen])
 
 
-def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
-    """The fit for values at equidistant numbers of steps, each known to within `noise`."""
+def fit_growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
+    """Fit values at equidistant numbers of steps, each known to within `noise`."""
     envelope = Envelope(marks, values, noise)
-    seen = envelope.first, envelope.last, len(envelope.chosen)
+    span = envelope.first, envelope.last, len(envelope.chosen)
     if not envelope.reaches(_DECADES):
         decades = f"{envelope.reach / math.log(10):.1f}"
         reason = prose(
             f"{len(envelope.chosen)} checkpoints above noise over {decades} decades of N; "
             f"a fit takes {_LEAST} over {_DECADES}"
         )
-        return Growth(None, None, "undecided", reason, *seen)
+        return Growth(None, None, "undecided", reason, *span)
     exponent, scatter = envelope.slope()
+    # A walk's residuals are correlated, so that their scatter alone understates the error: the
+    # module's text has the standard deviation over L = ln(N₂/N₁).
     error = max(scatter, _WANDERING * envelope.reach**-1.5)
-    held = [at for at in _NAMES if abs(exponent - at) <= _WIDTH * error]
-    name = _NAMES[held[0]][0] if len(held) == 1 else "undecided"
-    holds = " and ".join(_NAMES[at][1] for at in held) or "neither ½ nor 1"
+    matches = [value for value in _NAMES if abs(exponent - value) <= _WIDTH * error]
+    name = _NAMES[matches[0]][0] if len(matches) == 1 else "undecided"
+    holds = " and ".join(_NAMES[value][1] for value in matches) or "neither ½ nor 1"
     reason = prose(*_with_error(exponent, _WIDTH * error), f" holds {holds}")
-    return Growth(exponent, error, name, reason, *seen)
+    return Growth(exponent, error, name, reason, *span)
 
 
-def motion_of(marks: Sequence[int], squares: Sequence[Fraction]) -> Motion:
-    """Whether ‖M‖ grew exponentially in this run; from ‖M‖²."""
+def classify_motion(marks: Sequence[int], squares: Sequence[Fraction]) -> Motion:
+    """Decide from ‖M‖² if ‖M‖ grew exponentially in this run."""
     if len(marks) < _LEAST or max(squares) < _GROWN * squares[0]:
         return "undecided"
-    grown = is_exponential([float(n) for n in marks], [log(x) / 2 for x in squares])
-    return "undecided" if grown is None else "exponential" if grown else "polynomial"
+    is_growing = is_exponential([float(n) for n in marks], [log(x) / 2 for x in squares])
+    return "undecided" if is_growing is None else "exponential" if is_growing else "polynomial"
 
 
-def power_law(
+def fit_power_law(
     marks: Sequence[int], values: Sequence[Fraction], noise: Fraction, motion: Motion
 ) -> PowerLaw:
-    """The law of sizes at equidistant numbers of steps, each known to within `noise`."""
+    """Fit a law to sizes at equidistant numbers of steps, each known to within `noise`."""
     envelope = Envelope(marks, values, noise)
     if not envelope.tops[-1]:
         return PowerLaw(None, None, "bounded", prose("exactly 0 at every checkpoint"))
@@ -170,34 +174,36 @@ def power_law(
         return PowerLaw(None, None, "undecided", prose(_SHORT))
     exponent, error = envelope.slope()
     width = max(_NEAR, _WIDTH * error)
-    held = [k for k in range(len(_LAWS)) if abs(exponent - k) <= width]
-    name: Law = _LAWS[held[0]] if len(held) == 1 else "undecided"
-    near = f" is near {held[0]}" if len(held) == 1 else " is near no whole exponent, or near two"
-    shown = _with_error(exponent, _WIDTH * error)
-    return PowerLaw(exponent, error, name, prose("fitted exponent ", *shown, near))
+    matches = [k for k in range(len(_LAWS)) if abs(exponent - k) <= width]
+    name: Law = _LAWS[matches[0]] if len(matches) == 1 else "undecided"
+    near = (
+        f" is near {matches[0]}" if len(matches) == 1 else " is near no whole exponent, or near two"
+    )
+    interval = _with_error(exponent, _WIDTH * error)
+    return PowerLaw(exponent, error, name, prose("fitted exponent ", *interval, near))
 
 
 def _with_error(exponent: float, width: float) -> tuple[Number, str, Number]:
-    """The exponent, and its interval."""
+    """Return the exponent and its interval as parts of a sentence."""
     return Number(f"{exponent:.3f}"), " ± ", Number(f"{width:.3f}")
 
 
-def log_spaced(indices: Sequence[int], at: Sequence[int], most: int) -> list[int]:
-    """Of the indices, at increasing positions `at`, at most so many spread evenly in log at."""
+def select_log_spaced(indices: Sequence[int], positions: Sequence[int], most: int) -> list[int]:
+    """Select at most so many of the indices, spread evenly in the log of increasing `positions`."""
     if len(indices) <= most:
         return list(indices)
-    low, high = math.log(at[0]), math.log(at[-1])
-    wanted = [low + (high - low) * k / (most - 1) for k in range(most)]
+    low, high = math.log(positions[0]), math.log(positions[-1])
+    goals = [low + (high - low) * k / (most - 1) for k in range(most)]
     chosen, k = [], 0
-    for goal in wanted:
-        while k < len(at) - 1 and math.log(at[k]) < goal - 1e-12:
+    for goal in goals:
+        while k < len(positions) - 1 and math.log(positions[k]) < goal - 1e-12:
             k += 1
         chosen.append(indices[k])
     return sorted(set(chosen))
 
 
-def crossover(points: Sequence[tuple[Fraction, Fraction, Fraction]]) -> Crossover:
-    """Where rounding overtakes truncation as h falls, by log-log interpolation.
+def find_crossover(points: Sequence[tuple[Fraction, Fraction, Fraction]]) -> Crossover:
+    """Find the step size where rounding overtakes truncation as h falls, by log-log interpolation.
 
     `points`: h with the greatest |truncation| and |rounding|. The bracket runs from the last of the
     small step sizes at which rounding is the larger to the first of the large ones at which
@@ -212,19 +218,22 @@ def crossover(points: Sequence[tuple[Fraction, Fraction, Fraction]]) -> Crossove
     if not any(above):
         return Crossover(None, None, "none in this range: truncation is larger at every step size")
     if not above[0] or above[-1]:
-        end, at = ("smallest", "truncation") if not above[0] else ("largest", "rounding")
-        return Crossover(None, None, f"none in this range: {at} is larger at the {end} step size")
+        end, part = ("smallest", "truncation") if not above[0] else ("largest", "rounding")
+        return Crossover(None, None, f"none in this range: {part} is larger at the {end} step size")
     low = above.index(False) - 1
     high = len(above) - above[::-1].index(True)
     (h1, t1, r1), (h2, t2, r2) = by_size[low], by_size[high]
     reason = "between neighbours" if high == low + 1 else "between step sizes where noise decides"
     if 0 in (t1, r2):
         return Crossover(None, (h1, h2), f"{reason}; a part is exactly 0 at one of them")
+    # lg of truncation over rounding is 0 at the crossover; it is taken as linear in lg h between
+    # the two.
     y1, y2 = log(t1) - log(r1), log(t2) - log(r2)
     share = -y1 / (y2 - y1)
     return Crossover(math.exp(log(h1) + share * (log(h2) - log(h1))), (h1, h2), reason)
 
 
 def log(x: Fraction) -> float:
-    """ln x, however small x is."""
+    """Return ln x, however small x is."""
+    # A Fraction below float64's range has no float, its numerator and denominator have logarithms.
     return math.log(x.numerator) - math.log(x.denominator)

@@ -1,11 +1,11 @@
-"""The links of a separation, each made when it is asked for, at its own number of digits.
+"""The links of a separation, each computed when it is needed, at its own number of digits.
 
-A link is of Λ, or one for each entry of W. What is known is not run: a link that a proof gives, and
-the second where every input is a float64. Equal links are one object, and the part between them is
-exactly 0. So where the proof gives ΔJ ≡ 0, or S ≡ 0, all links before float64's factors are exactly
-0, and the closed form's too; where ΔJ does not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁.
-Where every input is a float64, Λ₁ = Λ₀; after one step Λ₂ = Λ₁, for the first ΔJ is taken at the
-initial value.
+There is a link of Λ, or one for each entry of W. Nothing is run for a link that a proof gives, nor
+for the second where every input is a float64. Equal links are one object, and the part between them
+is exactly 0. So where the proof gives ΔJ ≡ 0, or S ≡ 0, all links before float64's factors are
+exactly 0, and the closed form's too; where ΔJ does not depend on (p, q), Λ₀ is a closed form and Λ₂
+= Λ₁. Where every input is a float64, Λ₁ = Λ₀; after one step Λ₂ = Λ₁, for the first ΔJ is taken at
+the initial value.
 """
 
 import copy
@@ -22,9 +22,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course, clock
-from verify.runs.digits_on_demand import Measured, choose, measure
+from verify.runs.digits_on_demand import Measurement, choose, measure
 from verify.runs.estimated import working_digits
-from verify.runs.run import AskedRun
+from verify.runs.run import RequestedRun
 from verify.schemes.maps.step_map import StepMap
 from verify.structures import AREA, SYMPLECTIC, Structure
 from verify.studies.separation.chain import Chain, lacking
@@ -63,12 +63,12 @@ class Chains:
     seconds: float
 
 
-def way_of(hamiltonian: Hamiltonian) -> Way:
-    """The way in which its runs are followed."""
+def way_for(hamiltonian: Hamiltonian) -> Way:
+    """Return the way in which runs of this H are followed."""
     return _WAYS[hamiltonian.structure](len(hamiltonian.coordinates))
 
 
-def separated_chains(
+def separate_chains(
     hamiltonian: Hamiltonian,
     scheme: str,
     start: dict[str, Fraction],
@@ -77,15 +77,15 @@ def separated_chains(
     arithmetic: str = AUTO,
     advance: Advance = lambda _: None,
     keeper: Keeper = NOTHING,
-    run: AskedRun | None = None,
+    run: RequestedRun | None = None,
 ) -> Course[Chains]:
-    """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
+    """Return the chains of a scheme's run from exact inputs, with so many digits if possible.
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
     with the steps just done, of three runs of N steps. `run`, of these steps and checkpoints, is
     taken for the first link. Raises Stopped where Λ, or W, has no value.
     """
-    way = way_of(hamiltonian)
+    way = way_for(hamiltonian)
     kernel_run = KernelRun(
         hamiltonian, scheme, start, steps, way.observables, 0, keeper, sections=way.points
     )
@@ -93,87 +93,100 @@ def separated_chains(
     links.advance = advance
     if run is not None:
         links.take(run)
-    plain, closed = yield from links.to_digits(digits)
+    plain, closed_chains = yield from links.to_digits(digits)
     working = yield from links.working()
-    return Chains(plain, closed, working.sizes, links.arithmetic, links.seconds)
+    return Chains(plain, closed_chains, working.sizes, links.arithmetic, links.seconds)
 
 
 class LinksOnDemand:
-    """The links of all ways to evaluate, and how many digits each is asked for."""
+    """The links of all ways to evaluate, and the digits required of each."""
 
     def __init__(
         self, way: Way, kernel_run: KernelRun, step_map: StepMap, arithmetic: str, digits: int
     ) -> None:
-        """`step_map`: for the exact parameters. `digits` are wanted of every part. `auto` takes the
-        fastest arithmetic that can."""
-        self._begun = clock()
+        """Take `step_map` for the exact parameters; `digits` are required of every part.
+
+        `auto` takes the fastest arithmetic that can give them.
+        """
+        self._start_time = clock()
         digits += way.cancelled
         self.arithmetic = choose(kernel_run, digits) if arithmetic == AUTO else arithmetic
         self.way, self.kernel_run, self.step_map = way, kernel_run, step_map
         self.advance: Advance = lambda _: None
         self.marks = marks_of(kernel_run.steps, way.points)
         self.digits = {"first": digits, "second": digits, "beside": digits + way.products}
-        rounded = _with_rounded_inputs(kernel_run)
-        self.runs = {"first": kernel_run, "second": rounded}
+        rounded_run = _round_inputs(kernel_run)
+        self.runs = {"first": kernel_run, "second": rounded_run}
         inputs, of_rounded = ((run.start, run.parameters) for run in self.runs.values())
-        self.same = inputs == of_rounded
-        self._proved: dict[str, Links | None] = {}
-        self._asked: AskedRun | None = None
+        self.has_equal_inputs = inputs == of_rounded
+        self._proved_links: dict[str, Links | None] = {}
+        self._requested_run: RequestedRun | None = None
         self._working: Working | None = None
-        self._made: dict[str, Links] = {}
+        self._link_cache: dict[str, Links] = {}
 
     @property
     def seconds(self) -> float:
-        """Since it was begun."""
-        return clock() - self._begun
+        """The seconds since this object was made."""
+        return clock() - self._start_time
 
-    def take(self, run: AskedRun) -> None:
-        """The first link is what comes of this run, as long as its digits do."""
-        self._asked = run
+    def take(self, run: RequestedRun) -> None:
+        """Take the first link from this run, as long as its digits suffice."""
+        self._requested_run = run
         self.digits["first"] = run.digits
 
-    def proved(self, name: str) -> Links | None:
-        """The `first` link or the `second` to its digits, where a proof gives it; made once."""
-        if name not in self._proved:
+    def prove_link(self, name: str) -> Links | None:
+        """Return the `first` link or the `second` to its digits by proof, or None; made once."""
+        if name not in self._proved_links:
             exact = _map_for_parameters(self.step_map, self.runs[name])
-            self._proved[name] = self.way.proved(self.runs[name], exact, self.digits[name])
-        return self._proved[name]
+            self._proved_links[name] = self.way.prove_links(
+                self.runs[name], exact, self.digits[name]
+            )
+        return self._proved_links[name]
 
     def working(self) -> Course[Working]:
-        """The run in float64, exact arithmetic beside it, done once; Stopped where it leaves its
-        range."""
+        """Do the run in float64, exact arithmetic beside it, once.
+
+        Stopped where it leaves its range.
+        """
         if self._working is None:
-            self._working = yield from self._beside()
+            self._working = yield from self._run_working()
         return self._working
 
-    def _beside(self) -> Course[Working]:
-        """In what can follow float64 everywhere where another cannot, or has no bound of its
-        rounding."""
-        way, run, wanted = self.way, self.kernel_run, self.digits["beside"]
-        mixed = MixedRun(way, run, self.proved("second") is None and run.steps > 1)
-        compiled = number_systems.about(self.arithmetic).compiles
-        digits = way.digits_beside(run, self.step_map, wanted, compiled)
-        asked = number_systems.get(self.system(digits), digits)
-        last = last_system().make(working_digits(wanted, run.steps))
+    def _run_working(self) -> Course[Working]:
+        """Do that run, in the last number system where another cannot follow float64.
+
+        The last one also replaces one whose rounding is not counted.
+        """
+        way, run, digits_needed = self.way, self.kernel_run, self.digits["beside"]
+        # After one step, or with a proof, the exact step at float64's states is not needed.
+        mixed_run = MixedRun(way, run, self.prove_link("second") is None and run.steps > 1)
+        compiles = number_systems.about(self.arithmetic).compiles
+        digits = way.digits_beside(run, self.step_map, digits_needed, compiles)
+        arithmetic = number_systems.get(self.system(digits), digits)
+        last = last_system().make(working_digits(digits_needed, run.steps))
         try:
-            return (yield from mixed.step_through(asked if asked.rounding else last, self.advance))
+            return (
+                yield from mixed_run.step_through(
+                    arithmetic if arithmetic.rounding else last, self.advance
+                )
+            )
         except UnsupportedError:
-            return (yield from mixed.step_through(last, self.advance))
+            return (yield from mixed_run.step_through(last, self.advance))
 
     def chains(self) -> Course[EachWay]:
-        """The chains of the plain way and those of the closed form."""
+        """Return the chains of the plain way and those of the closed form."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = yield from self.working()
         first = yield from self._link("first")
-        second = first if self.same else (yield from self._link("second"))
-        shared, parts = [first, second, working.trajectory or second], self.way.parts
+        second = first if self.has_equal_inputs else (yield from self._link("second"))
+        shared_links, parts = [first, second, working.trajectory or second], self.way.parts
         if self.kernel_run.hamiltonian.time_dependent:
             exact = _clock_is_exact(self.runs["second"])
-            shared.insert(2, second if exact or working.clock is None else working.clock)
+            shared_links.insert(2, second if exact or working.clock is None else working.clock)
             parts = (parts[0], "clock", *parts[1:])
 
         def chains(*links: Links) -> tuple[Chain, ...]:
-            each = zip(*shared, *links, strict=True)
+            each = zip(*shared_links, *links, strict=True)
             return tuple(Chain(self.marks, entry, parts) for entry in each)
 
         plain = chains(working.factors, working.plain)
@@ -182,58 +195,69 @@ class LinksOnDemand:
         return plain, chains(working.closed_factors, working.closed_form)
 
     def to_digits(self, digits: int) -> Course[EachWay]:
-        """The chains, whose links are made again as long as some lack digits: how many the
-        differences cancel is known once they are there."""
+        """Return the chains, whose links are computed again as long as some lack digits.
+
+        The number of digits that differences cancel is known only once the links are computed.
+        """
         for attempt in range(_ATTEMPTS):
-            plain, closed = yield from self.chains()
-            short = lacking([*plain, *(closed or ())], digits, self.way.hidden)
+            plain, closed_form = yield from self.chains()
+            short = lacking([*plain, *(closed_form or ())], digits, self.way.hidden)
             if not self.refine(short, attempt):
                 break
-        return plain, closed
+        return plain, closed_form
 
     def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
-        """Asks for so many more digits of the links; False where none lacks any.
+        """Require so many more digits of the links; return False where none lacks any.
 
-        What is still noise lacks the same again and again: each attempt asks for twice as many.
+        A part that is still noise lacks the same again and again: each attempt doubles the number.
         """
         first, second, *beside = lacking
         # One run that serves as two links is made once, with the digits of the one that lacks more.
-        if self.same:
+        if self.has_equal_inputs:
             first, second = max(first, second), 0
-        wanted = {"first": first, "second": second, "beside": max(beside)}
+        extra_digits = {"first": first, "second": second, "beside": max(beside)}
         self.advance = lambda _: None  # what was foreseen is done
-        for name, more in wanted.items():
+        for name, more in extra_digits.items():
             if more:
+                # `<<` binds less than `+`: (more + 2) · 2^attempt.
                 self.digits[name] += more + 2 << attempt
-                self._made.pop(name, None)
-                self._proved.pop(name, None)
-        if wanted["beside"]:
+                self._link_cache.pop(name, None)
+                self._proved_links.pop(name, None)
+        if extra_digits["beside"]:
             self._working = None
-        return any(wanted.values())
+        return any(extra_digits.values())
 
     def system(self, digits: int) -> str:
-        """The arithmetic for so many digits: one that compiles takes ever longer to do it."""
-        asked = number_systems.about(self.arithmetic)
-        return asked.name if digits <= asked.most_digits else last_system().name
+        """Return the arithmetic for so many digits: compiling one takes ever longer with more."""
+        requested_system = number_systems.about(self.arithmetic)
+        return (
+            requested_system.name if digits <= requested_system.most_digits else last_system().name
+        )
 
     def _link(self, name: str) -> Course[Links]:
-        """The `first` or the `second`, as a proof gives it, or a run."""
-        return self.proved(name) or (yield from self._reference(name))
+        """Return the `first` or the `second` link, by proof or by a run."""
+        return self.prove_link(name) or (yield from self._reference(name))
 
     def _reference(self, name: str) -> Course[Links]:
-        if name not in self._made:
-            digits, asked, kernel_run = self.digits[name], self._asked, self.runs[name]
-            if name == "first" and asked and digits <= asked.digits:
-                measured = yield from asked.measured(self._progress())
-                if measured.bounds.status == "finished":
-                    self._made[name] = self._in_exact_stead(asked.kernel_run, digits, measured)
-                    return self._made[name]
-            measured = yield from measure(kernel_run, self.system(digits), digits, self._progress())
-            self._made[name] = self._in_exact_stead(kernel_run, digits, measured)
-        return self._made[name]
+        if name not in self._link_cache:
+            digits = self.digits[name]
+            requested_run = self._requested_run
+            kernel_run = self.runs[name]
+            if name == "first" and requested_run and digits <= requested_run.digits:
+                measurement = yield from requested_run.take_measurement(self._progress())
+                if measurement.bounds.status == "finished":
+                    self._link_cache[name] = self._links_from_run(
+                        requested_run.kernel_run, digits, measurement
+                    )
+                    return self._link_cache[name]
+            measurement = yield from measure(
+                kernel_run, self.system(digits), digits, self._progress()
+            )
+            self._link_cache[name] = self._links_from_run(kernel_run, digits, measurement)
+        return self._link_cache[name]
 
     def _progress(self) -> Advance:
-        """Tells of one run, which may begin again, the steps that were not done before."""
+        """Return a progress that counts the new steps of one run, which may begin again."""
         last = 0
 
         def progress(done: int) -> None:
@@ -243,9 +267,11 @@ class LinksOnDemand:
 
         return progress
 
-    def _in_exact_stead(self, kernel_run: KernelRun, digits: int, measured: Measured) -> Links:
-        """A run to so many digits; Stopped where a run cannot give them."""
-        bounds, run, observable = measured.bounds, measured.outcome, self.way.observable
+    def _links_from_run(
+        self, kernel_run: KernelRun, digits: int, measurement: Measurement
+    ) -> Links:
+        """Return the links of a run to so many digits; Stopped where it cannot give them."""
+        bounds, run, observable = measurement.bounds, measurement.outcome, self.way.observable
         if bounds.status != "finished":
             reason = f"in exact arithmetic: {bounds.method}"
             raise Stopped(bounds.status, bounds.failed_step, reason)
@@ -265,29 +291,29 @@ class LinksOnDemand:
 
 
 def last_system() -> NumberSystem:
-    """The number system that has every range and function."""
+    """Return the number system that has every range and function."""
     return number_systems.automatic()[-1]
 
 
-def _clock_is_exact(rounded: KernelRun) -> bool:
-    """Whether t ← t + h rounds nothing in any step: all times are few multiples of one 2^−k."""
-    first, h = rounded.start["t"], rounded.start["h"]
+def _clock_is_exact(run: KernelRun) -> bool:
+    """Return True if t ← t + h rounds nothing: all times are at most 2^53 times one 2^−k."""
+    first, h = run.start["t"], run.start["h"]
     unit = Fraction(1, max(first.denominator, h.denominator))  # of float64s, powers of 2
-    latest = max(abs(first), abs(first + rounded.steps * h))
+    latest = max(abs(first), abs(first + run.steps * h))
     return latest / unit <= _MANTISSAS
 
 
-def _with_rounded_inputs(kernel_run: KernelRun) -> KernelRun:
-    """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
-    rounded, inputs = copy.copy(kernel_run), rounded_inputs(kernel_run)
-    rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
+def _round_inputs(kernel_run: KernelRun) -> KernelRun:
+    """Return the run from the rounded inputs; parameters inside the kernel stay exact."""
+    rounded_run, inputs = copy.copy(kernel_run), rounded_inputs(kernel_run)
+    rounded_run.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
     parameters = {n: Fraction(inputs[n]) for n in kernel_run.hamiltonian.parameters}
-    rounded.parameters = {**kernel_run.parameters, **parameters}
-    return rounded
+    rounded_run.parameters = {**kernel_run.parameters, **parameters}
+    return rounded_run
 
 
 def _map_for_parameters(exact: StepMap, run: KernelRun) -> StepMap | None:
-    """The step map for a run's parameters; None where H is not defined for them."""
+    """Return the step map for a run's parameters; None where H is not defined for them."""
     values = {n: run.parameters[n] for n in run.hamiltonian.parameters}
     if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
         return exact

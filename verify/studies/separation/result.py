@@ -1,4 +1,4 @@
-"""Chains of Λ, or of all entries of W, as a result has them."""
+"""The parts of a result from the chains of Λ, or of all entries of W."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -22,7 +22,12 @@ from verify.scenes.results.separation_parts import (
     PowerLawResult,
 )
 from verify.studies.separation.chain import Chain
-from verify.studies.separation.growth import growth, log_spaced, motion_of, power_law
+from verify.studies.separation.growth import (
+    classify_motion,
+    fit_growth,
+    fit_power_law,
+    select_log_spaced,
+)
 from verify.studies.separation.stepper.trail import Trail
 from verify.studies.separation.stepper.way import Size
 
@@ -31,8 +36,10 @@ _CHECKPOINTS = 32
 
 
 class Split:
-    """The chain of Λ, or those of all entries of W, by one way to evaluate it; of several the
-    greatest size stands for all, at every checkpoint."""
+    """The chain of Λ, or those of all entries of W, by one way to evaluate them.
+
+    Of several the greatest size stands for all, at every checkpoint.
+    """
 
     def __init__(self, chains: Sequence[Chain]) -> None:
         self.chains, self.marks, self.names = chains, chains[0].marks, chains[0].quantities
@@ -41,21 +48,21 @@ class Split:
         for name in self.names:
             trails, bounds = zip(*(chain.trail(name) for chain in chains), strict=True)
             self.tops[name] = trails[0] if len(chains) == 1 else _greatest(trails)
+            # The greatest of several entries is known no better than the worst of them.
             self.noise[name] = max(bounds)
 
     def values(self, digits: int) -> dict[str, tuple[Value, ...]]:
-        """Each quantity after the last step, of each chain."""
+        """Return each quantity after the last step, of each chain."""
         return {
-            name: tuple(Value.of(*chain.final(name), digits) for chain in self.chains)
+            name: tuple(Value.from_bound(*chain.final(name), digits) for chain in self.chains)
             for name in self.names
         }
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The greatest sizes at any checkpoint, how rounding and its parts grow, and how the bounds
-        were found."""
+        """The greatest sizes at any checkpoint, the growth of rounding, and the kind of bounds."""
         names = ("total", *self.chains[0].parts)
-        fits = {n: growth(self.marks, self.tops[n], self.noise[n]) for n in names}
+        fits = {n: fit_growth(self.marks, self.tops[n], self.noise[n]) for n in names}
         enclosed = all(x.kind == "enclosed" for x in self.chains)
         return {
             "largest": {n: self.text(n, self.tops[n].largest) for n in ("truncation", "total")},
@@ -64,45 +71,45 @@ class Split:
         }
 
     def series(self) -> Iterator[tuple[int, dict[str, str]]]:
-        """Some checkpoints, and each quantity there."""
-        for k in log_spaced(range(len(self.marks)), self.marks, _CHECKPOINTS):
+        """Yield some checkpoints, and each quantity there."""
+        for k in select_log_spaced(range(len(self.marks)), self.marks, _CHECKPOINTS):
             yield k, {name: self.text(name, self.tops[name][k]) for name in self.names}
 
     def text(self, name: str, x: Fraction) -> str:
-        """A value of the quantity, to the few digits that are known."""
+        """Return a value of the quantity as text, to the few digits that are known."""
         return known_text(x, self.noise[name], SHOWN)
 
 
 def _greatest(trails: Sequence[Trail]) -> Trail:
-    return Trail.of(max(map(abs, entries)) for entries in zip(*trails, strict=True))
+    return Trail.from_values(max(map(abs, entries)) for entries in zip(*trails, strict=True))
 
 
 def evaluation(split: Split, digits: int, sizes: Sequence[Size] = ()) -> AnyEvaluation:
-    """As a result has it; `sizes`: of M at the checkpoints, for W."""
-    return _of_form(split, digits, sizes) if sizes else _of_area(split, digits)
+    """Return the evaluation of a result; `sizes`: of M at the checkpoints, for W."""
+    return _evaluate_form(split, digits, sizes) if sizes else _evaluate_area(split, digits)
 
 
-def _of_area(split: Split, digits: int) -> EvaluationResult:
+def _evaluate_area(split: Split, digits: int) -> EvaluationResult:
     parts = {name: value for name, (value,) in split.values(digits).items()}
-    timed = "clock" in parts
-    at = PartsInTimeAt if timed else PartsAt
-    shown = at.model_fields.keys() - {"steps"}
+    has_time = "clock" in parts
+    checkpoint_type = PartsInTimeAt if has_time else PartsAt
+    names = checkpoint_type.model_fields.keys() - {"steps"}
     return EvaluationResult(
-        parts=PartsInTime(**parts) if timed else Parts(**parts),
+        parts=PartsInTime(**parts) if has_time else Parts(**parts),
         series=tuple(
-            at(steps=split.marks[k], **{name: texts[name] for name in shown})
+            checkpoint_type(steps=split.marks[k], **{name: texts[name] for name in names})
             for k, texts in split.series()
         ),
         **split.summary,
     )
 
 
-def _of_form(split: Split, digits: int, sizes: Sequence[Size]) -> FormEvaluation:
+def _evaluate_form(split: Split, digits: int, sizes: Sequence[Size]) -> FormEvaluation:
     values = split.values(digits).items()
-    parts = {_name_in_degrees(name): FormValue.of(entries) for name, entries in values}
-    motion = motion_of(split.marks, [x.norm for x in sizes])
+    parts = {_name_in_degrees(name): FormValue.from_entries(entries) for name, entries in values}
+    motion = classify_motion(split.marks, [x.norm for x in sizes])
     name = "lambda_working"
-    law = power_law(split.marks, split.tops[name], split.noise[name], motion)
+    law = fit_power_law(split.marks, split.tops[name], split.noise[name], motion)
     return FormEvaluation(
         parts=FormPartsInTime(**parts) if "clock" in parts else FormParts(**parts),
         law=PowerLawResult(**law.fields),

@@ -9,15 +9,15 @@ A chain of five values leads from exact arithmetic to what a float64 program pri
     Λ₃  the factors det J(z̃_k) as float64 computes them, bit by bit; their product exactly
     Λ₄  the product in float64, too: Λ as a float64 program finds it, `lambda_working`
 
-The exact flow has Λ = 0, so Λ₀ is the truncation part, all that the scheme itself does wrong. What
-each later link adds is rounding of one kind, and the sum telescopes:
+The exact flow has Λ = 0, so Λ₀ is the truncation part, the error of the scheme itself. Each later
+link adds rounding of one kind, and the sum telescopes:
 
     Λ₄ = Λ₀ + (Λ₁ − Λ₀) + (Λ₂ − Λ₁) + (Λ₃ − Λ₂) + (Λ₄ − Λ₃)
        = truncation + input + trajectory + determinant + product
 
 Where H depends on time a link `clock` stands after Λ₁: exact arithmetic at the rounded inputs, but
-each step at the time that a float64 program's clock has, t ← t + h, which is off t₀ + k h by what
-was rounded so far. The clock is read by Λ₂ and all links after it.
+each step at the time that a float64 program's clock has, t ← t + h, which is off t₀ + k h by the
+rounding so far. The clock is read by Λ₂ and all links after it.
 
 That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever
 error is left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact:
@@ -32,12 +32,12 @@ trajectory are the same for both.
 
 In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.ways.matrices`):
 `plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
-`closed_form` is that of `verify run`. How W and the tangent map grow is told in
+`closed_form` is that of `verify run`. The growth of W and of the tangent map is the subject of
 `verify.studies.separation.growth` and `verify.studies.separation.tangent`.
 
-How far the parts are known is told in `verify.studies.separation.ways.determinants`,
-`verify.studies.separation.ways.matrix_bounds` and `verify.runs.estimated`, what is made of a run's
-checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
+The error bounds of the parts are in `verify.studies.separation.ways.determinants`,
+`verify.studies.separation.ways.matrix_bounds` and `verify.runs.estimated`; fits to a run's
+checkpoints and to a grid of step sizes are in `verify.studies.separation.growth`.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -53,8 +53,8 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
-from verify.lockstep import Course, alone
-from verify.runs.run import AskedRun, check
+from verify.lockstep import Course, run_alone
+from verify.runs.run import RequestedRun, check
 from verify.runs.start import Start
 from verify.scenes.results.separation import (
     WAYS,
@@ -69,8 +69,8 @@ from verify.scenes.results.separation import (
 )
 from verify.scenes.results.separation_parts import AnyEvaluation
 from verify.schemes import canonical
-from verify.studies.separation.growth import crossover
-from verify.studies.separation.links import Chains, separated_chains, way_of
+from verify.studies.separation.growth import find_crossover
+from verify.studies.separation.links import Chains, separate_chains, way_for
 from verify.studies.separation.result import Split, evaluation
 from verify.studies.separation.stepper.run import Stopped
 from verify.studies.separation.tangent import tangent_growth
@@ -83,9 +83,9 @@ _GRIDS: dict[type[Separation], type[AnyGrid]] = {
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
 
 
-def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> AnySeparation:
-    """The same as `separate_in_turn`, which takes the same arguments, alone."""
-    return alone(separate_in_turn(hamiltonian, scheme, **asked))
+def separate(hamiltonian: Hamiltonian, scheme: str, **arguments: Any) -> AnySeparation:
+    """Do `separate_in_turn`, which takes the same arguments, alone."""
+    return run_alone(separate_in_turn(hamiltonian, scheme, **arguments))
 
 
 def separate_in_turn(
@@ -101,50 +101,53 @@ def separate_in_turn(
     arithmetic: str = AUTO,
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
-    run: AskedRun | None = None,
+    run: RequestedRun | None = None,
 ) -> Course[AnySeparation]:
-    """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding; in n
-    degrees of freedom, where q and p are lists, W.
+    """Split Λ of a float64 run of `steps` steps from (q, p) into truncation and rounding.
 
-    `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
-    part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: one of
-    the same steps in the plane that is asked for too, and done once for both. Raises InputError for
+    In n degrees of freedom, where q and p are lists, it splits W.
+
+    `t0`: when it starts, of an H that depends on time. `digits`: significant digits of every
+    part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: a
+    requested run of the same steps in the plane, which is done once for both. Raises InputError for
     h ≤ 0, N < 1, a parameter without a value, unknown names, more than 4 degrees of freedom, and
-    for float64, which is what is examined.
+    for float64, which is under examination itself.
     """
-    scheme, h, way = canonical(scheme), positive(step_size, "step_size"), way_of(hamiltonian)
-    begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
-    start = {**begun.point, "h": h}
+    scheme, h, way = canonical(scheme), positive(step_size, "step_size"), way_for(hamiltonian)
+    run_start = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
+    start = {**run_start.point, "h": h}
     if hamiltonian.time_dependent:
-        start["t"] = begun.t0
-    check_times(hamiltonian, begun.t0, h, steps)
+        start["t"] = run_start.t0
+    check_times(hamiltonian, run_start.t0, h, steps)
     check(hamiltonian, steps, digits, (way.observable,))
     check_reference(arithmetic)
-    asked = hamiltonian, scheme, start, steps, digits, arithmetic, progress or (lambda _: None)
-    told: dict[str, Any] = {
+    arguments = hamiltonian, scheme, start, steps, digits, arithmetic, progress or (lambda _: None)
+    fields: dict[str, Any] = {
         **hamiltonian.texts, "scheme": scheme, "arithmetic": arithmetic, "digits": digits,
-        "step_size": text(h), "steps": steps, "q": begun.text("q"), "p": begun.text("p"),
+        "step_size": text(h), "steps": steps, "q": run_start.text("q"), "p": run_start.text("p"),
         "t0": text(start.get("t", Fraction(0))), "status": "finished", "failed_step": None,
         "reason": "", "plain": None, "closed_form": None, "error_method": "none", "seconds": 0.0,
         "coordinates": hamiltonian.coordinates, "tangent": None,
     }  # fmt: skip
     try:
-        chains = yield from separated_chains(*asked, keeper, run)
-        told |= _split(chains, begun, steps, digits)
+        chains = yield from separate_chains(*arguments, keeper, run)
+        fields |= _chain_fields(chains, run_start, steps, digits)
     except Stopped as stopped:
-        told |= {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
-    return way.result(**{name: told[name] for name in way.result.model_fields})
+        fields |= {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
+    return way.result(**{name: fields[name] for name in way.result.model_fields})
 
 
-def _split(chains: Chains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
-    """What the chains give of a result."""
-    sizes, closed = chains.sizes, chains.closed_form and Split(chains.closed_form)
+def _chain_fields(chains: Chains, run_start: Start, steps: int, digits: int) -> dict[str, Any]:
+    """Return the fields of a result that the chains give."""
+    sizes, closed_form = chains.sizes, chains.closed_form and Split(chains.closed_form)
     methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
     return {
         "arithmetic": chains.arithmetic,
         "plain": evaluation(Split(chains.plain), digits, sizes),
-        "closed_form": closed and evaluation(closed, digits, sizes),
-        "tangent": tangent_growth(closed, sizes, begun, steps) if closed and sizes else None,
+        "closed_form": closed_form and evaluation(closed_form, digits, sizes),
+        "tangent": tangent_growth(closed_form, sizes, run_start, steps)
+        if closed_form and sizes
+        else None,
         "error_method": "; ".join(methods),
         "seconds": chains.seconds,
     }
@@ -158,41 +161,48 @@ def separate_grid(
     steps: int | None = None,
     time: Exact | None = None,
     digits: int = 17,
-    **asked: Any,
+    **arguments: Any,
 ) -> AnyGrid:
-    """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
+    """Do `separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
     Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
     of `steps` and `time` is given.
     """
-    counts = grid(step_sizes, steps, time)
+    counts = count_steps(step_sizes, steps, time)
+    # A bad number of steps is reported at once, not after hours of runs for other step sizes.
     for _, count in counts:
         check(hamiltonian, count, digits, ())  # before the first of them is run
-    asked |= {"digits": digits}
+    arguments |= {"digits": digits}
     return as_grid(
-        [separate(hamiltonian, scheme, step_size=h, steps=count, **asked) for h, count in counts]
+        [
+            separate(hamiltonian, scheme, step_size=h, steps=count, **arguments)
+            for h, count in counts
+        ]
     )
 
 
 def as_grid(points: Sequence[Separation]) -> AnyGrid:
-    """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
-    crossed = {way: crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS}
-    return _GRIDS[type(points[0])].model_validate({"points": tuple(points), **crossed})
+    """Join separations for several step sizes, with the crossover of each way to evaluate them."""
+    crossovers = {
+        way: find_crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS
+    }
+    return _GRIDS[type(points[0])].model_validate({"points": tuple(points), **crossovers})
 
 
-def crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:
-    """Where rounding overtakes truncation, of step sizes with what was found of each, one way."""
+def find_crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:
+    """Find where rounding overtakes truncation, from each step size's evaluation by one way."""
     parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
-    at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
-    size = None if at.step_size is None else f"{at.step_size:.3e}"
-    ends = at.bracket and (text(at.bracket[0]), text(at.bracket[1]))
-    return CrossoverResult(step_size=size, bracket=ends, reason=at.reason)
+    # The greatest sizes along the run stand for it: a last value may be small by chance.
+    overtaking = find_crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
+    size = None if overtaking.step_size is None else f"{overtaking.step_size:.3e}"
+    ends = overtaking.bracket and (text(overtaking.bracket[0]), text(overtaking.bracket[1]))
+    return CrossoverResult(step_size=size, bracket=ends, reason=overtaking.reason)
 
 
-def grid(
+def count_steps(
     step_sizes: Sequence[Exact], steps: int | None, time: Exact | None
 ) -> list[tuple[Fraction, int]]:
-    """Each step size with its number of steps; see `separate_grid`."""
+    """Return each step size with its number of steps; see `separate_grid`."""
     if (steps is None) == (time is None):
         raise InputError("steps, time", NOT_GIVEN, "give one of the two")
     if not step_sizes:
@@ -213,8 +223,8 @@ def grid(
 
 
 def check_reference(arithmetic: str) -> None:
-    """InputError for what cannot stand for exact arithmetic."""
-    allowed = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
-    if arithmetic not in allowed:
+    """Raise InputError for an arithmetic that cannot stand for exact arithmetic."""
+    names = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
+    if arithmetic not in names:
         wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
-        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(allowed)}")
+        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(names)}")

@@ -1,10 +1,10 @@
-"""How the tangent map of a run grew, what follows for W, and whose that growth is.
+"""The growth of a run's tangent map, its consequence for W, and its cause.
 
-A scheme may amplify by itself, as lie2 does a harmonic oscillator, by 1 + h⁴/8 a step. What a
-scheme does so depends on h; what the motion does, does not. So the run's tangent map is carried
-along once more, in float64 beside 20 digits, with half the step size over the same time: where it
-grows exponentially there too, at a rate within a factor of 2, the growth is the motion's. That is
-measured, and not proved.
+A scheme may amplify by itself, as lie2 does a harmonic oscillator, by 1 + h⁴/8 a step. The growth
+that a scheme causes depends on h; the growth that the motion causes does not. So the run's tangent
+map is carried along once more, in float64 beside 20 digits, with half the step size over the same
+time: where it grows exponentially there too, at a rate within a factor of 2, the growth is the
+motion's. That is measured, and not proved.
 """
 
 import math
@@ -20,7 +20,7 @@ from verify.prose import Number, Prose, prose
 from verify.runs.start import Start
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_parts import PowerLawResult, TangentGrowth
-from verify.studies.separation.growth import Motion, PowerLaw, motion_of, power_law
+from verify.studies.separation.growth import Motion, PowerLaw, classify_motion, fit_power_law
 from verify.studies.separation.links import last_system
 from verify.studies.separation.result import SHOWN, Split
 from verify.studies.separation.stepper.run import marks_of
@@ -42,46 +42,56 @@ _WHOSE: dict[Cause, str] = {
 
 
 @dataclass(frozen=True)
-class Halved:
-    """Whose the growth is, and the finite-time Lyapunov exponent at half the step size; None where
-    that run left its range."""
+class HalfStep:
+    """The cause of the growth, and the finite-time Lyapunov exponent at half the step size.
+
+    The exponent is None where that run left its range.
+    """
 
     cause: Cause
     rate: float | None
 
 
-def halved(begun: Start, steps: int, rate: float) -> Halved:
-    """Of a run whose tangent map grew exponentially at that `rate`."""
-    hamiltonian, h = begun.hamiltonian, begun.step_size
-    half = {**begun.point, "h": h / 2} | ({"t": begun.t0} if hamiltonian.time_dependent else {})
-    run = KernelRun(hamiltonian, begun.scheme, half, 2 * steps, frozenset(), 0, sections=POINTS)
+def repeat_with_half_step(start: Start, steps: int, rate: float) -> HalfStep:
+    """Repeat a run whose tangent map grew exponentially at that `rate`, with half the step size."""
+    hamiltonian, h = start.hamiltonian, start.step_size
+    half = {**start.point, "h": h / 2} | ({"t": start.t0} if hamiltonian.time_dependent else {})
+    # Twice the steps of half the size cover the same time.
+    run = KernelRun(hamiltonian, start.scheme, half, 2 * steps, frozenset(), 0, sections=POINTS)
     outcome = run.run(last_system().make(_DIGITS), tangent=True)
     if outcome.done < 2 * steps:
-        return Halved("undecided", None)
+        return HalfStep("undecided", None)
     tops = [note["growth_top"] for note in outcome.tangents]
     size, time = len(hamiltonian.coordinates), steps * h
     halved_rate = finite_time_lyapunov(math.log(float(tops[-1])) / 2, size, float(time))
+    # A rate that belongs to the motion does not depend on h.
     alike = rate < _ALIKE * halved_rate and halved_rate < _ALIKE * rate
-    grows = motion_of(marks_of(2 * steps, POINTS), tops) == "exponential"
-    return Halved("motion" if alike and grows else "undecided" if alike else "scheme", halved_rate)
+    grows = classify_motion(marks_of(2 * steps, POINTS), tops) == "exponential"
+    return HalfStep(
+        "motion" if alike and grows else "undecided" if alike else "scheme", halved_rate
+    )
 
 
-def tangent_growth(split: Split, sizes: Sequence[Size], begun: Start, steps: int) -> TangentGrowth:
-    """How M grew, and what follows for W, of which `split` has the closed form."""
-    marks, last, time = split.marks, sizes[-1], begun.step_size * steps
+def tangent_growth(split: Split, sizes: Sequence[Size], start: Start, steps: int) -> TangentGrowth:
+    """Return the growth of M and its consequence for W, of which `split` has the closed form."""
+    marks, last, time = split.marks, sizes[-1], start.step_size * steps
     squares, areas = [x.norm for x in sizes], [_root(x.areas) for x in sizes]
-    motion = motion_of(marks, squares)
-    norm, count = float(_root(last.norm)), len(begun.hamiltonian.coordinates)
+    motion = classify_motion(marks, squares)
+    norm, count = float(_root(last.norm)), len(start.hamiltonian.coordinates)
     rate = finite_time_lyapunov(math.log(norm), count, float(time))
-    half = halved(begun, steps, rate) if motion == "exponential" else None
-    law, law_of_areas = (power_law(marks, each, Fraction(0), motion) for each in (squares, areas))
+    half = repeat_with_half_step(start, steps, rate) if motion == "exponential" else None
+    law, law_of_areas = (
+        fit_power_law(marks, each, Fraction(0), motion) for each in (squares, areas)
+    )
     exact = split.tops["truncation"]
-    law_of_w = power_law(marks, exact, split.noise["truncation"], motion) if any(exact) else None
+    law_of_w = (
+        fit_power_law(marks, exact, split.noise["truncation"], motion) if any(exact) else None
+    )
     if half:
         times = f"{log10(last.norm / sizes[0].norm):.1f}"
-        meaning = _exponential(times, rate, half, law_of_w is None)
+        meaning = _describe_exponential(times, rate, half, law_of_w is None)
     else:
-        meaning = _power(law_of_w, law, motion)
+        meaning = _describe_power(law_of_w, law, motion)
     return TangentGrowth(
         norm_squared=decimal(last.norm, SHOWN),
         areas=decimal(areas[-1], SHOWN),
@@ -97,32 +107,34 @@ def tangent_growth(split: Split, sizes: Sequence[Size], begun: Start, steps: int
     )
 
 
-def _exponential(times: str, rate: float, half: Halved, vanishes: bool) -> Prose:
-    """What is said where ‖M‖² grew 10^`times`-fold; `vanishes`: S ≡ 0."""
-    said = prose("‖M‖² grew exponentially, 10^", Number(times), "-fold, at a finite-time Lyapunov ",
-                 "exponent of ", Number(_short(rate)), " per unit of time")  # fmt: skip
+def _describe_exponential(times: str, rate: float, half: HalfStep, vanishes: bool) -> Prose:
+    """Describe a growth of ‖M‖² by 10^`times`; `vanishes`: S ≡ 0."""
+    growth = prose(
+        "‖M‖² grew exponentially, 10^", Number(times), "-fold, at a finite-time Lyapunov ",
+        "exponent of ", Number(_short(rate)), " per unit of time",
+    )  # fmt: skip
     if vanishes:
-        return prose(said, "; S ≡ 0 is proved, so that all of W is rounding, which M magnifies")
+        return prose(growth, "; S ≡ 0 is proved, so that all of W is rounding, which M magnifies")
     again = prose(", and with half the step size the orbit leaves the range")
     if half.rate is not None:
         again = prose(", and of ", Number(_short(half.rate)), " with half the step size")
-    return prose(said, again, _SO_W, _WHOSE[half.cause])
+    return prose(growth, again, _SO_W, _WHOSE[half.cause])
 
 
-def _power(law_of_w: PowerLaw | None, law: PowerLaw, motion: Motion) -> Prose:
-    """What is said where it did not, from the laws of max |W|, None for S ≡ 0, and of ‖M‖²."""
+def _describe_power(law_of_w: PowerLaw | None, law: PowerLaw, motion: Motion) -> Prose:
+    """Describe other growth by the laws of max |W|, None for S ≡ 0, and of ‖M‖²."""
     if law_of_w is None:
         return prose("W is exactly 0 in exact arithmetic: S ≡ 0")
     if law_of_w.exponent is None or law.exponent is None:
         return prose("how W grows with N is not measured: ", law_of_w.reason)
     words = {"bounded": "is bounded", "undecided": "follows no whole power"}
-    said = words.get(law_of_w.name, f"grows like {law_of_w.name}")
-    measured = " (measured, not proved)"
+    law_text = words.get(law_of_w.name, f"grows like {law_of_w.name}")
+    evidence = " (measured, not proved)"
     if motion == "polynomial":
-        measured += "; ‖M‖ does not grow exponentially"
-    return prose(f"max |W| {said} in this run, with a fitted exponent of ",
+        evidence += "; ‖M‖ does not grow exponentially"
+    return prose(f"max |W| {law_text} in this run, with a fitted exponent of ",
                  Number(f"{law_of_w.exponent:.2f}"), "; ‖M‖² that of ",
-                 Number(f"{law.exponent:.2f}"), measured)  # fmt: skip
+                 Number(f"{law.exponent:.2f}"), evidence)  # fmt: skip
 
 
 def _short(x: float) -> str:
@@ -130,6 +142,7 @@ def _short(x: float) -> str:
 
 
 def _root(x: Fraction) -> Fraction:
-    """√x to some twelve digits, of any size."""
+    """Return √x to some twelve digits, of any size."""
+    # 24 significant digits under the root leave 12 in it.
     digits = max(0, 24 - magnitude(x)) if x else 0
     return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)

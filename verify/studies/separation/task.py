@@ -7,8 +7,8 @@ from verify.arithmetic import AUTO, step_cost
 from verify.arithmetic.systems import ball, float64
 from verify.execution.keeping import Keeper
 from verify.execution.task import StartTask, Task
-from verify.lockstep import Course, alone
-from verify.runs.run import AskedRun
+from verify.lockstep import Course, run_alone
+from verify.runs.run import RequestedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.separation import AnySeparation, SeparationInDegrees, SeparationResult
@@ -20,8 +20,8 @@ from verify.studies.separation.ways.matrices import Matrices
 DIGITS = 6  # of each part, in a scene
 
 
-def does_for_first_link(arithmetic: str, digits: int) -> bool:
-    """Whether a run in that arithmetic is certified, and has digits enough for the first link."""
+def serves_first_link(arithmetic: str, digits: int) -> bool:
+    """Return True if a run in that arithmetic is certified to enough digits for the first link."""
     return arithmetic not in (float64.NAME, ball.NAME) and digits >= DIGITS + Determinants.cancelled
 
 
@@ -30,7 +30,7 @@ class SeparationTask(StartTask):
 
     result: ClassVar[type[AnySeparation]] = SeparationResult
     runs: ClassVar[int] = 3
-    """Of the chain, in wide numbers."""
+    """The number of runs of the chain, in wide numbers."""
     points: ClassVar[int] = Determinants.points
     """Checkpoints, each of which costs about as much as `point_cost` float64 steps."""
     point_cost: ClassVar[int] = 80_000
@@ -40,45 +40,47 @@ class SeparationTask(StartTask):
     t0: Number = Fraction(0)
     digits: int
     run: RunTask | None = None
-    """One that is wanted too, of the same steps: its exact run is the separation's first link."""
+    """A requested run of the same steps: its exact run is the separation's first link."""
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps its runs and their checkpoints are worth; a run that is
-        wanted too is done in place of one of the chain's."""
+        """About the number of float64 steps that its runs and their checkpoints are worth.
+
+        A requested run is done in place of one of the chain's.
+        """
         of_points = self.point_cost * min(self.steps, self.points)
-        spared = 0 if self.run is None else self.run.cost - self.steps * step_cost(AUTO)
-        return of_points + self.runs * self.steps * step_cost(AUTO) + spared
+        difference = 0 if self.run is None else self.run.cost - self.steps * step_cost(AUTO)
+        return of_points + self.runs * self.steps * step_cost(AUTO) + difference
 
     @property
     def ensemble(self) -> str | None:
-        """Separations of one scheme's map, whatever the step size and the initial value."""
+        """A key of the separations of one scheme's map, for any step size and initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
     @property
     def gives(self) -> tuple[Task, ...]:
-        """The run."""
+        """The requested run, whose result comes with the separation."""
         return () if self.run is None else (self.run,)
 
-    def _separated(self, keeper: Keeper, run: AskedRun | None) -> Course[Any]:
-        asked = self.asked("run")
-        return separate_in_turn(self.exact_hamiltonian(), **asked, run=run, keeper=keeper)
+    def _separate(self, keeper: Keeper, run: RequestedRun | None) -> Course[Any]:
+        arguments = self.other_fields("run")
+        return separate_in_turn(self.exact_hamiltonian(), **arguments, run=run, keeper=keeper)
 
     def compute(self, keeper: Keeper) -> AnySeparation:
-        """The separation, as a result."""
-        split: AnySeparation = alone(self._separated(keeper, self._asked_run(keeper)))
+        """Return the separation as a result."""
+        split: AnySeparation = run_alone(self._separate(keeper, self._requested_run(keeper)))
         return split
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
-        """The separation, and the run where that was done for it."""
-        run = self._asked_run(keeper)
-        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, run))}
+        """Return the separation, and the run where that was done for it."""
+        run = self._requested_run(keeper)
+        results: dict[str, Frozen] = {self.key: (yield from self._separate(keeper, run))}
         if self.run and run and run.done:
             results[self.run.key] = yield from run.result()
         return results
 
-    def _asked_run(self, keeper: Keeper) -> AskedRun | None:
-        return self.run.asked_run(keeper) if self.run else None
+    def _requested_run(self, keeper: Keeper) -> RequestedRun | None:
+        return self.run.requested_run(keeper) if self.run else None
 
 
 class FormSeparationTask(SeparationTask):

@@ -1,1 +1,1 @@
-"""How far a scheme can be pushed, and whose fault it is where it fails."""
+"""Stability: the limits of a scheme, and the cause where a run fails."""

@@ -21,7 +21,7 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import known_digits
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import check_start, shown_of
@@ -36,32 +36,35 @@ _DIGITS = 30
 
 @dataclass(frozen=True)
 class Frequency:
-    """A normal frequency ω, so many times; `exact`: as a formula, or as a root of a polynomial."""
+    """A normal frequency ω with its multiplicity."""
 
     root: PositiveRoot
     multiplicity: int
 
     @property
-    def closed(self) -> sympy.Expr | None:
-        """With square roots, where it has such a form."""
+    def closed_form(self) -> sympy.Expr | None:
+        """A formula with square roots, where the frequency has one."""
         return self.root.closed_form()
 
     @property
     def exact(self) -> str:
-        return self.root.written("ω") if self.closed is None else str(self.closed)
+        """The frequency as a formula, or as a root of a polynomial."""
+        return self.root.describe("ω") if self.closed_form is None else str(self.closed_form)
 
     def decimal(self, digits: int = _DIGITS) -> str:
-        """Rounded to so many significant digits."""
-        closed = self.closed
-        return self.root.decimal(digits) if closed is None else str(closed.evalf(digits))
+        """Return the frequency rounded to so many significant digits."""
+        formula = self.closed_form
+        return self.root.decimal(digits) if formula is None else str(formula.evalf(digits))
 
 
 @dataclass(frozen=True)
 class LinearAtEquilibrium:
-    """`frequencies`: from the smallest on; less than n of them, with multiplicities, where motion
+    """The linear stability of a scheme at an equilibrium.
+
+    `frequencies`: from the smallest on; less than n of them, with multiplicities, where motion
     near the equilibrium is not oscillation alone. `interval`: of hω, where H's quadratic part is a
-    sum of oscillators; else None. `decided`: whether powers of a step stay bounded, for each h that
-    was asked for; None where it is not decided.
+    sum of oscillators; else None. `decided`: for each requested h True if powers of a step stay
+    bounded, False if not, None where it is not decided.
     """
 
     scheme: str
@@ -73,7 +76,7 @@ class LinearAtEquilibrium:
 
     @property
     def oscillates(self) -> bool:
-        """Whether all n degrees of freedom have a frequency."""
+        """True if all n degrees of freedom have a frequency."""
         return sum(f.multiplicity for f in self.frequencies) == self.hamiltonian.degrees
 
     @property
@@ -86,28 +89,31 @@ class LinearAtEquilibrium:
         return self._limit(self.interval)[0]
 
     def _limit(self, interval: LinearStability) -> tuple[str, str]:
-        """The end of the steps, and its bound."""
+        """Return the end of the steps, and its bound."""
         end, omega = interval.interval, Fraction(self.frequencies[-1].decimal(2 * _DIGITS))
         if isinstance(end, NearbyLimit):
             y, error = end.value, end.radius
         else:
             y, error = Fraction(interval.decimal(2 * _DIGITS)), Fraction(0)
+        # Y and ω are each known to a relative error of 10^−(2 digits); 4 covers both and the
+        # rounding of the quotient.
         bound = 4 * y / 10 ** (2 * _DIGITS) + error
         return known_digits(y / omega, bound / omega, _DIGITS)
 
     def allows(self, h: Fraction) -> bool:
-        """Whether every h ω is certainly within the interval."""
+        """Return True if every h ω is certainly within the interval."""
         if self.interval is None or self.step_size in ("0", "infinite"):
             return self.step_size == "infinite"
         limit, bound = map(Fraction, self._limit(self.interval))
+        # The limit has `_DIGITS` digits and a bound; h must be below it by more than both.
         return h < limit * (1 - Fraction(1, 10 ** (_DIGITS - 1))) - 2 * bound
 
     @property
     def step_size_exact(self) -> str:
-        """The same as a formula, where both have one; else empty."""
+        """The end of the steps as a formula, where Y and ω have one; else empty."""
         if self.interval is None or self.step_size in ("0", "infinite"):
             return ""
-        y, omega = self.interval.interval, self.frequencies[-1].closed
+        y, omega = self.interval.interval, self.frequencies[-1].closed_form
         if isinstance(y, PositiveRoot | NearbyLimit) or omega is None:
             return ""
         return str(sympy.radsimp(y / omega))
@@ -119,7 +125,7 @@ def linear_at_equilibrium(
     point: Mapping[str, Fraction],
     step_sizes: Sequence[Fraction] = (),
 ) -> LinearAtEquilibrium:
-    """At the equilibrium `point`, by the names of H's coordinates.
+    """Return the linear stability of a scheme at the equilibrium `point`, by coordinates' names.
 
     Raises InputError where H depends on time or a parameter has no value, where the point is none,
     for second derivatives that are not rational, and where only step sizes could be decided and
@@ -135,16 +141,18 @@ def linear_at_equilibrium(
         problem = "is needed: H's quadratic part there is no sum of oscillators T(p) + V(q)"
         raise InputError("step_sizes", NOT_GIVEN, problem)
     interval, frequencies = linear_stability(scheme) if splits else None, _frequencies(matrix)
-    found = LinearAtEquilibrium(scheme, hamiltonian, point, tuple(frequencies), interval)
-    decided: dict[Fraction, bool | None] = dict.fromkeys(step_sizes, True)
-    for h in (h for h in step_sizes if not found.allows(h)):
+    result = LinearAtEquilibrium(scheme, hamiltonian, point, tuple(frequencies), interval)
+    decisions: dict[Fraction, bool | None] = dict.fromkeys(step_sizes, True)
+    # Beyond the interval powers may still stay bounded, as at isolated resonances: then the step's
+    # own matrix decides.
+    for h in (h for h in step_sizes if not result.allows(h)):
         step = step_matrix(scheme, _quadratic(hamiltonian, hessian), matrix, h)
-        decided[h] = None if step is None else stays_bounded(step)
-    return replace(found, decided=decided)
+        decisions[h] = None if step is None else stays_bounded(step)
+    return replace(result, decided=decisions)
 
 
 def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint.fmpq_mat:
-    """H's second derivatives by p1 … pn, q1 … qn at an equilibrium."""
+    """Return H's second derivatives by p1 … pn, q1 … qn at an equilibrium."""
     if hamiltonian.time_dependent:
         raise InputError("hamiltonian", hamiltonian.formula, "depends on t; --linear takes no such")
     if hamiltonian.symbols:
@@ -153,66 +161,68 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
     names = [symbol(name) for name in hamiltonian.coordinates]
     q, p = (shown_of(hamiltonian, point, letter) for letter in "qp")
     check_start(hamiltonian, q, p)
-    at = {z: sympy.Rational(*point[z.name].as_integer_ratio()) for z in names}
-    found = flint.fmpq_mat(len(names), len(names))
+    point_values = {z: sympy.Rational(*point[z.name].as_integer_ratio()) for z in names}
+    second_derivatives = flint.fmpq_mat(len(names), len(names))
     for i, z in enumerate(names):
         slope = sympy.diff(hamiltonian.exact, z)
-        _check_equilibrium(slope, at, z.name)
+        _check_equilibrium(slope, point_values, z.name)
         for j, other in enumerate(names):
             if other in slope.free_symbols:
-                second = _value(sympy.diff(slope, other), at)
+                second = _evaluate(sympy.diff(slope, other), point_values)
                 if not second.is_Rational:
                     what = f"∂²H/∂{z.name}∂{other.name}"
                     raise InputError(
                         what, str(second), "is not rational there; --linear needs that"
                     )
-                found[i, j] = flint.fmpq(int(second.p), int(second.q))
-    return found
+                second_derivatives[i, j] = flint.fmpq(int(second.p), int(second.q))
+    return second_derivatives
 
 
 def _check_equilibrium(
-    slope: sympy.Expr, at: Mapping[sympy.Symbol, sympy.Rational], name: str
+    slope: sympy.Expr, point_values: Mapping[sympy.Symbol, sympy.Rational], name: str
 ) -> None:
-    value = _value(slope, at)
+    value = _evaluate(slope, point_values)
     if value != 0:
-        shown = ", ".join(f"{z.name}={x}" for z, x in at.items())
-        raise InputError("q, p", shown, f"is no equilibrium: ∂H/∂{name} = {value} there, not 0")
+        point_text = ", ".join(f"{z.name}={x}" for z, x in point_values.items())
+        raise InputError(
+            "q, p", point_text, f"is no equilibrium: ∂H/∂{name} = {value} there, not 0"
+        )
 
 
-def _value(x: sympy.Expr, at: Mapping[sympy.Symbol, sympy.Rational]) -> sympy.Expr:
-    with limited("hamiltonian", str(x), "to evaluate this derivative of it"):
-        return sympy.simplify(x.xreplace({z: at[z] for z in x.free_symbols}))
+def _evaluate(x: sympy.Expr, point_values: Mapping[sympy.Symbol, sympy.Rational]) -> sympy.Expr:
+    with limit_effort("hamiltonian", str(x), "to evaluate this derivative of it"):
+        return sympy.simplify(x.xreplace({z: point_values[z] for z in x.free_symbols}))
 
 
 def _field_matrix(hessian: flint.fmpq_mat) -> flint.fmpq_mat:
-    """A: p' = −∂H/∂q and q' = ∂H/∂p."""
+    """Return A of the linear field z' = A z, with p' = −∂H/∂q and q' = ∂H/∂p."""
     size = hessian.nrows()
     n, rows = size // 2, hessian.tolist()
-    turned = [[-x for x in row] for row in rows[n:]] + rows[:n]
-    return flint.fmpq_mat(size, size, [x for row in turned for x in row])
+    field_rows = [[-x for x in row] for row in rows[n:]] + rows[:n]
+    return flint.fmpq_mat(size, size, [x for row in field_rows for x in row])
 
 
 def _quadratic(hamiltonian: Hamiltonian, hessian: flint.fmpq_mat) -> Hamiltonian:
-    """The quadratic part, of which a step is made at less cost; H where it lacks a coordinate."""
+    """Return H's quadratic part, whose step costs less; H itself where it lacks a coordinate."""
     names = [symbol(name) for name in hamiltonian.coordinates]
     rows = [[sympy.Rational(int(x.p), int(x.q)) for x in row] for row in hessian.tolist()]
     pairs = ((x, a, b) for row, a in zip(rows, names, strict=True)
              for x, b in zip(row, names, strict=True) if x)  # fmt: skip
-    made = Hamiltonian(sympy.Add(*(x * a * b / 2 for x, a, b in pairs)))
-    return made if made.coordinates == hamiltonian.coordinates else hamiltonian
+    quadratic = Hamiltonian(sympy.Add(*(x * a * b / 2 for x, a, b in pairs)))
+    return quadratic if quadratic.coordinates == hamiltonian.coordinates else hamiltonian
 
 
 def _is_sum_of_oscillators(hessian: flint.fmpq_mat, n: int) -> bool:
-    """Whether it is T(p) + V(q), both positive definite."""
+    """Return True if the quadratic form is T(p) + V(q), both positive definite."""
     rows = hessian.tolist()
-    mixed = any(x for row in rows[:n] for x in row[n:])
-    return not mixed and all(
+    has_mixed_terms = any(x for row in rows[:n] for x in row[n:])
+    return not has_mixed_terms and all(
         _is_positive([row[k : k + n] for row in rows[k : k + n]]) for k in (0, n)
     )
 
 
 def _is_positive(rows: list[list[flint.fmpq]]) -> bool:
-    """Whether a symmetric matrix is positive definite: all pivots of elimination are."""
+    """Return True if a symmetric matrix is positive definite: if all pivots are positive."""
     for k in range(len(rows)):
         if rows[k][k] <= 0:
             return False
@@ -223,9 +233,11 @@ def _is_positive(rows: list[list[flint.fmpq]]) -> bool:
 
 
 def _frequencies(matrix: flint.fmpq_mat) -> list[Frequency]:
-    """The positive roots ω of det(A − iω), from the smallest on."""
+    """Return the positive roots ω of det(A − iω), from the smallest on."""
+    # With λ = iω, λ² = −ω²: the signs of every second coefficient change, and the powers of ω in
+    # between have coefficient 0.
     even = matrix.charpoly().coeffs()[::2]  # the field of an H: λ and −λ are roots together
-    turned = [x for k, c in enumerate(even) for x in ((-1) ** k * c, 0)][:-1]
-    polynomial = flint.fmpq_poly(turned).numer()
+    coefficients = [x for k, c in enumerate(even) for x in ((-1) ** k * c, 0)][:-1]
+    polynomial = flint.fmpq_poly(coefficients).numer()
     times = {factor.repr(): m for factor, m in polynomial.factor()[1]}
     return [Frequency(x, times[x.polynomial.repr()]) for x, _ in positive_roots([polynomial])]

@@ -1,5 +1,7 @@
-"""The exact motion that a run is held to: in the plane until it closes (`verify.flows.orbit`), in n
-degrees of freedom beside a neighbour, which tells how fast they part.
+"""The exact motion that a run is compared with.
+
+In the plane it is followed until it closes (`verify.flows.orbit`), in n degrees of freedom beside a
+neighbour, which shows how fast the two part.
 
 There the flow is followed with 24 digits from one time to the next, and so is a neighbour that
 starts 10⁻¹² of the reach away: their distance, by the first one, is what the tangent map does to
@@ -37,30 +39,41 @@ _NOISE = 1e-6  # of the matrix's size: a double eigenvalue 0 is found so far fro
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """`exponent`: (1/t) ln of how much a small distance has grown, over the `time` in which it was
-    small; `exponential`: whether it grows so, None where the time does not tell."""
+    """The growth of a small distance between neighbours.
+
+    `exponent`: (1/t) ln of the factor by which it has grown, over the `time` in which it was small.
+    `exponential`: True if it grows exponentially; None where the time is too short to decide.
+    """
 
     exponent: float
     time: float
     exponential: bool | None
 
     @classmethod
-    def of(cls, times: Sequence[float], distances: Sequence[float]) -> "Sensitivity":
-        """By the distances at ascending times from 0 on, in parts of the reach; the first is not
-        0."""
+    def from_distances(cls, times: Sequence[float], distances: Sequence[float]) -> "Sensitivity":
+        """Measure it by distances at ascending times from 0 on, in parts of the reach.
+
+        The first distance must not be 0.
+        """
+        # Once neighbours are far apart their distance is bounded by the orbit's size and grows no
+        # more.
         count = next((k for k, x in enumerate(distances) if x > _APART), len(distances) - 1) + 1
         first = distances[0]
+        # A distance may pass 0 by chance; its logarithm is kept finite.
         logs = [log(max(x, first * 1e-6) / first) for x in distances[:count]]
-        own = list(times[:count])
-        rate = finite_time_lyapunov(logs[-1], 1, own[-1]) if count > 1 else 0.0
-        return cls(rate, own[-1], is_exponential(own, logs))
+        small_times = list(times[:count])
+        rate = finite_time_lyapunov(logs[-1], 1, small_times[-1]) if count > 1 else 0.0
+        return cls(rate, small_times[-1], is_exponential(small_times, logs))
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExactMotion(ExactOrbit):
-    """In n degrees of freedom. `reach`: of each coordinate, the greatest of its kind; `turns`: none
-    is taken for an angle here; `period`: about the time in which the quickest coordinate turns
-    round; `states`: where it was looked at, at these `times`."""
+    """An exact motion in n degrees of freedom.
+
+    `reach`: of each coordinate, the greatest of its kind; `turns`: none is taken for an angle here;
+    `period`: about the time in which the quickest coordinate turns round; `states`: those at
+    `times`.
+    """
 
     has_neighbours: ClassVar[bool] = True
     hamiltonian: Hamiltonian
@@ -70,7 +83,7 @@ class ExactMotion(ExactOrbit):
 
     @property
     def is_sensitive(self) -> bool | None:
-        """Whether it parts from its neighbours exponentially; None where that is not known."""
+        """True if it parts from its neighbours exponentially; None where that is not decided."""
         return None if self.sensitivity is None else self.sensitivity.exponential
 
     @cached_property
@@ -84,21 +97,21 @@ class ExactMotion(ExactOrbit):
         names = (*field.names, "t") if field.timed else field.names
         entries = [(ring, ring.diff(slope, name)) for slope in field.slopes for name in field.names]
         arithmetic = mpfr.make(_OMEGA_DIGITS)
-        at = functions_at(arithmetic, entries, names)
+        jacobian_at = functions_at(arithmetic, entries, names)
         greatest = 0.0
         for time, state in zip(self.times, self.states, strict=True):
-            given = (*state, time) if field.timed else state
+            arguments = (*state, time) if field.timed else state
             with arithmetic.context():
-                found = at(*map(arithmetic.number, given))
-            jacobian = np.array([float(arithmetic.exact(x)) for x in found]).reshape(size, size)
+                values = jacobian_at(*map(arithmetic.number, arguments))
+            jacobian = np.array([float(arithmetic.exact(x)) for x in values]).reshape(size, size)
             turning = float(np.abs(np.linalg.eigvals(jacobian).imag).max())
             if turning > _NOISE * float(np.abs(jacobian).max()):
                 greatest = max(greatest, turning)
         return Fraction(greatest)
 
 
-def moved(state: State, reach: State, part: Fraction) -> State:
-    """A neighbour so far away, in a direction that no coordinate is left out of."""
+def displace(state: State, reach: State, part: Fraction) -> State:
+    """Return a neighbour at so many parts of the reach, displaced in every coordinate."""
     return tuple(
         x + part * r * Fraction((-1) ** k, 1 + k)
         for k, (x, r) in enumerate(zip(state, reach, strict=True))
@@ -106,54 +119,56 @@ def moved(state: State, reach: State, part: Fraction) -> State:
 
 
 def distance(one: State, other: State, reach: State) -> float:
-    """The greatest difference of a coordinate, in parts of its reach."""
+    """Return the greatest difference of a coordinate, in parts of its reach."""
     return max(float(abs(x - y) / r) for x, y, r in zip(one, other, reach, strict=True))
 
 
 def exact_motion(
     hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction = Fraction(0)
 ) -> ExactOrbit:
-    """The motion from a state for the length `time`."""
+    """Return the motion from a state for the length `time`."""
     if hamiltonian.planar:
         p, q = state
         return exact_orbit(hamiltonian, p, q, time, t0)
-    return _beside_a_neighbour(hamiltonian, state, time, t0)
+    return _follow_with_neighbour(hamiltonian, state, time, t0)
 
 
 @lru_cache(maxsize=64)
-def _beside_a_neighbour(
+def _follow_with_neighbour(
     hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
 ) -> ExactMotion:
     search = _Search(hamiltonian, state, time, t0)
     try:
-        points = search.followed(state)
+        points = search.follow(state)
     except NoFlowError as error:
-        return search.found("not followed", error.said, [state])
+        return search.build_motion("not followed", error.reason, [state])
     size = max(map(abs, state)) or max(map(abs, points[1]))
     if max(map(abs, points[-1])) > _FAR * size:
-        at = float(t0 + time)
-        said = f"is `{_FAR:.0e}` times as far out as z0 at t = `{at:.6g}`"
-        return search.found("escapes", read_prose(said), points)
+        time_reached = float(t0 + time)
+        summary = f"is `{_FAR:.0e}` times as far out as z0 at t = `{time_reached:.6g}`"
+        return search.build_motion("escapes", read_prose(summary), points)
     kind: Kind = "driven" if hamiltonian.time_dependent else "bounded"
-    found = search.found(kind, prose(), points)
-    near = moved(state, found.reach, _NEAR)
+    motion = search.build_motion(kind, prose(), points)
+    near = displace(state, motion.reach, _NEAR)
     try:
-        neighbour = search.followed(near)
+        neighbour = search.follow(near)
     except NoFlowError:
-        return search.found(kind, prose("is followed; a neighbour is not"), points)
+        return search.build_motion(kind, prose("is followed; a neighbour is not"), points)
     pairs = zip(points, neighbour, strict=True)
-    seen = Sensitivity.of(search.times, [distance(a, b, found.reach) for a, b in pairs])
-    return search.found(kind, _told(seen), points, seen)
+    sensitivity = Sensitivity.from_distances(
+        search.times, [distance(a, b, motion.reach) for a, b in pairs]
+    )
+    return search.build_motion(kind, _describe_sensitivity(sensitivity), points, sensitivity)
 
 
-def _told(seen: Sensitivity) -> Prose:
+def _describe_sensitivity(sensitivity: Sensitivity) -> Prose:
     says = {
         True: "parts from its neighbours exponentially",
         False: "parts from its neighbours no faster than a power of t",
         None: "is not followed long enough to tell how it parts from its neighbours",
     }
-    rate = f"{seen.exponent:.2g} in a unit of time, over t = {seen.time:.4g}"
-    return read_prose(f"{says[seen.exponential]} (`{rate}`)")
+    rate = f"{sensitivity.exponent:.2g} in a unit of time, over t = {sensitivity.time:.4g}"
+    return read_prose(f"{says[sensitivity.exponential]} (`{rate}`)")
 
 
 class _Search:
@@ -167,33 +182,35 @@ class _Search:
         self.times = [float(k * self.part) for k in range(_TIMES + 1)]
         self.speeds: list[State] = []
 
-    def followed(self, state: State) -> list[State]:
-        """The states at the times. NoFlowError where the motion ends on the way."""
+    def follow(self, state: State) -> list[State]:
+        """Return the states at the times. Raises NoFlowError where the motion ends on the way."""
         flow, size = self.flow, len(state)
-        begun = (*state, self.t0) if flow.timed else state
-        z, points = tuple(map(flow.number, begun)), [state]
+        start = (*state, self.t0) if flow.timed else state
+        z, points = tuple(map(flow.number, start)), [state]
         for _ in range(_TIMES):
             z = flow.follow(z, self.part, _MOST_STEPS)
             points.append(tuple(map(flow.arithmetic.exact, z[:size])))
         return points
 
-    def found(
+    def build_motion(
         self, kind: Kind, summary: Prose, points: Sequence[State],
         sensitivity: Sensitivity | None = None,
     ) -> ExactMotion:  # fmt: skip
         columns = list(zip(*points, strict=True))
         centre = tuple((min(x) + max(x)) / 2 for x in columns)
-        own = [(max(x) - min(x)) / 2 for x in columns]
-        n = len(own) // 2
+        half_widths = [(max(x) - min(x)) / 2 for x in columns]
+        n = len(half_widths) // 2
         greatest = [
-            max(own[k:m]) or max(map(abs, self.state[k:m])) or Fraction(1)
+            max(half_widths[k:m]) or max(map(abs, self.state[k:m])) or Fraction(1)
             for k, m in ((0, n), (n, 2 * n))
         ]
+        # Momenta are measured by the greatest half width of all momenta, coordinates likewise: one
+        # that hardly moves has no scale of its own.
         reach = tuple(greatest[k // n] for k in range(2 * n))
         fastest = self._fastest(points)
         # H_p = q' and H_q = −p': H changes by about so much across the orbit.
-        products = (fastest[(k + n) % (2 * n)] * own[k] for k in range(2 * n))
-        times = [r / v for r, v in zip(own, fastest, strict=True) if r and v]
+        products = (fastest[(k + n) % (2 * n)] * half_widths[k] for k in range(2 * n))
+        times = [r / v for r, v in zip(half_widths, fastest, strict=True) if r and v]
         period = Fraction(2 * pi) * min(times) if times else None
         return ExactMotion(
             kind=kind,
@@ -210,13 +227,13 @@ class _Search:
         )
 
     def _fastest(self, points: Sequence[State]) -> list[Fraction]:
-        """The greatest |z'| of each coordinate at the points."""
+        """Return the greatest |z'| of each coordinate at the points."""
         flow, exact = self.flow, self.flow.arithmetic.exact
         speeds = []
         for k, point in enumerate(points):
-            begun = (*point, self.t0 + k * self.part) if flow.timed else point
+            start = (*point, self.t0 + k * self.part) if flow.timed else point
             try:
-                speeds.append([abs(exact(x)) for x in flow.slope(tuple(map(flow.number, begun)))])
+                speeds.append([abs(exact(x)) for x in flow.slope(tuple(map(flow.number, start)))])
             except NoFlowError:
                 continue
         return [max(x) for x in zip(*speeds, strict=True)] or [Fraction(0)] * len(points[0])

@@ -1,9 +1,9 @@
-"""How far a scheme can be pushed: the largest step with bounded motion, and the (h, stiffness) map.
+"""The limits of a scheme: its largest step with bounded motion, and its (h, stiffness) map.
 
-Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
+Linear theory requires of a step size h that h ω lies in the scheme's interval (see
 `verify.studies.stability.linear`), ω being the greatest frequency on the exact orbit, where that is
-stiffest. What bounded motion is, is told in
-`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_on_run`.
+stiffest. Bounded motion is defined in `verify.studies.stability.run_motion` and
+`verify.studies.stability.verdict_on_run`.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,37 +28,40 @@ from verify.studies.stability.trail import Run, State
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
-_LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first
+_LADDER = Fraction(119, 100)  # about 2^(1/4), the ratio of the step sizes that are tried first
 _BELOW, _ABOVE = 8, 8  # they range from so many times below the linear limit to so many above
-_MOST_STEPS = 200_000  # of the smallest step that is looked at
+_MOST_STEPS = 200_000  # of the smallest step size that is tried
 
 
 @lru_cache(maxsize=256)
 def linear_limit(scheme: str) -> Fraction | None:
-    """The stability interval in hω, to 30 digits; None where it has no end or is not known."""
+    """Return the stability interval in hω, to 30 digits.
+
+    None where it has no end or no closed form.
+    """
     try:
-        found = linear_stability(scheme)
+        stability = linear_stability(scheme)
     except InputError:
         return None
-    if found.interval == sympy.oo:
+    if stability.interval == sympy.oo:
         return None
-    return Fraction(found.decimal())
+    return Fraction(stability.decimal())
 
 
 def _linear_step(scheme: str, omega: Fraction) -> Fraction | None:
-    """The step size that linear theory allows at this ω; None where it does not say."""
+    """Return the step size that linear theory allows at this ω; None where it sets no limit."""
     limit = linear_limit(scheme)
     return limit / omega if limit is not None and omega else None
 
 
-def shortened(x: Fraction | None, digits: int = 4) -> str | None:
-    """To so many significant digits, as results show what may not be known."""
+def round_to_text(x: Fraction | None, digits: int = 4) -> str | None:
+    """Round to so many significant digits, as text; None stays None."""
     return None if x is None else decimal(x, digits)
 
 
 @dataclass(frozen=True)
-class _Held:
-    """The exact motion from one state for some time, and what is asked of runs from there.
+class _RunsFromState:
+    """The exact motion from one state for some time, and the limits that runs from there must keep.
 
     In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
     What a run must not exceed beside the motion's bounds: |H − H(z₀)| in parts of the orbit's
@@ -78,11 +81,12 @@ class _Held:
 
     def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
         run, exact = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0), self.exact
+        # A plane orbit is cheap and depends on the run's length, so that each run follows its own.
         serves = exact.has_neighbours and exact.kind in ("bounded", "driven")
         return RunMotion(run, exact if serves else None)
 
     def keeps(self, scheme: str, h: Fraction, steps: int) -> bool:
-        """Whether the float64 run keeps within the bounds, and within what is asked beside them."""
+        """Return True if the float64 run keeps within the bounds and the other limits."""
         motion, most = self._motion(scheme, h, steps), self.energy_error
         if not motion.stays(motion.float64):
             return False
@@ -91,15 +95,16 @@ class _Held:
             return False
         return self.symplectic_defect is None or _keeps_form(motion.run, self.symplectic_defect)
 
-    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
-        """The verdict on the run."""
+    def judge_run(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        """Return the verdict on the run."""
         return judge(self._motion(scheme, h, steps))
 
 
 def _keeps_form(run: Run, most: Fraction) -> bool:
-    of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
+    hamiltonian, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
     done = run_of(
-        of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
+        hamiltonian, run.scheme,
+        q=shown_of(hamiltonian, start, "q"), p=shown_of(hamiltonian, start, "p"),
         step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
     )  # fmt: skip
     return name in done.values and abs(done.values[name]) <= most
@@ -116,46 +121,50 @@ def largest_step(
     energy_error: Fraction | None = None,
     symplectic_defect: Fraction | None = None,
 ) -> LargestStepResult:
-    """The largest h with bounded motion in float64 from (p, q) for the length `time`, by bisection;
-    and, where these are given, with no greater energy error, in parts of the orbit's energy scale,
-    and no greater |entry| of W.
+    """Find the largest h with bounded motion in float64 from (p, q) for the length `time`.
+
+    Where they are given, the run must also have no greater energy error, in parts of the orbit's
+    energy scale, and no greater |entry| of W. The step is found by bisection.
 
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
     point, begin = point_of(hamiltonian, q, p), t0 or Fraction(0)
     state = tuple(point.values())
-    of = _Held(hamiltonian, state, time, begin, energy_error, symplectic_defect)
-    orbit = of.exact
+    runs = _RunsFromState(hamiltonian, state, time, begin, energy_error, symplectic_defect)
+    orbit = runs.exact
     omega = orbit.frequency
     linear = _linear_step(scheme, omega)
     good = bad = None
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and of.keeps(scheme, h, steps)
+        return steps >= 1 and runs.keeps(scheme, h, steps)
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
     elif orbit.kind == "not followed":
         detail = prose("the exact solution, to be held against, is not known: ", orbit.summary)
     else:
+        # The linear limit is the best guess; without one, a step of one radian of the fastest
+        # oscillation, or a hundredth of the time.
         middle = linear or (1 / omega if omega else time / 100)
-        good, bad = _bracket(stays, min(middle, time / 2), time)
+        good, bad = _find_bracket(stays, min(middle, time / 2), time)
         which = "bounded with every" if bad is None else "not bounded with any"
         detail = Prose() if good and bad else prose(f"{which} step size looked at")
+    # Bisection on rounded step sizes, so that the result is printed exactly as it was tested.
     while good and bad and bad / good > _FINER:
-        middle = _short((good + bad) / 2)
+        middle = _round_step((good + bad) / 2)
         good, bad = (middle, bad) if stays(middle) else (good, middle)
     return LargestStepResult(
         **hamiltonian.texts,
         scheme=scheme,
         time=text(time),
         **start_texts(hamiltonian, point, t0),
-        bounded=shortened(good),
-        unbounded=shortened(bad),
-        linear=shortened(linear),
-        h_omega=shortened(good * omega) if good else None,
+        bounded=round_to_text(good),
+        unbounded=round_to_text(bad),
+        linear=round_to_text(linear),
+        h_omega=round_to_text(good * omega) if good else None,
         energy_error=None if energy_error is None else text(energy_error),
         symplectic_defect=None if symplectic_defect is None else text(symplectic_defect),
         exact_orbit=orbit.summary,
@@ -163,30 +172,33 @@ def largest_step(
     )
 
 
-def _bracket(
+def _find_bracket(
     stays: Callable[[Fraction], bool], middle: Fraction, time: Fraction
 ) -> tuple[Fraction | None, Fraction | None]:
-    """A step size with bounded motion and the next one without, where there are such."""
-    h = _short(middle / _BELOW)
+    """Return a step size with bounded motion and the next one without, where there are such."""
+    # From small steps upwards: beyond the limit a resonance may be bounded again, and is not looked
+    # for.
+    h = _round_step(middle / _BELOW)
     if not stays(h):
         bad = h
+        # Even the smallest step leaves the bounds: halve it, as long as a run is affordable.
         while time / h <= _MOST_STEPS:
-            h = _short(h / 2)
+            h = _round_step(h / 2)
             if stays(h):
                 return h, bad
             bad = h
         return None, bad
     good = h
     while h < min(middle * _ABOVE, time):
-        h = _short(h * _LADDER)
+        h = _round_step(h * _LADDER)
         if not stays(h):
             return good, h
         good = h
     return good, None
 
 
-def _short(h: Fraction) -> Fraction:
-    """h to six digits."""
+def _round_step(h: Fraction) -> Fraction:
+    """Round h to six digits."""
     return Fraction(decimal(h, 6))
 
 
@@ -202,17 +214,15 @@ def stability_map(
     q: Given,
     t0: Fraction | None = None,
 ) -> StabilityMapResult:
-    """For each value of the parameter, a row: the verdicts with each step size, and the step size
-    of linear theory.
-    """
+    """Return verdicts for each value of the parameter, with the step size of linear theory."""
     cells, linear, begin = [], [], t0 or Fraction(0)
     point = point_of(hamiltonian, q, p)
     for value in values:
-        own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
-        of = _Held(own, tuple(point.values()), max(step_sizes) * steps, begin)
-        row = (of.judged(scheme, h, steps) for h in step_sizes)
-        cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
-        linear.append(shortened(_linear_step(scheme, of.exact.frequency)))
+        with_value = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
+        runs = _RunsFromState(with_value, tuple(point.values()), max(step_sizes) * steps, begin)
+        row = (runs.judge_run(scheme, h, steps) for h in step_sizes)
+        cells.append(tuple(MapCell(kind=judgement.kind, step=judgement.step) for judgement in row))
+        linear.append(round_to_text(_linear_step(scheme, runs.exact.frequency)))
     return StabilityMapResult(
         **hamiltonian.texts,
         scheme=scheme,

@@ -1,4 +1,4 @@
-"""Linear stability: for which hω > 0 a scheme stays bounded on the harmonic oscillator.
+"""Linear stability: the interval of hω in which a scheme stays bounded on the harmonic oscillator.
 
 For H = (p² + ω²q²)/2, in the coordinates (p, ωq), a step of one of our schemes is a real 2 × 2
 matrix M(y), y = hω, with polynomials or rational functions of y as entries. With d = det M and
@@ -33,7 +33,7 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import H_STEP
 from verify.arithmetic.exact import known_text
-from verify.effort import MOST, limited
+from verify.effort import MOST, limit_effort
 from verify.errors import InputError
 from verify.prose import Prose
 from verify.schemes.maps.closed_form import h_inside
@@ -56,7 +56,7 @@ class RingPolynomial:
     over_integers: flint.fmpz_poly
 
     def is_negative(self, h: Fraction) -> bool:
-        """Its sign there; h must be no root of `over_integers`."""
+        """Return True if it is negative at h, which must be no root of `over_integers`."""
         bits = _BITS
         point = {"p": Fraction(0), "q": Fraction(0), "h": h}
         while True:
@@ -66,8 +66,8 @@ class RingPolynomial:
             bits *= 2
 
 
-def product(step: StepMap) -> tuple[Ring, Entries] | None:
-    """The matrix of the whole step; None where its parts are not as the module says.
+def matrix_of_step(step: StepMap) -> tuple[Ring, Entries] | None:
+    """Return the matrix of the whole step; None where its parts are not as the module says.
 
     None, too, where there are so many of them, of so high a degree, that roots would take minutes.
     """
@@ -79,15 +79,18 @@ def product(step: StepMap) -> tuple[Ring, Entries] | None:
         return None
     total: Entries = (ring.one, ring.zero, ring.zero, ring.one)
     for part in parts:
-        own = [entry for row in part.jacobian for entry in row]
-        if h_inside(ring, *own) or any(ring.depends(x, name) for x in own for name in ("p", "q")):
+        entries = [entry for row in part.jacobian for entry in row]
+        if h_inside(ring, *entries) or any(
+            ring.depends(x, name) for x in entries for name in ("p", "q")
+        ):
             return None
-        total = _times(ring, own, total)
+        total = _multiply(ring, entries, total)
     return ring, total
 
 
 def ring_polynomial(ring: Ring, x: Poly) -> RingPolynomial | None:
-    """x, which is not 0, with its polynomial over the integers; None where it has none."""
+    """Return x, which is not 0, with its polynomial over the integers; None where it has none."""
+    # The resultant with a relation eliminates its generator; the newest one is eliminated first.
     norm = x
     for index, _, relation in reversed(ring.relations):
         if norm.degrees()[index] > 0:
@@ -103,7 +106,7 @@ def ring_polynomial(ring: Ring, x: Poly) -> RingPolynomial | None:
     return RingPolynomial(ring, x, flint.fmpq_poly(numbers).numer())
 
 
-def _times(ring: Ring, left: Sequence[Poly], right: Entries) -> Entries:
+def _multiply(ring: Ring, left: Sequence[Poly], right: Entries) -> Entries:
     a, b, c, d = left
     e, f, g, h = right
     return (
@@ -119,7 +122,7 @@ Y = sympy.Symbol("y", positive=True)
 
 @dataclass(frozen=True)
 class LinearStability:
-    """`interval`: the Y of (0, Y), 0 where there is none, ∞ where there is no end.
+    """The stability interval (0, Y) of a scheme; `interval` is Y, 0 for none, ∞ for no end.
 
     Y is a formula where it is written with square roots, else a certain root of a polynomial; or a
     number, where the scheme's coefficients are (`verify.studies.stability.nearby_linear`).
@@ -133,20 +136,20 @@ class LinearStability:
 
     @property
     def exact(self) -> str:
-        """As a formula, or as a certain root of a polynomial."""
+        """The end of the interval as a formula, or as a certain root of a polynomial."""
         if isinstance(self.interval, PositiveRoot):
-            return self.interval.written(Y.name)
+            return self.interval.describe(Y.name)
         if isinstance(self.interval, NearbyLimit):
             return ""
         return "infinite" if self.interval is sympy.oo else str(self.interval)
 
     @property
     def note(self) -> Prose:
-        """Of which coefficients it is, where those of the scheme are printed."""
-        return self.interval.said if isinstance(self.interval, NearbyLimit) else Prose()
+        """The coefficients that it belongs to, where those of the scheme are printed."""
+        return self.interval.note if isinstance(self.interval, NearbyLimit) else Prose()
 
     def decimal(self, digits: int = 30) -> str:
-        """Rounded to so many significant digits, those that are known."""
+        """Return the end rounded to so many significant digits, as far as they are known."""
         if isinstance(self.interval, PositiveRoot | NearbyLimit):
             return self.interval.decimal(digits)
         if self.interval in (sympy.oo, 0):
@@ -156,53 +159,59 @@ class LinearStability:
 
 @dataclass(frozen=True)
 class NearbyLimit:
-    """What the digits of printed coefficients tell of the interval's end, and what is said of it;
-    `radius` is an estimate."""
+    """The end of the interval as far as the digits of printed coefficients determine it.
+
+    `radius` is an estimate; `note` describes the coefficients.
+    """
 
     value: Fraction
     radius: Fraction
-    said: Prose
+    note: Prose
 
     def decimal(self, digits: int) -> str:
-        """The digits that are known, so many at most."""
+        """Return the digits that are known, so many at most."""
         return format(Decimal(known_text(self.value, self.radius, digits)), "f")
 
 
-def of_map(
+def stability_of_map(
     name: str, step: StepMap, narrow: Fraction = Fraction(0), keeps_area: bool = False
 ) -> LinearStability:
-    """The stability interval in y of a step map of H = (p² + q²)/2, with h for y; with `narrow`,
-    gaps that are less wide, in parts of y, are passed over; with `keeps_area`, det M is taken to
-    be 1 but for what digits leave.
+    """Return the stability interval in y of a step map of H = (p² + q²)/2, with h for y.
+
+    `narrow`: gaps that are less wide, in parts of y, are passed over. `keeps_area`: det M is taken
+    to be 1, from which it differs by the rounding of printed digits.
 
     Raises InputError where it has no closed form there.
     """
-    with limited("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
-        found = _of_product(name, step, narrow) if step.formulas is None else None
-        return found or _of_closed_form(name, step, narrow, keeps_area)
+    with limit_effort("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
+        stability = _stability_by_product(name, step, narrow) if step.formulas is None else None
+        return stability or _stability_by_closed_form(name, step, narrow, keeps_area)
 
 
-def _of_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability | None:
-    """By the matrices of the parts; None where they have no product (`product`)."""
-    found = product(step)
-    if found is None:
+def _stability_by_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability | None:
+    """Return the stability by the matrices of the parts; None where `matrix_of_step` has none."""
+    matrix = matrix_of_step(step)
+    if matrix is None:
         return None
-    ring, (a, b, c, e) = found
+    ring, (a, b, c, e) = matrix
     trace, more = ring.reduce(a + e), ring.reduce(a * e - b * c - ring.one)  # more is ΔJ
+    # Jury's conditions 1 − d, 1 + d − t and 1 + d + t, with d = 1 + `more`.
     signs = [-more, more + 2 - trace, more + 2 + trace]
     vanish = [ring.vanishes(x) for x in signs]
     conditions = [ring_polynomial(ring, x) for x, v in zip(signs, vanish, strict=True) if not v]
-    known = [f for f in conditions if f is not None]
-    if None in vanish or len(known) < len(conditions):
+    polynomials = [f for f in conditions if f is not None]
+    if None in vanish or len(polynomials) < len(conditions):
         return None
+    # det M = 1 and tr M = ±2 for all y: M is ±I or a shear, which the entries off the diagonal
+    # decide.
     shears = vanish[0] and (vanish[1] or vanish[2])
     moves = any(ring.vanishes(x) is not True for x in (b, c))
-    interval, gaps = (sympy.S.Zero, ()) if shears and moves else _interval(known, narrow)
+    interval, gaps = (sympy.S.Zero, ()) if shears and moves else _find_interval(polynomials, narrow)
     delta_j = ring.expression(more).subs(H_STEP, Y)
     return LinearStability(name, interval, sympy.factor(delta_j), gaps)
 
 
-def _of_closed_form(
+def _stability_by_closed_form(
     name: str, step: StepMap, narrow: Fraction, keeps_area: bool
 ) -> LinearStability:
     entries = [sympy.together(x.subs(H_STEP, Y)) for x in step.jacobian]
@@ -212,7 +221,7 @@ def _of_closed_form(
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
     of_area = () if keeps_area else (1 - det,)
     conditions = [_polynomial(x) for x in (*of_area, 1 + det - trace, 1 + det + trace)]
-    interval, _ = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero], narrow)
+    interval, _ = _find_interval([_SympyPolynomial(f) for f in conditions if not f.is_zero], narrow)
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
     return LinearStability(name, interval, sympy.factor(det - 1))
@@ -220,7 +229,7 @@ def _of_closed_form(
 
 @dataclass(frozen=True)
 class _SympyPolynomial:
-    """As a `RingPolynomial`, of what sympy has in closed form."""
+    """A polynomial as `RingPolynomial`, from a closed form of sympy."""
 
     f: sympy.Poly
 
@@ -236,27 +245,30 @@ class _SympyPolynomial:
 
 
 def _polynomial(x: sympy.Expr) -> sympy.Poly:
-    """A polynomial of x's sign at every y > 0 that is no pole."""
+    """Return a polynomial that has the sign of x at every y > 0 that is no pole."""
     above, below = sympy.fraction(sympy.cancel(x))
     return sympy.Poly(sympy.expand(above * below), Y, extension=True)
 
 
-def _interval(
+def _find_interval(
     conditions: Sequence[RingPolynomial] | Sequence[_SympyPolynomial],
     narrow: Fraction = Fraction(0),
 ) -> tuple[sympy.Expr | PositiveRoot, tuple[Fraction, ...]]:
-    """The greatest Y such that all of them, of which none is 0, are ≥ 0 on (0, Y), and a y in each
-    gap passed over."""
-    left: PositiveRoot | None = None
+    """Return the greatest Y such that all conditions are ≥ 0 on (0, Y), and a y in each gap.
+
+    No condition may be constantly 0. The gaps are those that were passed over.
+    """
+    end: PositiveRoot | None = None
     above, gaps = Fraction(0), list[Fraction]()  # the end of what encloses `left`
     for root, (low, high) in positive_roots(f.over_integers for f in conditions):
+        # No condition changes its sign between two roots, so that one point decides a whole gap.
         middle = (above + low) / 2
         if any(f.is_negative(middle) for f in conditions):
-            if left is None or low - above >= narrow * low:
+            if end is None or low - above >= narrow * low:
                 break
             gaps.append(middle)
-        left, above = root, high
+        end, above = root, high
     else:
         if not any(f.is_negative(above + 1) for f in conditions):
             return sympy.oo, tuple(gaps)
-    return sympy.S.Zero if left is None else left.closed_form() or left, tuple(gaps)
+    return sympy.S.Zero if end is None else end.closed_form() or end, tuple(gaps)

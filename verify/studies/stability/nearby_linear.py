@@ -1,10 +1,10 @@
-"""The stability interval of a scheme by its name; of printed coefficients that of exact ones near.
+"""The stability interval of a named scheme; for printed coefficients that of exact ones near them.
 
 Where |tr M| touches 2 within the interval, as with the longest intervals that a splitting can have,
 rounded coefficients open a gap there that is as narrow as their last digits. In such a gap of exact
-ones M = ±I, so that both entries off the diagonal vanish: whether there are coefficients near the
-printed ones of which that is so, in each gap and with the conditions of the order, is asked as
-`verify.schemes.printed.nearest` asks. An end is told to the digits that the coefficients leave.
+ones M = ±I, so that both entries off the diagonal vanish. `verify.schemes.printed.nearest` looks
+for coefficients near the printed ones for which that is so in each gap, and which satisfy the
+conditions of the order. An end is given to the digits that the coefficients determine.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,11 +19,11 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import E
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.printed_formulas import moved_by_units, nearby_defect
+from verify.proof.printed_formulas import formulas_moved_by_units, nearby_defect
 from verify.prose import Number, Prose, prose
 from verify.schemes import get
-from verify.schemes.maps.by_formulas import map_by_formulas
-from verify.schemes.printed.asked import BITS, Asked, Named
+from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.printed.condition_set import BITS, ConditionSet, NamedEquation
 from verify.schemes.printed.judged import WITHIN
 from verify.schemes.printed.nearby import AnyNumbers, Nearby
 from verify.schemes.printed.nearby_order import PrintedParts, parts_at
@@ -31,111 +31,123 @@ from verify.schemes.printed.nearest import Nearest, nearest
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
-from verify.studies.stability.linear import LinearStability, NearbyLimit, of_map
+from verify.studies.stability.linear import LinearStability, NearbyLimit, stability_of_map
 
-_NARROW = Fraction(1, 1000)  # a gap that is looked at; whether it closes is asked
+_NARROW = Fraction(1, 1000)  # wider gaps end the interval; narrower ones may close
 _FREE = Fraction(1, 64)  # in place of a unit of y
 _DIGITS = 40
 _LEFT = prose("to the digits that the coefficients leave")
-_BEYOND = 2  # the claimed order, that is asked together with gaps
+_BEYOND = 2  # orders beyond the claimed one whose conditions are solved together with gaps
 
 
 def linear_stability(name: str) -> LinearStability:
-    """The stability interval of the scheme of that name in hω.
+    """Return the stability interval in hω of the scheme of that name.
 
     Raises InputError for a scheme that has no closed form on the harmonic oscillator.
     """
     scheme = get(name)
-    found = _of_scheme(scheme)
+    stability = _stability_of_scheme(scheme)
     if scheme.formulas:
-        return _of_formulas(scheme, found)
+        return _stability_of_formulas(scheme, stability)
     sizes = getattr(scheme.every_h, "nearby", None)
-    if not isinstance(sizes, PrintedParts) or found.interval in (sympy.oo, 0):
-        return found
-    limits = (_limit(scheme, found, sizes, table) for table in sizes.tables)
+    if not isinstance(sizes, PrintedParts) or stability.interval in (sympy.oo, 0):
+        return stability
+    limits = (_find_limit(scheme, stability, sizes, table) for table in sizes.tables)
     first = sizes.tables[0]
     whole = first.printed.values
-    limit = next(filter(None, limits), None) or _known(first, whole, _LEFT, Fraction(0))
-    return found if limit is None else replace(found, interval=limit)
+    limit = next(filter(None, limits), None) or _limit_with_radius(first, whole, _LEFT, Fraction(0))
+    return stability if limit is None else replace(stability, interval=limit)
 
 
 def _oscillator() -> Hamiltonian:
     return systems.get("harmonic").hamiltonian({"omega": 1})
 
 
-def _of_scheme(scheme: Scheme, narrow: Fraction = Fraction(0)) -> LinearStability:
-    return of_map(scheme.name, scheme.step_map(_oscillator()), narrow)
+def _stability_of_scheme(scheme: Scheme, narrow: Fraction = Fraction(0)) -> LinearStability:
+    return stability_of_map(scheme.name, scheme.step_map(_oscillator()), narrow)
 
 
-def _of_formulas(scheme: Scheme, found: LinearStability) -> LinearStability:
-    """To the digits that the decimals in a user's formulas leave, where exact ones near them make
-    det M = 1."""
+def _stability_of_formulas(scheme: Scheme, stability: LinearStability) -> LinearStability:
+    """Return the interval to the digits that the decimals in a user's formulas determine.
+
+    It is returned as it is where no exact numbers near the decimals make det M = 1.
+    """
     oscillator, formulas = _oscillator(), tuple(scheme.formulas.items())
-    moved, degree = moved_by_units(formulas, oscillator), scheme.step_map(oscillator).flat.degree
-    if not moved or not degree:
-        return found
+    neighbours = formulas_moved_by_units(formulas, oscillator)
+    degree = scheme.step_map(oscillator).flat.degree
+    if not neighbours or not degree:
+        return stability
     near = nearby_defect(formulas, oscillator, degree)
     if near is None or near.order < degree:
-        return found
-    ends = [_end_of_formulas(dict(each)) for each in (formulas, *moved)]
+        return stability
+    ends = [_end_of_formulas(dict(each)) for each in (formulas, *neighbours)]
     values = [x for x in ends if x is not None]
     if len(values) < len(ends):
-        return found
+        return stability
+    # First order in each decimal: the sum of the changes by one unit each.
     radius = sum((abs(x - values[0]) for x in values), Fraction(1, 10 ** (_DIGITS - 2)))
-    said = (
+    note = (
         _LEFT
-        if found.delta_j == 0
+        if stability.delta_j == 0
         else prose("det M = 1 with exact numbers near the printed ones: ", near.said)
     )
-    return replace(found, interval=NearbyLimit(values[0], radius, said))
+    return replace(stability, interval=NearbyLimit(values[0], radius, note))
 
 
 def _end_of_formulas(formulas: Mapping[str, str]) -> Fraction | None:
-    step = map_by_formulas(_oscillator(), formulas)
-    found = of_map("printed", step, _NARROW, keeps_area=True)
-    return None if found.interval in (sympy.oo, 0) else Fraction(found.decimal(_DIGITS))
+    step = step_map_from_formulas(_oscillator(), formulas)
+    stability = stability_of_map("printed", step, _NARROW, keeps_area=True)
+    return None if stability.interval in (sympy.oo, 0) else Fraction(stability.decimal(_DIGITS))
 
 
-def _limit(
-    scheme: Scheme, printed: LinearStability, sizes: PrintedParts, table: PrintedTable
+def _find_limit(
+    scheme: Scheme, stability: LinearStability, sizes: PrintedParts, table: PrintedTable
 ) -> NearbyLimit | None:
-    """The end for exact coefficients; None where none near the printed ones close the gaps."""
-    near, gaps = sizes(scheme.order + _BEYOND), _of_scheme(scheme, _NARROW).gaps
-    closed = _closed(table, near.order if near else 0, gaps)
-    if closed is None or closed.off > WITHIN:
+    """Return the end for exact coefficients.
+
+    None where none near the printed ones close the gaps.
+    """
+    # Gaps of the printed coefficients narrower than `_NARROW` are where |tr M| may only touch 2 for
+    # exact ones.
+    near, gaps = sizes(scheme.order + _BEYOND), _stability_of_scheme(scheme, _NARROW).gaps
+    nearby = _close_gaps(table, near.order if near else 0, gaps)
+    if nearby is None or nearby.off > WITHIN:
         return None
-    said = prose(
-        f"exact coefficients within {float(closed.off):.2g} units of the last digits close gaps of "
-        "those printed, of which the first is at hω = ", Number(printed.decimal(12)),
+    note = prose(
+        f"exact coefficients within {float(nearby.off):.2g} units of the last digits close gaps of "
+        "those printed, of which the first is at hω = ", Number(stability.decimal(12)),
     )  # fmt: skip
-    return _known(table, closed.numbers, said if gaps else _LEFT)
+    return _limit_with_radius(table, nearby.numbers, note if gaps else _LEFT)
 
 
-def _known(
-    table: PrintedTable, numbers: Mapping[str, Fraction], said: Prose, narrow: Fraction = _NARROW
+def _limit_with_radius(
+    table: PrintedTable, numbers: Mapping[str, Fraction], note: Prose, narrow: Fraction = _NARROW
 ) -> NearbyLimit | None:
-    """The end, to what changes of each number by a unit of its last digit leave of it."""
-    value, radius = _end(table, numbers, narrow), Fraction(1, 10 ** (_DIGITS - 2))
+    """Return the end, with a radius from changes of each number by a unit of its last digit."""
+    value, radius = _find_end(table, numbers, narrow), Fraction(1, 10 ** (_DIGITS - 2))
     if value is None:
         return None
     for name, unit in table.printed.units.items():
-        other = _end(table, {**numbers, name: numbers[name] + unit}, narrow)
+        other = _find_end(table, {**numbers, name: numbers[name] + unit}, narrow)
         if other is None:
             return None
         radius += abs(other - value)
-    return NearbyLimit(value, radius, said)
+    return NearbyLimit(value, radius, note)
 
 
-def _end(table: PrintedTable, numbers: Mapping[str, Fraction], narrow: Fraction) -> Fraction | None:
+def _find_end(
+    table: PrintedTable, numbers: Mapping[str, Fraction], narrow: Fraction
+) -> Fraction | None:
     parts = parts_at(table, numbers)
     scheme = splitting("printed", parts, order=1, symmetric=False, source="")
-    found = _of_scheme(scheme, narrow)
-    return None if found.interval in (sympy.oo, 0) else Fraction(found.decimal(_DIGITS))
+    stability = _stability_of_scheme(scheme, narrow)
+    return None if stability.interval in (sympy.oo, 0) else Fraction(stability.decimal(_DIGITS))
 
 
-def _closed(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Nearest | None:
-    """Numbers near the printed ones that have the order, with M = ±I in each gap."""
+def _close_gaps(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Nearest | None:
+    """Find numbers near the printed ones that have the order, with M = ±I in each gap."""
     names = [f"y_{k}" for k in range(len(gaps))]
+    # The places y of the gaps are unknowns too, each free to move by `_FREE`.
     free = dict.fromkeys(names, _FREE)
     texts = {name: decimal(y, 12) for name, y in zip(names, gaps, strict=True)}
     numbers = AnyNumbers(
@@ -143,26 +155,27 @@ def _closed(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Neares
         {**table.printed.values, **dict(zip(names, gaps, strict=True))},
         {**table.printed.units, **free},
     )
-    ordered, count = table.asked(max(order, 1)), len(table.sizes)
-    own = ordered.up_to(order)
+    conditions, count = table.condition_set(max(order, 1)), len(table.sizes)
+    indices = conditions.up_to(order)
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        found = ordered.residues(entries[:count], one, bound)
+        values = conditions.residues(entries[:count], one, bound)
         off = (_off_diagonal(table, entries[:count], y, one, bound) for y in entries[count:])
-        return [*(found[k] for k in own), *(x for pair in off for x in pair)]
+        return [*(values[k] for k in indices), *(x for pair in off for x in pair)]
 
-    equations = [ordered.equations[k] for k in own]
-    equations += [Named(f"{x} = 0 at {name}", 1) for name in names for x in "bc"]
+    equations = [conditions.equations[k] for k in indices]
+    equations += [NamedEquation(f"{x} = 0 at {name}", 1) for name in names for x in "bc"]
     entries = (*table.sizes, *map(symbol, names))
     with working_precision(BITS):
-        near = Nearby(numbers, Asked(entries, tuple(equations), residues))
+        near = Nearby(numbers, ConditionSet(entries, tuple(equations), residues))
         return nearest(near, range(len(equations)))
 
 
 def _off_diagonal(
     table: PrintedTable, sizes: Sequence[E], y: E, one: E, bound: bool
 ) -> tuple[E, E]:
-    """∂p'/∂q and ∂q'/∂p of a step of size y on the harmonic oscillator."""
+    """Return ∂p'/∂q and ∂q'/∂p of a step of size y on the harmonic oscillator."""
+    # Rows of M: a drift adds size·y of p to q, a kick subtracts size·y of q from p.
     of_p, of_q = (one, one * 0), (one * 0, one)
     for (kind, _), size in zip(table.parts, sizes, strict=True):
         move = size * y

@@ -1,10 +1,10 @@
-"""What the orbits of a scheme do over two of their initial values, in float64.
+"""The map of a scheme's orbits over two of their initial values, in float64.
 
 All orbits are stepped at once, and with each a neighbour that starts 10⁻⁹ of the greatest start
-away. After every so many steps it is seen which have left, and how far neighbours have parted:
-where that grows exponentially the orbit is sensitive (`verify.runs.tangent_growth`). It is the
-scheme's own map that is looked at, at this step size. Where that is not proved to be symplectic, W
-of those that stay is measured too.
+away. After every so many steps the orbits that have left are noted, and the distances of neighbours
+are measured: where a distance grows exponentially the orbit is sensitive
+(`verify.runs.tangent_growth`). The map examined is the scheme's own at this step size. Where it is
+not proved to be symplectic, W of the orbits that stay is measured too.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +26,7 @@ from verify.scenes.observables import carries_defect
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 from verify.studies.stability.exact_motion import Sensitivity
 
-_SECTIONS = 64  # stretches after which orbits are looked at
+_SECTIONS = 64  # stretches, after each of which the orbits are examined
 _NEAR = 1e-9  # of the greatest start, a neighbour
 _KINDS: Mapping[bool | None, OrbitKind] = {True: "sensitive", False: "regular", None: "undecided"}
 _T = TypeVar("_T")
@@ -57,7 +57,7 @@ class Orbits:
         return float(np.abs(self.starts).max()) or 1.0
 
     def stretches(self) -> Iterator[tuple[int, int]]:
-        """From which step on, and how many steps."""
+        """Yield the first step of each stretch and its number of steps."""
         for first in range(0, self.steps, self.every):
             yield first, min(self.every, self.steps - first)
 
@@ -68,40 +68,47 @@ class Orbits:
             t0=self.t0 + first * self.step_size, observables=frozenset(observables),
         )  # fmt: skip
 
-    def followed(self) -> tuple[np.ndarray, np.ndarray]:
-        """After how many steps each was seen to have left, or 0; and how far its neighbour was at
-        each time, in parts of the greatest start, nan from there on."""
+    def follow(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the steps after which each orbit had left, or 0, and neighbours' distances.
+
+        Distances are in parts of the greatest start, at each time; nan once the orbit has left.
+        """
         count = self.starts.shape[1]
-        left = np.zeros(count, dtype=int)
-        apart = np.full((_SECTIONS + 1, count), np.nan)
+        steps_to_leave = np.zeros(count, dtype=int)
+        distances = np.full((_SECTIONS + 1, count), np.nan)
         size = len(self.names)
+        # All components of the direction differ from 0, so that no symmetry of H keeps the
+        # neighbour on a special plane.
         direction = np.array([(-1) ** k / (1 + k) for k in range(size)])[:, None]
         z, near = self.starts, self.starts + _NEAR * self._sizes * direction
-        apart[0] = _distance(z, near, self._sizes)
+        distances[0] = _distance(z, near, self._sizes)
         staying = np.arange(count)
         for k, (first, steps) in enumerate(self.stretches(), start=1):
-            both = self.map_from(first, steps).followed(np.hstack([z, near]))[:size]
+            both = self.map_from(first, steps).carried_after(np.hstack([z, near]))[:size]
             z, near = np.hsplit(both, 2)
-            kept = (np.abs(z) <= self.beyond).all(axis=0)  # nan is not
-            left[staying[~kept]] = first + steps
-            staying, z, near = staying[kept], z[:, kept], near[:, kept]
+            # Orbits that have left are dropped, so that overflow cannot slow or spoil the others.
+            stays = (np.abs(z) <= self.beyond).all(axis=0)  # nan is not
+            steps_to_leave[staying[~stays]] = first + steps
+            staying, z, near = staying[stays], z[:, stays], near[:, stays]
             if not len(staying):
                 break
-            apart[k, staying] = _distance(z, near, self._sizes)
-        return left, apart
+            distances[k, staying] = _distance(z, near, self._sizes)
+        return steps_to_leave, distances
 
     def defects(self, which: np.ndarray) -> np.ndarray:
-        """max |W| of these orbits after all steps, in the plane |Λ|."""
-        made = self.map_from(0, self.steps, self.hamiltonian.structure.of_run)
-        rows = [k for k, n in enumerate(made.kernel.state_names) if n == "lam" or n[:2] == "w_"]
-        entries = made.followed(self.starts[:, which])[rows]
+        """Return max |W| of these orbits after all steps, in the plane |Λ|."""
+        point_map = self.map_from(0, self.steps, self.hamiltonian.structure.of_run)
+        rows = [
+            k for k, n in enumerate(point_map.kernel.state_names) if n == "lam" or n[:2] == "w_"
+        ]
+        entries = point_map.carried_after(self.starts[:, which])[rows]
         greatest: np.ndarray = np.abs(entries).max(axis=0)
         return greatest
 
 
 def _distance(one: np.ndarray, other: np.ndarray, size: float) -> np.ndarray:
-    found: np.ndarray = np.abs(one - other).max(axis=0) / size
-    return np.where(np.isfinite(found), found, 1 / _NEAR)  # a neighbour that has left
+    distances: np.ndarray = np.abs(one - other).max(axis=0) / size
+    return np.where(np.isfinite(distances), distances, 1 / _NEAR)  # a neighbour that has left
 
 
 def orbit_map(
@@ -118,22 +125,26 @@ def orbit_map(
     beyond: Fraction,
     t0: Fraction | None = None,
 ) -> OrbitMapResult:
-    """Orbits from the point (q, p) with these values of its two `axes`, a row for each of the
-    second's.
+    """Classify the orbits from the point (q, p) with these values of its two `axes`.
+
+    There is a row for each value of the second axis.
     """
     point = point_of(hamiltonian, q, p)
     points = [point | {axes[0]: x, axes[1]: y} for y in upwards for x in across]
-    starts = np.array([[float(at[name]) for at in points] for name in hamiltonian.coordinates])
+    starts = np.array(
+        [[float(start[name]) for start in points] for name in hamiltonian.coordinates]
+    )
     orbits = Orbits(hamiltonian, scheme, step_size, steps, t0 or Fraction(0), starts, float(beyond))
     energies = _energies(hamiltonian, points)
-    left, apart = orbits.followed()
+    steps_to_leave, distances = orbits.follow()
+    # Time 0 has the initial distance, to which all later ones are compared.
     times = [0.0] + [float((a + n) * step_size) for a, n in orbits.stretches()]
-    known = [energy is not None or hamiltonian.time_dependent for energy in energies]
+    is_defined = [energy is not None or hamiltonian.time_dependent for energy in energies]
     kinds, rates, width = [], [], len(across)
-    for k, went in enumerate(left):
-        seen = Sensitivity.of(times, apart[: len(times), k].tolist())
-        kinds.append(_kind(seen, went > 0, known[k]))
-        rates.append(None if went else f"{seen.exponent:.2g}")
+    for k, went in enumerate(steps_to_leave):
+        sensitivity = Sensitivity.from_distances(times, distances[: len(times), k].tolist())
+        kinds.append(_kind(sensitivity, went > 0, is_defined[k]))
+        rates.append(None if went else f"{sensitivity.exponent:.2g}")
     return OrbitMapResult(
         **hamiltonian.texts,
         scheme=scheme,
@@ -146,41 +157,41 @@ def orbit_map(
         beyond=text(beyond),
         every=orbits.every,
         kinds=_rows(kinds, width),
-        left=_rows([int(n) or None for n in left], width),
+        left=_rows([int(n) or None for n in steps_to_leave], width),
         lyapunov=_rows(rates, width),
-        defects=_rows(_defects(orbits, left == 0), width),
+        defects=_rows(_defects(orbits, steps_to_leave == 0), width),
         energies=_rows(energies, width),
     )
 
 
-def _kind(seen: Sensitivity, left: bool, defined: bool) -> OrbitKind:
-    if not defined:
+def _kind(sensitivity: Sensitivity, has_left: bool, is_defined: bool) -> OrbitKind:
+    if not is_defined:
         return "undecided"
-    return "leaves" if left else _KINDS[seen.exponential]
+    return "leaves" if has_left else _KINDS[sensitivity.exponential]
 
 
 def _defects(orbits: Orbits, stays: np.ndarray) -> list[str | None]:
-    """Of those that stay, to some digits; "0" of all where that is proved."""
-    of, count = orbits.hamiltonian, len(stays)
-    if step_map_of(of, orbits.scheme).preserves_area:
+    """Return the defects of the orbits that stay, to some digits; "0" where that is proved."""
+    hamiltonian, count = orbits.hamiltonian, len(stays)
+    if step_map_of(hamiltonian, orbits.scheme).preserves_area:
         return ["0" if x else None for x in stays]
-    found: list[str | None] = [None] * count
-    if carries_defect(of) and stays.any():
+    texts: list[str | None] = [None] * count
+    if carries_defect(hamiltonian) and stays.any():
         which = np.flatnonzero(stays)
         for k, x in zip(which, orbits.defects(which), strict=True):
-            found[k] = f"{x:.2e}" if np.isfinite(x) else None
-    return found
+            texts[k] = f"{x:.2e}" if np.isfinite(x) else None
+    return texts
 
 
 def _energies(
     hamiltonian: Hamiltonian, points: Sequence[Mapping[str, Fraction]]
 ) -> list[str | None]:
-    """H at the starts; None where it is not defined, or depends on time."""
+    """Return H at the starts; None where it is not defined, or depends on time."""
     if hamiltonian.time_dependent:
         return [None] * len(points)
     columns = list(zip(*(point.values() for point in points), strict=True))
-    found = energies_at(hamiltonian, 20, columns)
-    return [None if x is None else decimal(fraction(x), 6) for x in found]
+    energies = energies_at(hamiltonian, 20, columns)
+    return [None if x is None else decimal(fraction(x), 6) for x in energies]
 
 
 def _rows(values: Sequence[_T], width: int) -> tuple[tuple[_T, ...], ...]:

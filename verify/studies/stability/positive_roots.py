@@ -17,7 +17,7 @@ import sympy
 
 from verify.arithmetic.arb import bounds
 from verify.arithmetic.flint_precision import working_precision
-from verify.effort import unless_long
+from verify.effort import answer_unless_long
 
 _BITS = 128
 
@@ -29,20 +29,20 @@ class PositiveRoot:
     polynomial: flint.fmpz_poly
     which: int
 
-    def written(self, variable: str) -> str:
-        """The root in words, with the polynomial in that variable."""
+    def describe(self, variable: str) -> str:
+        """Return the root in words, with the polynomial in that variable."""
         return f"positive root {self.which} of {self._in(sympy.Symbol(variable)).as_expr()}"
 
     def closed_form(self) -> sympy.Expr | None:
-        """The root with square roots or as one root, where it is a quadratic's or a binomial's."""
+        """Return the root of a quadratic or a binomial polynomial in closed form; else None."""
         terms = sum(c != 0 for c in self.polynomial.coeffs())
         if self.polynomial.degree() > 2 and terms > 2:
             return None
-        roots = unless_long(lambda: self._in(sympy.Dummy()).real_roots(), None)
+        roots = answer_unless_long(lambda: self._in(sympy.Dummy()).real_roots(), None)
         return roots and sorted(x for x in roots if x > 0)[self.which - 1]
 
     def decimal(self, digits: int) -> str:
-        """Rounded to so many significant digits; it must not be rational."""
+        """Return the root rounded to so many significant digits; it must not be rational."""
         bits = 4 * digits + _BITS
         while True:
             ends = bounds(_enclosures(self.polynomial, bits)[self.which - 1])
@@ -58,7 +58,7 @@ class PositiveRoot:
 def positive_roots(
     polynomials: Iterable[flint.fmpz_poly],
 ) -> list[tuple[PositiveRoot, tuple[Fraction, Fraction]]]:
-    """All that are roots of one of them, in order, each in an interval that meets no other's.
+    """Return the positive roots of all polynomials in order, in intervals that do not meet.
 
     >>> [root.which for root, _ in positive_roots([flint.fmpz_poly([-2, 0, 1])])]
     [1]
@@ -67,15 +67,16 @@ def positive_roots(
     different = [g for n, g in enumerate(factors) if g not in factors[:n]]
     bits = _BITS
     while True:
-        found = [(x, g, n) for g in different for n, x in enumerate(_enclosures(g, bits), 1)]
-        found.sort(key=lambda one: bounds(one[0])[0])
-        if all(x < y for (x, _, _), (y, _, _) in pairwise(found)):
-            return [(PositiveRoot(g, n), bounds(x)) for x, g, n in found]
+        roots = [(x, g, n) for g in different for n, x in enumerate(_enclosures(g, bits), 1)]
+        roots.sort(key=lambda one: bounds(one[0])[0])
+        # Balls that overlap do not decide an order: distinct roots separate with enough bits.
+        if all(x < y for (x, _, _), (y, _, _) in pairwise(roots)):
+            return [(PositiveRoot(g, n), bounds(x)) for x, g, n in roots]
         bits *= 2
 
 
 def _enclosures(irreducible: flint.fmpz_poly, bits: int) -> list[flint.arb]:
-    """Of its positive roots, from the smallest one on."""
+    """Return enclosures of its positive roots, from the smallest one on."""
     inner, power = irreducible.deflation()  # as a polynomial of x^power: its roots are fewer
     if inner.degree() == 1 and inner[0] == 0:
         return []

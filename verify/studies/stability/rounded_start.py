@@ -1,4 +1,4 @@
-"""What float64 makes of an initial value: its rounding, and whether an equilibrium is as near."""
+"""The initial value in float64: its rounding, and an equilibrium that float64 takes it for."""
 
 from fractions import Fraction
 
@@ -14,37 +14,40 @@ _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 
 
 def describe_rounded_start(run: Run) -> Prose:
-    """How float64 rounds the initial value, and what it cannot tell it from; may be empty."""
-    told = Prose()
-    for name, given in zip(("q", "p"), reversed(run.state), strict=True):
-        gap = abs(Fraction(float(given)) - given)
+    """Describe how float64 rounds the initial value, and an equilibrium it takes it for, if any."""
+    sentences = Prose()
+    for name, value in zip(("q", "p"), reversed(run.state), strict=True):
+        gap = abs(Fraction(float(value)) - value)
         if gap:
-            told += prose(f"; it rounds {name}0 by ", Number(f"{float(gap):.1e}"))
+            sentences += prose(f"; it rounds {name}0 by ", Number(f"{float(gap):.1e}"))
     rest = nearest_equilibrium(run)
     if rest is not None and all(float(x) == float(y) for x, y in zip(rest, run.state, strict=True)):
-        apart = max(abs(x - y) for x, y in zip(rest, run.state, strict=True))
-        far = f"`{float(apart):.1e}`"
-        told += read_prose(f" and cannot tell z0 from an equilibrium, which is {far} away")
-    return told
+        distance = max(abs(x - y) for x, y in zip(rest, run.state, strict=True))
+        far = f"`{float(distance):.1e}`"
+        sentences += read_prose(f" and cannot tell z0 from an equilibrium, which is {far} away")
+    return sentences
 
 
 def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
-    """A zero (p, q) of H's gradient very near to the initial value, by Newton's method; None where
-    H depends on time."""
+    """Find a zero (p, q) of H's gradient very near to the initial value, by Newton's method.
+
+    None where there is none, or H depends on time.
+    """
     if run.hamiltonian.time_dependent:
         return None
     field, _ = canonical_field(run.hamiltonian)
     ring, arithmetic = field.ring, mpfr.make(_DIGITS)
     gradient = field.gradient(field.energy)
     hessian = [ring.diff(x, name) for x in gradient for name in ("p", "q")]
-    at = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
+    evaluate = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
     start = tuple(map(arithmetic.number, run.state))
     near = arithmetic.number(_NEAR)
     try:
         with arithmetic.context():
             p, q = start
             for _ in range(_NEWTON):
-                u, v, a, b, c, d = at(p, q)
+                u, v, a, b, c, d = evaluate(p, q)
+                # Newton's step solves the Hessian's 2 × 2 system by Cramer's rule.
                 below = a * d - b * c
                 dp, dq = (d * u - b * v) / below, (a * v - c * u) / below
                 p, q = p - dp, q - dq

@@ -1,4 +1,4 @@
-"""The matrix of a step of a scheme on a linear system, exactly; whether its powers stay bounded.
+"""The exact matrix of a scheme's step on a linear system, and a test if its powers stay bounded.
 
 A scheme's step is made of few operations (`verify.schemes.steps.step_algebra`). Here a value is a
 row: a linear function of z, and, inside of equations, of their unknowns too. So a step of size h, a
@@ -53,7 +53,7 @@ class LinearAlgebra(StepAlgebra[Row]):
         return flint.fmpq_mat(1, self._width)
 
     def unit(self, k: int) -> Row:
-        """The k-th coordinate, or unknown, itself."""
+        """Return the row of the k-th coordinate, or unknown."""
         return flint.fmpq_mat(1, self._width, [int(k == j) for j in range(self._width)])
 
     def along_flow(self, eta: int) -> list[Row]:
@@ -64,37 +64,38 @@ class LinearAlgebra(StepAlgebra[Row]):
         return [self._wide(row) for row in total.tolist()]
 
     def slopes(self, changes: Sequence[Row], clock: Number, places: Sequence[int]) -> list[Row]:
-        moved = [self.unit(k) + self._fit(change) for k, change in enumerate(changes)]
-        return [self._sum([self.matrix[k, j] for j in range(self.size)], moved) for k in places]
+        states = [self.unit(k) + self._fit(change) for k, change in enumerate(changes)]
+        return [self._sum([self.matrix[k, j] for j in range(self.size)], states) for k in places]
 
-    def moved(self, change: Row, weights: Sequence[Number], slopes: Sequence[Row]) -> Row:
+    def move(self, change: Row, weights: Sequence[Number], slopes: Sequence[Row]) -> Row:
         return self._fit(change) + self._sum(list(map(_rational, weights)), slopes) * self.h
 
-    def between(self, x: Row, y: Row, share: Fraction) -> Row:
+    def add_share(self, x: Row, y: Row, share: Fraction) -> Row:
         return self._fit(x) + self._fit(y) * _rational(share)
 
-    def solved(
+    def solve(
         self, count: int, right: Callable[[StepAlgebra[Any], Sequence[Row]], list[Row]]
     ) -> list[Row]:
-        """Z = R + L Z is solved with the unknowns as further columns. Equations are not nested."""
+        """Solve Z = R + L Z with the unknowns as further columns. Equations are not nested."""
         inner = LinearAlgebra(self.matrix, self.h, count)
         rows = right(inner, [inner.unit(self.size + k) for k in range(count)])
-        known = flint.fmpq_mat(count, self.size, [r[0, j] for r in rows for j in range(self.size)])
-        own = [r[0, self.size + j] for r in rows for j in range(count)]
-        equations = flint.fmpq_mat(count, count, [-x for x in own])
+        entries = [r[0, j] for r in rows for j in range(self.size)]
+        constants = flint.fmpq_mat(count, self.size, entries)
+        coefficients = [r[0, self.size + j] for r in rows for j in range(count)]
+        equations = flint.fmpq_mat(count, count, [-x for x in coefficients])
         for k in range(count):
             equations[k, k] += 1
         try:
-            found = equations.solve(known)
+            solution = equations.solve(constants)
         except ZeroDivisionError:
             raise InputError("step_size", str(self.h), "its equations have no solution") from None
-        return [self._wide(row) for row in found.tolist()]
+        return [self._wide(row) for row in solution.tolist()]
 
     def _wide(self, row: Sequence[flint.fmpq]) -> Row:
         return flint.fmpq_mat(1, self._width, [*row, *[0] * (self._width - len(row))])
 
     def _fit(self, row: Row) -> Row:
-        """Where it is of the algebra around equations, with 0 for their unknowns."""
+        """Extend a row of the algebra around the equations by 0 for their unknowns."""
         return row if row.ncols() == self._width else self._wide(row.entries())
 
     def _sum(self, weights: Sequence[flint.fmpq], rows: Sequence[Row]) -> Row:
@@ -108,9 +109,11 @@ class LinearAlgebra(StepAlgebra[Row]):
 def step_matrix(
     scheme: str, hamiltonian: Hamiltonian, matrix: flint.fmpq_mat, h: Fraction
 ) -> flint.fmpq_mat | None:
-    """M of a step of z' = `matrix` z, the field of a quadratic H; None where the scheme has
-    irrational coefficients. InputError for formulas of a user's own, and where the scheme does not
-    take H."""
+    """Return M of a step of z' = `matrix` z, the field of a quadratic H.
+
+    None where the scheme has irrational coefficients. Raises InputError for a scheme given by
+    formulas, and where the scheme does not take H.
+    """
     chosen = get(scheme)
     step = chosen.step_map(hamiltonian).step or getattr(chosen.every_h, "changes", None)
     if step is None:
@@ -126,20 +129,24 @@ def step_matrix(
 
 
 def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
-    """Whether all powers of M stay bounded, exactly; None where balls do not tell a size from 1."""
+    """Return True if all powers of M stay bounded, exactly.
+
+    None where balls do not decide a size.
+    """
+    # The roots of the reversed polynomial are the inverses.
     c = matrix.charpoly()
-    on = c.gcd(flint.fmpq_poly(list(reversed(c.coeffs()))))
-    off = c
-    while (common := off.gcd(on)).degree() > 0:  # of whatever multiplicity
-        off = off // common
-    inside = _inside(off)
-    if inside is False or not _of_size_one(on):
+    on_circle = c.gcd(flint.fmpq_poly(list(reversed(c.coeffs()))))
+    off_circle = c
+    while (common := off_circle.gcd(on_circle)).degree() > 0:  # of whatever multiplicity
+        off_circle = off_circle // common
+    inside = _all_inside(off_circle)
+    if inside is False or not _all_of_size_one(on_circle):
         return False
-    return inside and _is_root(_squarefree(on) * off, matrix)
+    return inside and _is_root(_squarefree(on_circle) * off_circle, matrix)
 
 
 def _is_root(polynomial: flint.fmpq_poly, matrix: flint.fmpq_mat) -> bool:
-    """Whether it is 0 at the matrix: no root that it has once only has a Jordan block."""
+    """Return True if the polynomial is 0 at the matrix: its simple roots have no Jordan blocks."""
     one = matrix * 0
     for k in range(matrix.nrows()):
         one[k, k] = flint.fmpq(1)
@@ -153,8 +160,8 @@ def _squarefree(polynomial: flint.fmpq_poly) -> flint.fmpq_poly:
     return polynomial // polynomial.gcd(polynomial.derivative())
 
 
-def _inside(polynomial: flint.fmpq_poly) -> bool | None:
-    """Whether all of its roots, none of which is of size 1, are smaller."""
+def _all_inside(polynomial: flint.fmpq_poly) -> bool | None:
+    """Return True if all roots, none of which is of size 1, are smaller; None if undecided."""
     if polynomial.degree() < 1:
         return True
     integral, bits = _squarefree(polynomial).numer(), _BITS
@@ -170,21 +177,23 @@ def _inside(polynomial: flint.fmpq_poly) -> bool | None:
     return None
 
 
-def _of_size_one(polynomial: flint.fmpq_poly) -> bool:
-    """Whether all roots of a polynomial whose roots come in pairs x, 1/x are of size 1."""
+def _all_of_size_one(polynomial: flint.fmpq_poly) -> bool:
+    """Return True if all roots of a polynomial with root pairs x, 1/x are of size 1."""
     rest = _squarefree(polynomial)
     for one in (1, -1):
         if rest.degree() > 0 and rest(flint.fmpq(one)) == 0:
             rest = rest // flint.fmpq_poly([-one, 1])
     if rest.degree() < 1:
         return True
-    sums = _of_sums(rest)
+    # A pair is of size 1 exactly where x + 1/x is real and in [−2, 2]: then 2 − y and y − 2 put in
+    # for x + 1/x have as many positive roots as g has roots, with multiplicity one each.
+    sums = _polynomial_of_sums(rest)
     below, above = (sums(flint.fmpq_poly(line)).numer() for line in ([2, -1], [-2, 1]))
     return len(positive_roots([below])) == len(positive_roots([above])) == sums.degree()
 
 
-def _of_sums(polynomial: flint.fmpq_poly) -> flint.fmpq_poly:
-    """g with x^m g(x + 1/x) = the polynomial, which reads the same from both ends, of degree 2m."""
+def _polynomial_of_sums(polynomial: flint.fmpq_poly) -> flint.fmpq_poly:
+    """Return g with x^m g(x + 1/x) = the polynomial, a palindromic one of degree 2m."""
     m = polynomial.degree() // 2
     y = flint.fmpq_poly([0, 1])
     powers = [flint.fmpq_poly([2]), y]  # x^k + x^−k as polynomials in x + 1/x
@@ -206,5 +215,5 @@ def _constant(x: Poly) -> flint.fmpq:
         return flint.fmpq(0)
     if not x.is_constant():
         raise _IrrationalError
-    found: flint.fmpq = x.leading_coefficient()
-    return found
+    value: flint.fmpq = x.leading_coefficient()
+    return value

@@ -1,4 +1,4 @@
-"""The tasks on stability: one run judged, the largest step, and a map of verdicts."""
+"""The tasks of stability: the verdict on one run, the largest step, and a map of verdicts."""
 
 from fractions import Fraction
 from typing import Literal
@@ -29,7 +29,7 @@ class _FromATime(StartTask):
 
 
 class StabilityTask(_FromATime):
-    """Judge one run: stable, drifting, unstable, and whose fault it is."""
+    """Judge one run: is it stable, drifting or unstable, and what is to blame?"""
 
     result = StabilityResult
     imports = ("verify.studies.stability.results", "verify.studies.stability.trail")
@@ -67,7 +67,7 @@ class LargestStepTask(_FromATime):
     def compute(self, keeper: Keeper) -> LargestStepResult:
         from verify.studies.stability.limits import largest_step
 
-        return largest_step(self.exact_hamiltonian(), **self.asked())
+        return largest_step(self.exact_hamiltonian(), **self.other_fields())
 
 
 class StabilityMapTask(_FromATime):
@@ -92,11 +92,11 @@ class StabilityMapTask(_FromATime):
     def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.limits import stability_map
 
-        return stability_map(self.exact_hamiltonian(), **self.asked())
+        return stability_map(self.exact_hamiltonian(), **self.other_fields())
 
 
 class OrbitMapTask(_FromATime):
-    """What orbits do over two of their initial values."""
+    """Classify orbits over two of their initial values."""
 
     result = OrbitMapResult
     imports = ("verify.studies.stability.orbit_map",)
@@ -116,4 +116,4 @@ class OrbitMapTask(_FromATime):
     def compute(self, keeper: Keeper) -> OrbitMapResult:
         from verify.studies.stability.orbit_map import orbit_map
 
-        return orbit_map(self.exact_hamiltonian(), **self.asked())
+        return orbit_map(self.exact_hamiltonian(), **self.other_fields())

@@ -1,7 +1,7 @@
-"""A run followed by its states on the way, so that the step at which something happens is found.
+"""Trails: states along a run, by which the step at which something happens is found.
 
-A trail has the state after every n-th step, n = 1 in short runs and a prime number in long ones, so
-that a scheme that comes back after a few steps is not seen at one and the same place only. Where
+A trail has the state after every n-th step, n = 1 in short runs and a prime number in long ones, as
+a scheme that comes back after a few steps would be seen at the same place again and again. Where
 something happens between two of them, that stretch is run again from the first with shorter ones,
 until it is one step.
 """
@@ -23,7 +23,7 @@ from verify.runs.digits_on_demand import worth_compiling
 
 _LEAST_SECTIONS, MOST_SECTIONS = 128, 512  # of a trail
 _BETWEEN = 64  # steps between two of them, where that makes so many
-_FEWEST = 5  # steps between two of them, where not every step is looked at
+_FEWEST = 5  # steps between two of them, where not every step is kept
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
@@ -47,7 +47,7 @@ class Run:
 
     @property
     def start(self) -> Mapping[str, Fraction]:
-        """What a kernel's run begins with."""
+        """The initial values, h and t of a kernel's run, by their names."""
         point = dict(zip(self.hamiltonian.coordinates, self.state, strict=True))
         return {**point, "h": self.step_size, "t": self.t0}
 
@@ -55,7 +55,7 @@ class Run:
         t0 = self.t0 + step * self.step_size
         return replace(self, state=state, steps=steps, t0=t0)
 
-    def shortened(self, steps: int) -> "Run":
+    def with_steps(self, steps: int) -> "Run":
         return replace(self, steps=steps)
 
 
@@ -86,7 +86,7 @@ class Trail:
         return tuple(map(self.point, range(len(self.columns[0]))))
 
     def point(self, index: int) -> Point:
-        """That after so many stretches; −1 for the last one."""
+        """Return the point after so many stretches; −1 for the last one."""
         index %= len(self.columns[0])
         state = tuple(quotient(column[index]) for column in self.columns)
         return Point(min(index * self.every, self.steps), state)
@@ -96,41 +96,43 @@ class Trail:
         return self.run.steps
 
     @property
-    def finished(self) -> bool:
+    def is_finished(self) -> bool:
         return self.done == self.steps
 
     def onwards(self, point: Point, steps: int) -> "Trail":
-        """So many steps from one of its points, followed more closely."""
+        """Follow so many steps from one of its points more closely."""
         state = tuple(map(fraction, point.state))
         return follow(self.run.onwards(state, point.step, steps), self.arithmetic)
 
 
 def follow(run: Run, arithmetic: Arithmetic) -> Trail:
-    """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
-    asked = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
-    own = KernelRun(*asked, sections=_sections(run.steps))
-    outcome = own.run(arithmetic)
+    """Follow the run in this arithmetic. Raises UnsupportedError where that lacks a function."""
+    arguments = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
+    kernel_run = KernelRun(*arguments, sections=_sections(run.steps))
+    outcome = kernel_run.run(arithmetic)
     columns, later = [], zip(*outcome.states, strict=True)
     for first in run.state:
         numbers = next(later, ())
         if arithmetic.absolute:  # of fixed point, which gmpy2 does not know
             numbers = tuple(quotient(arithmetic.exact(x)) for x in numbers)
         columns.append((quotient(first), *numbers))
-    return Trail(run, arithmetic, own.section, tuple(columns), outcome.done)
+    return Trail(run, arithmetic, kernel_run.section, tuple(columns), outcome.done)
 
 
 @lru_cache(maxsize=256)
 def _sections(steps: int) -> int:
-    """How many stretches a trail has."""
+    """Return the number of stretches of a trail."""
     if steps <= MOST_SECTIONS:
         return steps
-    aimed = min(MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _BETWEEN))
-    lengths = ((sections, -(-steps // sections)) for sections in range(aimed, 0, -1))
-    return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
+    # A prime number of steps between states does not resonate with a scheme that returns after a
+    # few steps.
+    target = min(MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _BETWEEN))
+    lengths = ((sections, -(-steps // sections)) for sections in range(target, 0, -1))
+    return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), target)
 
 
 def follow_precisely(run: Run, digits: int) -> Trail:
-    """The run to so many digits, compiled where that repays.
+    """Follow the run to so many digits, compiled where that repays.
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
     """
@@ -141,13 +143,13 @@ def follow_precisely(run: Run, digits: int) -> Trail:
                 trail = follow(run, system.make(digits))
             except UnsupportedError:
                 continue
-            if trail.finished:
+            if trail.is_finished:
                 return trail
-    return follow(run.shortened(min(run.steps, MOST_INTERPRETED)), last.make(digits))
+    return follow(run.with_steps(min(run.steps, MOST_INTERPRETED)), last.make(digits))
 
 
-def first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:
-    """The first step after which it happens, seen at the trail's points and then between them.
+def find_first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:
+    """Find the first step after which it happens, at the trail's points and then between them.
 
     A run that leaves its range does so at the step after the last that is done. None where neither
     is seen.
@@ -156,26 +158,26 @@ def first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:
     for point in trail.points[1:]:
         if happens(point):
             length = point.step - before.step
-            found = _first_from(trail, before, length, happens) if length > 1 else None
-            return point.step if found is None else found
+            step = _find_first_step_from(trail, before, length, happens) if length > 1 else None
+            return point.step if step is None else step
         before = point
-    if trail.finished:
+    if trail.is_finished:
         return None
     rest = trail.done - before.step
-    found = _first_from(trail, before, rest, happens) if rest else None
-    return trail.done + 1 if found is None else found
+    step = _find_first_step_from(trail, before, rest, happens) if rest else None
+    return trail.done + 1 if step is None else step
 
 
-def _first_from(
+def _find_first_step_from(
     trail: Trail, before: Point, steps: int, happens: Callable[[Point], bool]
 ) -> int | None:
-    """The same for so many steps from a point on the way."""
-    found = first_step(trail.onwards(before, steps), happens)
-    return None if found is None else before.step + found
+    """Find the step within so many steps from a point on the way."""
+    step = find_first_step(trail.onwards(before, steps), happens)
+    return None if step is None else before.step + step
 
 
-def first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], bool]) -> int | None:
-    """The first step after which two runs of one run are apart; None where none is seen."""
+def find_first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], bool]) -> int | None:
+    """Find the first step after which two trails of one run are apart; None where none is seen."""
     offset = 0
     while True:
         pairs = list(zip(one.points, other.points, strict=False))
@@ -184,6 +186,8 @@ def first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], bool])
             return None
         if index == 0:
             return offset
+        # The runs were together at the state before: both are followed from there, each from its
+        # own state, until a stretch is one step.
         (x, y), step = pairs[index - 1], pairs[index][0].step
         length = step - x.step
         if length == 1:

@@ -1,4 +1,4 @@
-"""What is found before anything is timed, in this process or in another: the errors of schemes."""
+"""The errors of schemes, computed before anything is timed, in this process or in another."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,8 +18,11 @@ Advance = Callable[[int], None]  # called with a number of points just done
 
 @dataclass(frozen=True)
 class Errors:
-    """The exact solution at the time; by scheme and step size the points, not yet timed; and how
-    long all of it took."""
+    """The errors of schemes.
+
+    `solution`: the exact one at the time; `points`: not yet timed, by scheme and step size;
+    `seconds`: the time that all of it took.
+    """
 
     solution: Solution
     points: Mapping[tuple[str, Fraction], WorkPoint]
@@ -27,24 +30,27 @@ class Errors:
 
 
 def find_errors(
-    asked: InitialValueProblem,
+    initial_value_problem: InitialValueProblem,
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
     advance: Advance,
 ) -> Errors:
-    """The errors of each scheme with each step size.
+    """Compute the errors of each scheme with each step size.
 
     Raises InputError where the exact solution does not reach the time.
     """
-    begun = perf_counter()
+    start_time = perf_counter()
     try:
-        exact = reference(**vars(asked))
+        exact = reference(**vars(initial_value_problem))
     except NoFlowError as error:
-        raise InputError("work_precision.time", text(asked.time), str(error)) from None
-    problem = Problem.of(asked, exact)
+        raise InputError(
+            "work_precision.time", text(initial_value_problem.time), str(error)
+        ) from None
+    problem = Problem.with_solution(initial_value_problem, exact)
     points = {}
+    # One ladder at a time: each holds a compiled kernel.
     for ladder in (Ladder(problem, name) for name in schemes):
         for h in step_sizes:
             points[ladder.name, h] = ladder.point(h)
             advance(1)
-    return Errors(exact, points, perf_counter() - begun)
+    return Errors(exact, points, perf_counter() - start_time)

@@ -2,9 +2,8 @@
 
 Errors first (`verify.studies.work_precision.errors`), then one interleaved timing of all points
 together (`verify.studies.work_precision.timing`), so that their run times can be compared; nothing
-else of this program runs meanwhile. What the errors are is told in
-`verify.studies.work_precision.runs`, what is made of the points in
-`verify.studies.work_precision.lines`.
+else of this program runs meanwhile. `verify.studies.work_precision.runs` defines the errors, and
+`verify.studies.work_precision.lines` the orders and comparisons.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,28 +23,41 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import SystemPoint, WorkPoint, WorkPrecisionResult
 from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.errors import Advance, Errors
-from verify.studies.work_precision.lines import comparisons, lg, line
+from verify.studies.work_precision.lines import build_line, compare_all, log10_of
 from verify.studies.work_precision.peer_interface import (
     Answer,
     InitialValueProblem,
     PeerError,
     Solver,
 )
-from verify.studies.work_precision.runs import ROUNDING_SHARE, SHOWN, Ladder, Problem, failed, size
-from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
+from verify.studies.work_precision.runs import (
+    ROUNDING_SHARE,
+    SHOWN,
+    Ladder,
+    Problem,
+    build_failed_point,
+    size,
+)
+from verify.studies.work_precision.timing import (
+    RunTime,
+    choose_clock,
+    do_nothing,
+    subtract_or_none,
+    time_interleaved,
+)
 
 
 @dataclass
 class _Timing:
-    """A point with what is timed of it: the call, and the call that does nothing."""
+    """A point with the calls to time: that of its loop, and one that does nothing."""
 
     point: WorkPoint
     call: Callable[[], object] | None
-    blank: Callable[[], object] = nothing
+    blank: Callable[[], object] = do_nothing
 
 
 def work_precision(
-    asked: InitialValueProblem,
+    initial_value_problem: InitialValueProblem,
     *,
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
@@ -59,40 +71,44 @@ def work_precision(
     errors: Errors,
     advance: Advance,
 ) -> WorkPrecisionResult:
-    """Errors and run times of each scheme with each step size, of peers, and of number systems with
-    so many digits, on one scheme at one step size. `errors`: those of the schemes.
+    """Measure errors and run times of each scheme with each step size, of peers and number systems.
+
+    The number systems, with so many digits, are measured on one scheme at one step size. `errors`:
+    those of the schemes.
     """
-    begun = perf_counter()
-    hamiltonian, problem = asked.hamiltonian, Problem.of(asked, errors.solution)
+    start_time = perf_counter()
+    hamiltonian = initial_value_problem.hamiltonian
+    problem = Problem.with_solution(initial_value_problem, errors.solution)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
-    own = [
+    scheme_timings = [
         [_scheme_point(ladder, h, errors.points[ladder.name, h]) for h in step_sizes]
         for ladder in ladders
     ]
     others = [_peer(problem, name, advance) for name in peers]
-    overhead = _time([*own, *(timings for timings, _ in others)], repeats)
+    # All points are timed in the same rounds, so that their times can be compared.
+    overhead = _time_calls([*scheme_timings, *(timings for timings, _ in others)], repeats)
     lines = [
-        line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
+        build_line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
              ladder.compile_seconds, problem.scale, hamiltonian.structure)
-        for ladder, timings in zip(ladders, own, strict=True)
+        for ladder, timings in zip(ladders, scheme_timings, strict=True)
     ]  # fmt: skip
     lines += [
-        line([t.point for t in timings], name, None, None, compiled)
-        for name, (timings, compiled) in zip(peers, others, strict=True)
+        build_line([t.point for t in timings], name, None, None, compile_seconds)
+        for name, (timings, compile_seconds) in zip(peers, others, strict=True)
     ]
-    pairs = [(name, n) for name in number_systems for n in _digits(name, digits)]
+    pairs = [(name, n) for name in number_systems for n in _select_digits(name, digits)]
     systems = _system_points(
         problem, number_systems_scheme, number_systems_step_size, pairs, repeats
     )
     return WorkPrecisionResult(
         **hamiltonian.texts,
-        time=text(asked.time),
-        t0=text(asked.t0),
-        q=shown_of(hamiltonian, asked.point, "q"),
-        p=shown_of(hamiltonian, asked.point, "p"),
+        time=text(initial_value_problem.time),
+        t0=text(initial_value_problem.t0),
+        q=shown_of(hamiltonian, initial_value_problem.point, "q"),
+        p=shown_of(hamiltonian, initial_value_problem.point, "p"),
         repeats=repeats,
-        clock=clock()[1],
+        clock=choose_clock()[1],
         overhead=overhead,
         rounding_share=text(ROUNDING_SHARE),
         scale=problem.scale,
@@ -100,17 +116,17 @@ def work_precision(
         reference_bound=upper(problem.solution.bound),
         machine=machine(),
         lines=tuple(lines),
-        comparisons=comparisons(lines, problem.scale, hamiltonian.structure),
+        comparisons=compare_all(lines, problem.scale, hamiltonian.structure),
         systems=tuple(systems),
         systems_scheme=number_systems_scheme,
         systems_step_size=text(number_systems_step_size),
         left_out=tuple(peers_left_out),
-        seconds=errors.seconds + perf_counter() - begun,
+        seconds=errors.seconds + perf_counter() - start_time,
     )
 
 
 def _wake_compiler() -> None:
-    """The first compilation of a process takes longer than the next; no scheme shall pay that."""
+    """Compile once: a process's first compilation takes longer, which no scheme should pay."""
     source = "def same(steps, x):\n    for k in range(steps):\n        x = x\n    return steps, x\n"
     float64.compiled_at_once(anew=True).compile(source, "same", {})(1, 1.0)
 
@@ -121,24 +137,24 @@ def _scheme_point(ladder: Ladder, h: Fraction, point: WorkPoint) -> _Timing:
     return _Timing(point, ladder.call(h), ladder.call(h, blank=True))
 
 
-def _time(groups: list[list[_Timing]], repeats: int) -> float:
-    """Puts the run times into the points; returns what an empty call takes."""
-    timed = [t for group in groups for t in group if t.call]
-    blanks = list({_of(t.blank): t.blank for t in timed}.values())
-    calls = [*(t.call for t in timed if t.call), *blanks, nothing]
-    found = interleaved(calls, repeats)
-    empty = dict(zip(map(_of, blanks), found[len(timed) :], strict=False))
-    for each, taken in zip(timed, found, strict=False):
-        blank = empty.get(_of(each.blank), found[-1])
-        left = above(taken, blank)
-        if left is not None:
-            seconds = {"seconds_min": left.least, "seconds_median": left.median}
+def _time_calls(groups: list[list[_Timing]], repeats: int) -> float:
+    """Put the run times into the points; return the time of an empty call."""
+    timings = [t for group in groups for t in group if t.call]
+    blanks = list({_identity_of(t.blank): t.blank for t in timings}.values())
+    calls = [*(t.call for t in timings if t.call), *blanks, do_nothing]
+    times = time_interleaved(calls, repeats)
+    empty = dict(zip(map(_identity_of, blanks), times[len(timings) :], strict=False))
+    for each, time in zip(timings, times, strict=False):
+        blank = empty.get(_identity_of(each.blank), times[-1])
+        net_time = subtract_or_none(time, blank)
+        if net_time is not None:
+            seconds = {"seconds_min": net_time.least, "seconds_median": net_time.median}
             each.point = each.point.model_copy(update=seconds)
-    return found[-1].median
+    return times[-1].median
 
 
-def _of(blank: Callable[[], object]) -> int:
-    """One kernel's blank calls are all alike."""
+def _identity_of(blank: Callable[[], object]) -> int:
+    """Return a key of a blank call: those of one kernel are all alike."""
     return id(getattr(blank, "func", blank))
 
 
@@ -146,32 +162,34 @@ def _of(blank: Callable[[], object]) -> int:
 
 
 def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing], float]:
-    """Its points over its tolerances, and what making it ready took the first time."""
-    module, timings, compiled = peer_catalogue.get(name), [], 0.0
+    """Return a peer's points over its tolerances, and the seconds of its first preparation."""
+    module, timings, compile_seconds = peer_catalogue.get(name), [], 0.0
     for tolerance in module.TOLERANCES:
         try:
             solver: Solver = module.make(problem, tolerance)
             answer = solver.solve()
         except PeerError as error:
-            point = failed(name, tolerance=text(tolerance), reason=str(error))
+            point = build_failed_point(name, tolerance=text(tolerance), reason=str(error))
             timings.append(_Timing(point, None))
         else:
-            compiled = compiled or solver.compile_seconds
+            compile_seconds = compile_seconds or solver.compile_seconds
             timings.append(_Timing(_peer_point(problem, name, tolerance, answer), solver.solve))
         advance(1)
-    return timings, compiled
+    return timings, compile_seconds
 
 
 def _peer_point(problem: Problem, name: str, tolerance: Fraction, answer: Answer) -> WorkPoint:
     if not all(abs(x) < float("inf") for x in answer.state):
-        return failed(name, tolerance=text(tolerance), reason="left the range of float64")
+        return build_failed_point(
+            name, tolerance=text(tolerance), reason="left the range of float64"
+        )
     state = tuple(map(Fraction, answer.state))
     return WorkPoint(
         scheme=name,
         tolerance=f"{float(tolerance):.0e}",
         steps=answer.steps,
         evaluations=answer.evaluations,
-        error=Value.of(*problem.error(state), SHOWN),
+        error=Value.from_bound(*problem.error(state), SHOWN),
         energy=problem.energy_error(state),
         limited_by="tolerance",
     )
@@ -183,7 +201,7 @@ def _peer_point(problem: Problem, name: str, tolerance: Fraction, answer: Answer
 def _system_points(
     problem: Problem, scheme: str, h: Fraction, pairs: Sequence[tuple[str, int]], repeats: int
 ) -> list[SystemPoint]:
-    """Certified digits of the end state against run time, for each number system with its digits.
+    """Return the end state's certified digits against run time, for each system and its digits.
 
     The run times are those of one scheme at one step size.
     """
@@ -199,42 +217,42 @@ def _system_points(
     rounds = [[go(*each) for each in pairs] for _ in range(repeats)]
     points = []
     for k, ((name, digits), result) in enumerate(zip(pairs, rounds[0], strict=True)):
-        taken = [each[k].seconds for each in rounds]
-        timed: Timed | None = Timed(min(taken), median(taken))
+        seconds = [each[k].seconds for each in rounds]
+        time: RunTime | None = RunTime(min(seconds), median(seconds))
         if name == float64.NAME:  # compiled, as it is in the other figures
-            timed = _compiled_float(Ladder(problem, scheme), h, repeats)
-        points.append(_system_point(name, digits, result, timed))
+            time = _time_compiled_float(Ladder(problem, scheme), h, repeats)
+        points.append(_system_point(name, digits, result, time))
     return points
 
 
-def _digits(name: str, asked: Sequence[int]) -> Sequence[int]:
-    own = about(name).digits
-    return asked if own is None else (own,)
+def _select_digits(name: str, requested: Sequence[int]) -> Sequence[int]:
+    fixed_digits = about(name).digits
+    return requested if fixed_digits is None else (fixed_digits,)
 
 
-def _compiled_float(ladder: Ladder, h: Fraction, repeats: int) -> Timed | None:
-    taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], repeats)
-    return above(taken, blank)
+def _time_compiled_float(ladder: Ladder, h: Fraction, repeats: int) -> RunTime | None:
+    time, blank = time_interleaved([ladder.call(h), ladder.call(h, blank=True)], repeats)
+    return subtract_or_none(time, blank)
 
 
-def _system_point(name: str, digits: int, result: RunResult, timed: Timed | None) -> SystemPoint:
-    known = result.status == "finished"
-    reason = result.fallback if known else f"{result.status}: {result.error_method}"
+def _system_point(name: str, digits: int, result: RunResult, time: RunTime | None) -> SystemPoint:
+    is_finished = result.status == "finished"
+    reason = result.fallback if is_finished else f"{result.status}: {result.error_method}"
     return SystemPoint(
-        arithmetic=result.arithmetic if known else name,
+        arithmetic=result.arithmetic if is_finished else name,
         digits=digits,
-        certified=_digits_of_state(result) if known else None,
+        certified=_digits_of_state(result) if is_finished else None,
         error_kind=result.error_kind,
         error_method=result.error_method,
-        seconds_min=timed.least if known and timed else None,
-        seconds_median=timed.median if known and timed else None,
+        seconds_min=time.least if is_finished and time else None,
+        seconds_median=time.median if is_finished and time else None,
         reason=reason,
     )
 
 
 def _digits_of_state(result: RunResult) -> str | None:
-    """−lg(bound / size) of the state, with one decimal."""
-    state = list(result.values.values())  # no observable was asked for
+    """Return −lg(bound / size) of the state, with one decimal."""
+    state = list(result.values.values())  # the run has no observables
     if not state:
         return None
     length = size(tuple(Fraction(x.value) for x in state))
@@ -242,4 +260,4 @@ def _digits_of_state(result: RunResult) -> str | None:
     if not bound or not length:
         return None
     part = bound / length
-    return f"{-lg(f'{part.numerator}/{part.denominator}'):.1f}"
+    return f"{-log10_of(f'{part.numerator}/{part.denominator}'):.1f}"

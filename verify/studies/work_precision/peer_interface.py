@@ -1,4 +1,4 @@
-"""What a peer is: another integrator, made ready to solve one problem to one tolerance."""
+"""The interface of a peer: another integrator, prepared to solve one problem to one tolerance."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,13 +8,15 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 
 
 class PeerError(Exception):
-    """A peer does not take H, or did not reach the end; the message says why."""
+    """A peer that does not take H, or did not reach the end; the message says why."""
 
 
 @dataclass(frozen=True)
 class InitialValueProblem:
-    """p' = −H_q, q' = H_p from `point`, each coordinate's value by its name, in the order p1 … pn,
-    q1 … qn, at t0 for the length `time`."""
+    """The problem p' = −H_q, q' = H_p from `point`, at t0 for the length `time`.
+
+    `point`: each coordinate's value by its name, in the order p1 … pn, q1 … qn.
+    """
 
     hamiltonian: Hamiltonian
     point: Mapping[str, Fraction]
@@ -33,9 +35,9 @@ class Answer:
 
 @dataclass(frozen=True)
 class Solver:
-    """`solve` goes from the start to the end, each time anew; it raises PeerError.
+    """A prepared peer: `solve` goes from the start to the end, each time anew, or raises PeerError.
 
-    `compile_seconds`: what making it ready took.
+    `compile_seconds`: the time of its preparation.
     """
 
     solve: Callable[[], Answer]

@@ -1,4 +1,4 @@
-"""What one step of a kernel executes: its operations, counted as they are written in its loop."""
+"""The operations that one step of a kernel executes, counted as its loop contains them."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -11,35 +11,40 @@ from verify.schemes.scheme import Scheme
 _CALL = "call "  # before a function's name, among the kinds of operations
 
 
-def cost(kernel: Kernel, scheme: Scheme) -> CostResult:
-    """Operations of one step that carries the state alone, those before the loop left out.
+def count_cost(kernel: Kernel, scheme: Scheme) -> CostResult:
+    """Count the operations of one step of the state alone, without those before the loop.
 
     Adding the increments to the coordinates counts; a change of sign does not.
     """
     lowering, roots = kernel.lowering, [kernel.outputs[f"d{name}"] for name in kernel.coordinates]
     turn: Counter[str] = Counter()
+    # One turn of the loops that solve equations is counted apart, as their number varies.
     for loop in lowering.loops(lowering.live(roots)):
-        turn += _counted(lowering.inner(loop), loop.updates) + Counter(add=len(loop.updates))
-    counted = _counted(lowering, roots) + Counter(add=len(roots))
-    return _result(counted, scheme.evaluations, _result(turn, None, None) if turn else None)
+        turn += _count_operations(lowering.inner(loop), loop.updates) + Counter(
+            add=len(loop.updates)
+        )
+    operations = _count_operations(lowering, roots) + Counter(add=len(roots))
+    return _build_result(
+        operations, scheme.evaluations, _build_result(turn, None, None) if turn else None
+    )
 
 
-def _counted(lowering: Lowering, roots: Sequence[int]) -> "Counter[str]":
-    """Operations and functions by their names."""
+def _count_operations(lowering: Lowering, roots: Sequence[int]) -> "Counter[str]":
+    """Count operations and functions by their names."""
     program = lowering.program
     inside = [index for index in lowering.live(roots) if not program.static[index]]
-    called = [name for index in inside if (name := lowering.function(index))]
-    return Counter(program.ops[i].kind for i in inside) + Counter(f"{_CALL}{f}" for f in called)
+    functions = [name for index in inside if (name := lowering.function(index))]
+    return Counter(program.ops[i].kind for i in inside) + Counter(f"{_CALL}{f}" for f in functions)
 
 
-def _result(
-    counted: "Counter[str]", gradient: dict[str, int] | None, turn: CostResult | None
+def _build_result(
+    operations: "Counter[str]", gradient: dict[str, int] | None, turn: CostResult | None
 ) -> CostResult:
-    functions = {n.removeprefix(_CALL): k for n, k in counted.items() if n.startswith(_CALL)}
+    functions = {n.removeprefix(_CALL): k for n, k in operations.items() if n.startswith(_CALL)}
     return CostResult(
-        additions=counted["add"] + counted["sub"],
-        multiplications=counted["mul"],
-        divisions=counted["inverse"],
+        additions=operations["add"] + operations["sub"],
+        multiplications=operations["mul"],
+        divisions=operations["inverse"],
         functions=dict(sorted(functions.items())),
         gradient=gradient,
         turn=turn,

@@ -43,27 +43,28 @@ class WorkPrecisionTask(HamiltonianTask):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps it is worth."""
+        """About the number of float64 steps that it is worth."""
         return _POINT_COST * len(self.schemes) * len(self.step_sizes)
 
     def prepare(self, advance: Callable[[int], None] = lambda _: None) -> "Errors":
-        """The errors of the schemes, of which nothing is timed; `advance` as in `measure`."""
+        """Return the errors of the schemes, without timing; `advance` as in `measure`."""
         from verify.studies.work_precision.errors import find_errors
 
         return find_errors(self._problem, self.schemes, self.step_sizes, advance)
 
     def compute(self, keeper: Keeper) -> WorkPrecisionResult:
-        """The measured points, as a result; the errors may be prepared."""
+        """Return the measured points as a result; the errors may be prepared."""
         return self.measure(lambda _: None, keeper.prepared)
 
     def measure(
         self, advance: Callable[[int], None], errors: "Errors | None" = None
     ) -> WorkPrecisionResult:
-        """As `compute`; `advance` is called with the number of points just done."""
+        """Do `compute`; `advance` is called with the number of points just done."""
         from verify.studies.work_precision.measure import work_precision
 
-        found, asked = errors or self.prepare(advance), self.asked("q", "p", "time", "t0")
-        return work_precision(self._problem, **asked, errors=found, advance=advance)
+        scheme_errors = errors or self.prepare(advance)
+        arguments = self.other_fields("q", "p", "time", "t0")
+        return work_precision(self._problem, **arguments, errors=scheme_errors, advance=advance)
 
     @property
     def _problem(self) -> InitialValueProblem:

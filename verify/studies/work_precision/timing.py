@@ -23,7 +23,7 @@ _FINEST = 1e-9  # seconds
 
 
 @dataclass(frozen=True)
-class Timed:
+class RunTime:
     """Seconds of one call, over the rounds."""
 
     least: float
@@ -31,8 +31,8 @@ class Timed:
 
 
 @cache
-def clock() -> tuple[Callable[[], int], str]:
-    """What tells nanoseconds, and what it is."""
+def choose_clock() -> tuple[Callable[[], int], str]:
+    """Return the clock in nanoseconds, and its description."""
     if hasattr(time, "thread_time_ns") and _resolution("thread_time") < _RESOLVED:
         return time.thread_time_ns, "processor time of the thread"
     return time.perf_counter_ns, "time on the clock"
@@ -42,40 +42,43 @@ def _resolution(name: Literal["thread_time"]) -> float:
     return time.get_clock_info(name).resolution
 
 
-def interleaved(calls: Sequence[Call], rounds: int) -> list[Timed]:
-    """Each call timed once in each round; every call is made once before, as a warm-up."""
+def time_interleaved(calls: Sequence[Call], rounds: int) -> list[RunTime]:
+    """Time each call once in each round; every call is made once before, as a warm-up."""
+    # A collection of garbage in the midst of a timing would be counted with it.
     collecting = gc.isenabled()
     gc.disable()
     try:
-        counted = [_count(call) for call in calls]  # the first round
-        found = [[taken] for _, taken in counted]
+        counts = [_count(call) for call in calls]  # the first round
+        seconds = [[first_seconds] for _, first_seconds in counts]
         for k in range(1, rounds):
+            # Rounds alternate in direction, so that a steady change of the machine's speed falls on
+            # all alike.
             order = range(len(calls)) if k % 2 == 0 else reversed(range(len(calls)))
             for i in order:
-                found[i].append(_seconds(calls[i], counted[i][0]))
+                seconds[i].append(_seconds(calls[i], counts[i][0]))
     finally:
         if collecting:
             gc.enable()
-    return [Timed(min(each), median(each)) for each in found]
+    return [RunTime(min(each), median(each)) for each in seconds]
 
 
-def less(timed: Timed, blank: Timed) -> Timed:
-    """The time without the least of the blank call; never below the clock's resolution."""
-    return Timed(*(max(_FINEST, x - blank.least) for x in (timed.least, timed.median)))
+def subtract_blank(time: RunTime, blank: RunTime) -> RunTime:
+    """Subtract the least time of the blank call; never go below the clock's resolution."""
+    return RunTime(*(max(_FINEST, x - blank.least) for x in (time.least, time.median)))
 
 
-def above(timed: Timed, blank: Timed) -> Timed | None:
-    """The same; None where the blank call takes longer than what is left, which is then noise."""
-    left = less(timed, blank)
-    return None if left.median < blank.least else left
+def subtract_or_none(time: RunTime, blank: RunTime) -> RunTime | None:
+    """Return the same, or None where the rest is below the blank call's time, and so noise."""
+    net_time = subtract_blank(time, blank)
+    return None if net_time.median < blank.least else net_time
 
 
-def nothing() -> None:
-    """A call that does nothing: what timing itself takes."""
+def do_nothing() -> None:
+    """Do nothing: the time of this call is that of timing itself."""
 
 
 def _count(call: Call) -> tuple[int, float]:
-    """So many calls that one timing of them is long enough, and the seconds of one of them."""
+    """Return the number of calls that makes one timing long enough, and the seconds of one call."""
     call()
     count = 1
     while True:
@@ -88,9 +91,9 @@ def _count(call: Call) -> tuple[int, float]:
 
 
 def _seconds(call: Call, count: int) -> float:
-    now, _ = clock()
+    now, _ = choose_clock()
     calls = repeat(None, count)
-    begun = now()
+    start = now()
     for _ in calls:
         call()
-    return (now() - begun) / count / 1e9
+    return (now() - start) / count / 1e9

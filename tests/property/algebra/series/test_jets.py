@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.lie_derivatives import along_flow, lie_derivatives
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
-from verify.algebra.linear_combination import combination
+from verify.algebra.linear_combination import solve_combination
 from verify.algebra.series.jets import Jets
-from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.algebra.series.power_series import Derivatives, Series, expand_at
 from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.every import prove_every
@@ -95,7 +95,7 @@ def test_derivatives_of_jets_are_those_of_every_h(
     assert same(put_in(jets, jets.diff(x, "q"), h), a.diff(Q))
     assert same(put_in(jets, along_flow(jets, x), h), h.diff(P) * a.diff(Q) - h.diff(Q) * a.diff(P))
     bracket = a.diff(P) * b.diff(Q) - a.diff(Q) * b.diff(P)
-    flow = JetFlow.over(jets)
+    flow = JetFlow.from_jets(jets)
     area = wedge(flow.gradient(x), flow.gradient(y), 0, 1)
     assert same(put_in(jets, area, h), bracket)
 
@@ -124,8 +124,10 @@ def test_a_derivative_at_a_moved_point_is_taylors(separable: bool, data: st.Data
         [jets.zero, *(data.draw(in_jets(jets, degree=1)) for _ in range(most - 1))] for _ in "pq"
     )
     i, j = data.draw(st.sampled_from([(0, 1), (1, 0), (2, 0), (0, 2)]))
-    moves = [(name, Series.of(jets, x, most - 1)) for name, x in (("p", dp), ("q", dq))]
-    found = at_moved(Derivatives(jets, jets.h(i, j)), moves, most - 1).coefficients
+    moves = [
+        (name, Series.from_coefficients(jets, x, most - 1)) for name, x in (("p", dp), ("q", dq))
+    ]
+    found = expand_at(Derivatives(jets, jets.h(i, j)), moves, most - 1).coefficients
     h = plain(data.draw(elements[separable]))
     u, v = (sum(put_in(jets, z, h) * T**n for n, z in enumerate(d)) for d in (dp, dq))
     true = sympy.Poly(
@@ -145,7 +147,9 @@ def test_the_product_of_two_series_is_cut_off_where_they_end(
     whole = sympy.Poly([sympy.Rational(str(a)) for a in x[::-1]], T)
     whole *= sympy.Poly([sympy.Rational(str(a)) for a in y[::-1]], T)
     jets = Jets(1)
-    one, two = (Series.of(jets, list(map(jets.constant, z)), len(x) - 1) for z in (x, y))
+    one, two = (
+        Series.from_coefficients(jets, list(map(jets.constant, z)), len(x) - 1) for z in (x, y)
+    )
     found = [sympy.Rational(str(z)) for z in (one * two).coefficients]
     assert found == whole.all_coeffs()[::-1][: len(x)]
 
@@ -237,7 +241,7 @@ def test_the_truncated_flow_telescopes_for_even_eta_alone(eta: int) -> None:
     assert found.telescopes is (eta % 2 == 0)
     assert found.leading == jets.text(leading)
     if found.telescopes:
-        potential = potential_of_lie(JetFlow.over(jets), eta).divergence
+        potential = potential_of_lie(JetFlow.from_jets(jets), eta).divergence
         assert found.potential == jets.text(potential)
         assert along_flow(jets, potential) == leading
         assert f"G = −1/{eta + 1}!" in found.why
@@ -247,7 +251,7 @@ def test_the_truncated_flow_telescopes_for_even_eta_alone(eta: int) -> None:
         assert along_flow(jets, twice.potential) == leading * 2
     else:
         with pytest.raises(ValueError, match="odd"):
-            potential_of_lie(JetFlow.over(jets), eta)
+            potential_of_lie(JetFlow.from_jets(jets), eta)
 
 
 # -- linear algebra -------------------------------------------------------------------------------
@@ -270,7 +274,7 @@ def test_a_combination_is_found_where_there_is_one(
         whole += x * flint.fmpq(w.numerator, w.denominator)
     wanted = whole if inside else other
     assume(wanted != 0)
-    found, own = combination(columns, wanted)
+    found, own = solve_combination(columns, wanted)
     assert own == rank(columns)
     assert (found is not None) == (rank([*columns, wanted]) == own)
     if found is not None:

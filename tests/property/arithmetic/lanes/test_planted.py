@@ -34,7 +34,7 @@ def test_lanes_that_never_ask_for_the_last_bit_are_caught(
     """Where all are taken to be sure, one in a thousand arguments or so is rounded otherwise; at
     156 bits one in some tens of thousands."""
     monkeypatch.setattr(circle, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(circle, "_lost", lambda count: 0)
+    monkeypatch.setattr(circle, "_units_lost", lambda count: 0)
     pair = Both(FUNCTIONS["circle"], width, IN_LANES[0])
     draws = Draws(5)
     rows = [(number(draws.bits(width - 12), width),) for _ in range(count)]
@@ -74,7 +74,7 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
 
 def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(circle, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(exponential, "_lost", lambda count: 0)
+    monkeypatch.setattr(exponential, "_units_lost", lambda count: 0)
     pair = Both(FUNCTIONS["exp"], 128, IN_LANES[0])
     draws = Draws(7)
     assert first_differing(pair, [(number(draws.bits(116), 128),) for _ in range(20_000)])
@@ -105,7 +105,7 @@ def test_a_step_left_out_of_a_product_is_caught(
     wrong: dict[str, Any] = {
         "_take_signs": lambda self, b, columns, x, y: None,
         "carry": lambda self, b, x: x.limbs,
-        "from_words": lambda self, b, words, width: self.known([words[0], *words], width),
+        "from_words": lambda self, b, words, width: self.from_settled([words[0], *words], width),
     }
     monkeypatch.setattr(Numbers, planted, wrong[planted])
     way = "portable" if planted == "_take_signs" else IN_LANES[0]

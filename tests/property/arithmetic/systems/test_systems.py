@@ -259,7 +259,7 @@ def test_a_kernel_is_compiled_once_it_repays_and_says_the_same(part: int) -> Non
     for _ in range(part):
         total = kernel(each, total)
     once = float64.compiled_at_once().compile(source, "kernel", names)
-    assert hasattr(once, "prepared"), "LLVM has made it"
+    assert hasattr(once, "prepare"), "LLVM has made it"
     assert bits(total) == bits(once(part * each, 1.0))
 
 
@@ -272,7 +272,7 @@ def test_a_kernel_is_compiled_where_its_steps_would_pass_what_repays(
     inner = "for j in range(1): pass" if solving else "pass"
     source = f"def kernel(steps, x):\n    for k in (1,):\n        {inner}\n    return steps"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(float64, "_compiled", lambda *_: lambda steps, _: -steps)
+        patch.setattr(float64, "_compile_now", lambda *_: lambda steps, _: -steps)
         kernel = float64.make(17).compile(source, "kernel", {})
         done, most, compiled = 0, 10_000 if solving else 50_000, False
         for steps in parts:

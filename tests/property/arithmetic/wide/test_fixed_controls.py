@@ -20,7 +20,7 @@ from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide import functions, limbs, newton, products
 from verify.arithmetic.wide.functions import Functions
-from verify.arithmetic.wide.limbs import constant, limb, resized, shifted_up
+from verify.arithmetic.wide.limbs import constant, limb, resize, shifted_up
 from verify.arithmetic.wide.size import WORD
 
 WIDTH = 256
@@ -105,14 +105,14 @@ def columns(b: Any, x: Any, y: Any, lowest: int, below: int, ripple: int, **opti
         if i + j < lowest - below:
             continue
         one, two = (
-            resized(b, limb(b, v, k), 128, signed=signed and k == count - 1)
+            resize(b, limb(b, v, k), 128, signed=signed and k == count - 1)
             for v, k in ((x, i), (y, j))
         )
         part, negative = b.mul(one, two), signed and count - 1 in (i, j)
         if i + j < lowest:
             part = (b.ashr if negative else b.lshr)(part, constant(64, 128))
         at = 64 * max(0, i + j - lowest)
-        moved = shifted_up(b, resized(b, part, width, signed=negative), at)
+        moved = shifted_up(b, resize(b, part, width, signed=negative), at)
         reached = width if negative else min(width, at + 64 * (2 + ripple))
         low = constant((1 << reached) - 1, width)
         total = b.or_(b.and_(b.add(total, moved), low), b.and_(total, b.not_(low)))

@@ -15,8 +15,8 @@ from tests.helpers.sampled.certificates import Data, certificates
 from verify.errors import InputError
 from verify.proof.certificates.balls import function, times
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import established
-from verify.proof.certificates.file import checked
+from verify.proof.certificates.established import state_theorem
+from verify.proof.certificates.file import check_file
 
 _FINE = Fraction(1, 2**500)
 
@@ -71,10 +71,10 @@ def test_a_file_says_what_was_certified_and_not_what_is_malformed(
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "certificate.json"
         path.write_text(json.dumps(data), encoding="utf-8")
-        assert checked(path) == established(check(data))
+        assert check_file(path) == state_theorem(check(data))
         key = drawn.draw(st.sampled_from(sorted(set(data) - {"format"})))
         path.write_text(json.dumps({n: x for n, x in data.items() if n != key}))
-        reason = checked(path)
+        reason = check_file(path)
         assert key in ("potential", "stages", "tableau", "time_dependent", "numbers") or (
             isinstance(reason, str) and key in reason
         )
@@ -83,6 +83,6 @@ def test_a_file_says_what_was_certified_and_not_what_is_malformed(
         for text in ("[]", "{", json.dumps({**data, "format": "another"})):
             path.write_text(text)
             with pytest.raises(InputError):
-                checked(path)
+                check_file(path)
         with pytest.raises(InputError):
-            checked(path.with_name("none"))
+            check_file(path.with_name("none"))

@@ -19,9 +19,9 @@ from tests.helpers.sampled.formulas import rationals
 from verify.errors import InputError
 from verify.proof.certificates import every as certificate
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.every import of_every
-from verify.proof.certificates.file import FORMAT, checked
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
+from verify.proof.certificates.every import certify_every
+from verify.proof.certificates.file import FORMAT, check_file
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
@@ -36,7 +36,7 @@ quick = drawn(40)
 
 def refused(proof: EveryProof) -> str:
     with pytest.raises(InputError) as found:
-        of_every(proof)
+        certify_every(proof)
     return str(found.value)
 
 
@@ -53,8 +53,8 @@ def test_what_is_not_proved_for_every_h_has_no_certificate(
         convergence_order=proofs(name).convergence_order if ordered else None,
     )
     if verdict is Verdict.PROVED and of_every_h and ordered:
-        data = as_read(of_every(proof))
-        said = established(check(data))
+        data = as_read(certify_every(proof))
+        said = state_theorem(check(data))
         assert data["format"] == FORMAT
         assert ("potential" in data) == bool(proof.telescopes)
         assert ("T(p) + V(q)" in said.hamiltonian) == proof.separable
@@ -74,8 +74,8 @@ def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(
     assert (proof.order, proof.telescopes) == ((4, False) if alpha == 1 else (3, True))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(certificate, "get", lambda _: made_of(generic, 2))
-        data = as_read(of_every(proof))
-    said = established(check(data))
+        data = as_read(certify_every(proof))
+    said = state_theorem(check(data))
     assert ("T(p) + V(q)" in said.hamiltonian) == separable
     if alpha == 1:
         assert "potential" not in data
@@ -117,12 +117,12 @@ def test_a_certificate_that_is_nested_deeply_is_checked_or_refused_in_words(
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "certificate.json"
         path.write_text(json.dumps(data), encoding="utf-8")
-        found = checked(path)
-        assert beyond or (isinstance(found, Established) and found.order == 1)
-        assert isinstance(found, Established) or "too l" in found
+        found = check_file(path)
+        assert beyond or (isinstance(found, EstablishedStatement) and found.order == 1)
+        assert isinstance(found, EstablishedStatement) or "too l" in found
         data["leading"][0][0] = str(Fraction(times + 1, times))
         path.write_text(json.dumps(data), encoding="utf-8")
-        assert isinstance(checked(path), str), "another leading coefficient is none"
+        assert isinstance(check_file(path), str), "another leading coefficient is none"
         path.write_text("[" * (depth * 100), encoding="utf-8")
         with pytest.raises(InputError):
-            checked(path)
+            check_file(path)

@@ -71,7 +71,7 @@ def test_residues_are_the_remainders_by_both_polynomials(
         for name, tail in zip("xy", tails, strict=True)
     ]
     residues = Residues(named)
-    found = residues.product(*(residues.reduced(made_of(each)) for each in (one, two)))
+    found = residues.product(*(residues.reduce(made_of(each)) for each in (one, two)))
     relations = [
         sum((c * z**k for k, c in enumerate((*tail, 2))), sympy.S.Zero)
         for z, tail in zip((X, Y), tails, strict=True)

@@ -29,12 +29,12 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.studies.separation.chain import QUANTITIES, Chain
 from verify.studies.separation.separate import separate
 from verify.studies.separation.stepper.run import MixedRun, Stopped
 from verify.studies.separation.stepper.trail import Link
-from verify.studies.separation.ways.determinants import WORKING, Determinants, _accumulated
+from verify.studies.separation.ways.determinants import WORKING, Determinants, _bound_product
 
 few = drawn(10)
 some = drawn(14)
@@ -97,7 +97,9 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     working = MixedRun(Determinants(), run, follow=True)
     coarse_, fine_ = number_systems.get("mpfr", 17), number_systems.get("mpfr", 90)
     try:
-        coarse, fine = (alone(working.step_through(x, lambda _: None)) for x in (coarse_, fine_))
+        coarse, fine = (
+            run_alone(working.step_through(x, lambda _: None)) for x in (coarse_, fine_)
+        )
     except Stopped:
         assume(False)
         raise
@@ -136,7 +138,7 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     run = KernelRun(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
     working = MixedRun(Determinants(), run, follow=True)
     coarse, fine = (
-        alone(working.step_through(x, lambda _: None))
+        run_alone(working.step_through(x, lambda _: None))
         for x in (FIXED, number_systems.get("mpfr", 90))
     )
     for name in ("trajectory", "factors", "closed_factors"):
@@ -161,7 +163,7 @@ def test_a_counted_bound_is_that_of_n_roundings_and_none_beyond_what_it_speaks_o
     steps: int, top: Fraction, own: Fraction | None, made: Arithmetic
 ) -> None:
     """|ρ| ≤ 12 u M + 2 B, u = 2^(1 − bits), or three units and 2 B; 4 N |ρ| at most 1/100."""
-    found = _accumulated(steps, top, own, made)
+    found = _bound_product(steps, top, own, made)
     if own is None or top > Fraction(1, 2):
         assert found is None
         return

@@ -14,8 +14,8 @@ from verify.arithmetic.exact import magnitude
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
-from verify.studies.separation.growth import crossover, log_spaced
-from verify.studies.separation.separate import as_grid, grid, separate, separate_grid
+from verify.studies.separation.growth import find_crossover, select_log_spaced
+from verify.studies.separation.separate import as_grid, count_steps, separate, separate_grid
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Kind, Link, Trail
 from verify.studies.separation.ways.determinants import POINTS
@@ -34,7 +34,7 @@ def chains(draw: st.DrawFn) -> Chain:
     count = draw(st.integers(1, 4))
     made = [
         Link(
-            Trail.of(draw(st.lists(values, min_size=count, max_size=count))),
+            Trail.from_values(draw(st.lists(values, min_size=count, max_size=count))),
             draw(st.one_of(st.just(Fraction(0)), sizes.map(lambda x: x / 10**6))),
             draw(kinds),
             draw(st.sampled_from(["a", "b", "c"])),
@@ -93,7 +93,7 @@ def test_a_chains_quantities_are_differences_of_its_links_and_lack_digits_where_
 def test_a_bound_that_just_suffices_lacks_nothing(size: Fraction, digits: int, more: bool) -> None:
     none = Link(Trail((0,), 1), Fraction(0), "enclosed", "")
     bound = size / (4 * 10**digits) * (1 + more * Fraction(1, 10**6))
-    last = Link(Trail.of([size]), bound, "enclosed", "")
+    last = Link(Trail.from_values([size]), bound, "enclosed", "")
     found = Chain((1,), (none, none, none, none, last)).lacking(digits)
     assert found == [0, 0, 0, 0, 1 if more else 0] or (more and found[4] in (1, 2))
     assert found[:4] == [0] * 4
@@ -123,20 +123,20 @@ def test_a_grid_gives_each_step_size_its_number_of_steps(
 ) -> None:
     if len(set(given_)) < len(given_):
         with pytest.raises(InputError, match="twice"):
-            grid(given_, size, None)
+            count_steps(given_, size, None)
         return
     if by_time:
-        assert grid(given_, None, size) == [(h, math.floor(size / h)) for h in given_]
+        assert count_steps(given_, None, size) == [(h, math.floor(size / h)) for h in given_]
         with pytest.raises(InputError, match="shorter"):
-            grid(given_, None, max(given_) * Fraction(9, 10))
-        assert grid(given_, None, max(given_))[given_.index(max(given_))][1] == 1
+            count_steps(given_, None, max(given_) * Fraction(9, 10))
+        assert count_steps(given_, None, max(given_))[given_.index(max(given_))][1] == 1
     else:
-        assert grid(given_, size, None) == [(h, size) for h in given_]
+        assert count_steps(given_, size, None) == [(h, size) for h in given_]
     for steps, time in ((None, None), (size, size)):
         with pytest.raises(InputError, match="one of the two"):
-            grid(given_, steps, time)
+            count_steps(given_, steps, time)
     with pytest.raises(InputError):
-        grid([], size, None)
+        count_steps([], size, None)
 
 
 @drawn(6)
@@ -173,7 +173,7 @@ def test_what_is_printed_of_a_separation_is_its_chain(
             assert abs(whole - parts["lambda_working"]) <= slack
             assert set(one.growth) == {"total", *PARTS}
             assert [x.steps for x in one.series][-1] == steps
-            shown = log_spaced(range(steps), range(1, steps + 1), 32)
+            shown = select_log_spaced(range(steps), range(1, steps + 1), 32)
             assert [x.steps for x in one.series] == [k + 1 for k in shown]
             for n in ("truncation", "total"):
                 tops = [abs(Fraction(getattr(x, n))) for x in one.series]
@@ -189,7 +189,7 @@ def test_what_is_printed_of_a_separation_is_its_chain(
             )
             for p in found.points
         ]
-        true = crossover(tops_)  # type: ignore[arg-type]
+        true = find_crossover(tops_)  # type: ignore[arg-type]
         assert at_.reason == true.reason
         assert (at_.step_size is None) == (true.step_size is None)
         if true.step_size is not None:

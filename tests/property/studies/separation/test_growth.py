@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.studies.separation.growth import crossover, growth, log, log_spaced
+from verify.studies.separation.growth import find_crossover, fit_growth, log, select_log_spaced
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
@@ -30,7 +30,7 @@ def test_log_spaced_marks_hold_the_ends_and_the_first_beyond_each_goal(
     at: list[int], most: int
 ) -> None:
     indices = [3 * k for k in range(len(at))]
-    chosen = log_spaced(indices, at, most)
+    chosen = select_log_spaced(indices, at, most)
     if len(at) <= most:
         assert chosen == indices
         return
@@ -61,10 +61,10 @@ def test_a_power_of_n_has_its_exponent_and_the_name_of_what_the_error_holds(
     exponent: Fraction, sign: bool, count: int
 ) -> None:
     marks = MARKS[:count]
-    found = growth(marks, [power(n, exponent) * (-1) ** (n * sign) for n in marks], Fraction(0))
+    found = fit_growth(marks, [power(n, exponent) * (-1) ** (n * sign) for n in marks], Fraction(0))
     reach = math.log10(marks[-1] / marks[7])
     assert (found.first, found.last) == (marks[7], marks[-1])
-    assert found.points == len(log_spaced(range(7, count), marks[7:], 32))
+    assert found.points == len(select_log_spaced(range(7, count), marks[7:], 32))
     if reach < 1.5:
         assert (found.exponent, found.standard_error, found.name) == (None, None, "undecided")
         assert f"over {reach:.1f} decades" in found.reason
@@ -86,11 +86,11 @@ def test_a_power_of_n_has_its_exponent_and_the_name_of_what_the_error_holds(
 @given(st.integers(1, 4000), st.integers(2, 12))
 def test_what_is_within_ten_times_the_noise_is_left_out(noise: int, spread: int) -> None:
     values = [Fraction(n) for n in MARKS]
-    found = growth(MARKS, values, Fraction(noise, 7))
+    found = fit_growth(MARKS, values, Fraction(noise, 7))
     above = [n for k, n in enumerate(MARKS) if k >= 7 and 7 * n > 10 * noise]
     assert (found.first, found.last) == ((above[0], above[-1]) if above else (0, 0))
     jumps = [Fraction((7 * k) % spread) ** 3 for k in range(len(MARKS))]
-    scattered = growth(
+    scattered = fit_growth(
         MARKS, [n + 3000 * x for n, x in zip(MARKS, jumps, strict=True)], Fraction(0)
     )
     assert scattered.standard_error is not None
@@ -102,7 +102,7 @@ def test_what_is_within_ten_times_the_noise_is_left_out(noise: int, spread: int)
 def test_scatter_that_is_more_than_a_walks_is_told(size: int) -> None:
     """One leap in a straight line: the regression's own error is the greater."""
     values = [Fraction(n) * (10 ** (8 * size) if n > 1500 else 1) for n in MARKS]
-    found = growth(MARKS, values, Fraction(0))
+    found = fit_growth(MARKS, values, Fraction(0))
     assert found.standard_error is not None
     assert found.standard_error > 1.65 * math.log(MARKS[-1] / MARKS[7]) ** -1.5
 
@@ -110,7 +110,7 @@ def test_scatter_that_is_more_than_a_walks_is_told(size: int) -> None:
 def test_five_checkpoints_are_fitted_and_four_are_not() -> None:
     marks = [*range(1, 8), 100, 1000, 10_000, 100_000, 1_000_000]
     for count, fitted in ((11, False), (12, True)):
-        found = growth(marks[:count], [Fraction(n) for n in marks[:count]], Fraction(0))
+        found = fit_growth(marks[:count], [Fraction(n) for n in marks[:count]], Fraction(0))
         assert found.points == count - 7
         assert (found.exponent is not None) == fitted
 
@@ -125,8 +125,8 @@ points = st.lists(st.tuples(sizes, sizes, sizes), max_size=6, unique_by=lambda x
 def test_a_crossover_lies_between_the_last_small_and_the_first_large_step(
     given_: list[tuple[Fraction, Fraction, Fraction]], mixed: object
 ) -> None:
-    found, ordered = crossover(given_), sorted(given_)
-    assert crossover(given_[::-1]) == found
+    found, ordered = find_crossover(given_), sorted(given_)
+    assert find_crossover(given_[::-1]) == found
     rounding = [r > t for _, t, r in ordered]
     if len(ordered) < 2:
         said = "one step size"
@@ -161,6 +161,6 @@ def test_a_part_that_is_exactly_0_gives_a_bracket_and_no_number(
 ) -> None:
     small = (h, Fraction(0), r) if first else (h, min(t, r) / 2, max(t, r))
     large = (2 * h, max(t, r), min(t, r) / 2) if first else (2 * h, t, Fraction(0))
-    found = crossover([large, small])
+    found = find_crossover([large, small])
     assert (found.step_size, found.bracket) == (None, (h, 2 * h))
     assert "exactly 0" in found.reason

@@ -11,7 +11,7 @@ from tests.helpers.stepping.exact_separation import links
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.studies.separation.chain import QUANTITIES, Chain
 from verify.studies.separation.stepper.kernel import mixed_kernel
 from verify.studies.separation.stepper.run import MixedRun, Stopped
@@ -39,7 +39,7 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
     kernel = mixed_kernel(Determinants(), run.hamiltonian, run.scheme, exact, follow)
     try:
         states = [working._first_state(kernel, exact)]
-        states += alone(working.stepped(exact, lambda _: None)).states
+        states += run_alone(working.step_all(exact, lambda _: None)).states
     except Stopped:
         assume(False)
         raise

@@ -18,11 +18,11 @@ trails = st.lists(values, max_size=12)
 @quick
 @given(trails)
 def test_it_is_the_sequence_of_its_values(given_: list[Fraction]) -> None:
-    trail = Trail.of(given_)
+    trail = Trail.from_values(given_)
     assert list(trail) == given_
     assert [trail[k] for k in range(-len(given_), len(given_))] == given_ + given_
     assert list(trail[1:4]) == given_[1:4]
-    assert Trail.of(trail) is trail
+    assert Trail.from_values(trail) is trail
 
 
 @quick
@@ -31,19 +31,21 @@ def test_differences_and_equality_are_those_of_the_values(
     pairs: list[tuple[Fraction, ...]],
 ) -> None:
     a, b = ([pair[k] for pair in pairs] for k in (0, 1))
-    assert list(Trail.of(a) - Trail.of(b)) == [x - y for x, y in pairs]
-    assert (Trail.of(a) == Trail.of(b)) == (a == b)
-    again = Trail([3 * n for n in Trail.of(a).numerators], 3 * Trail.of(a).denominator)
-    assert again == Trail.of(a)
-    assert hash(again) == hash(Trail.of(a))
+    assert list(Trail.from_values(a) - Trail.from_values(b)) == [x - y for x, y in pairs]
+    assert (Trail.from_values(a) == Trail.from_values(b)) == (a == b)
+    again = Trail(
+        [3 * n for n in Trail.from_values(a).numerators], 3 * Trail.from_values(a).denominator
+    )
+    assert again == Trail.from_values(a)
+    assert hash(again) == hash(Trail.from_values(a))
 
 
 @quick
 @given(trails)
 def test_the_envelope_is_the_greatest_size_so_far(given_: list[Fraction]) -> None:
     tops = list(accumulate(map(abs, given_), max))
-    assert list(Trail.of(given_).envelope()) == tops
-    assert not tops or Trail.of(given_).largest == tops[-1]
+    assert list(Trail.from_values(given_).envelope()) == tops
+    assert not tops or Trail.from_values(given_).largest == tops[-1]
 
 
 @quick
@@ -53,8 +55,8 @@ def test_above_are_the_places_of_what_is_greater_and_not_of_what_is_equal(
 ) -> None:
     for bound in (least, *given_):
         expected = [k for k, x in enumerate(given_) if x > bound]
-        assert Trail.of(given_).above(bound) == expected
+        assert Trail.from_values(given_).above(bound) == expected
 
 
 def test_of_none_there_is_nothing() -> None:
-    assert list(Trail.of([]).envelope()) == []
+    assert list(Trail.from_values([]).envelope()) == []

@@ -28,7 +28,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.run import run
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
 from verify.studies.separation.separate import separate
@@ -237,12 +237,12 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
         kernel_run = KernelRun(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
         return MixedRun(Determinants(), kernel_run, follow=True)
 
-    once = alone(working(Keeper(None, "")).step_through(made, lambda _: None))
+    once = run_alone(working(Keeper(None, "")).step_through(made, lambda _: None))
     if after < steps:
         with pytest.raises(KeyboardInterrupt):
-            alone(working(keeper).step_through(made, interrupting))
+            run_alone(working(keeper).step_through(made, interrupting))
     rest: list[int] = []
-    again = alone(working(keeper).step_through(made, rest.append))
+    again = run_alone(working(keeper).step_through(made, rest.append))
     # The step that was told last was not kept.
     assert sum(rest) == (steps - sum(told[:-1]) if after < steps else steps)
     for link in ("trajectory", "factors", "plain", "closed_factors", "closed_form"):

@@ -6,13 +6,13 @@ import flint
 import pytest
 
 from verify.algebra.identities.field import Field, Quotient, UndecidedError
-from verify.algebra.identities.numbers import number_sign, rational_root, size
-from verify.algebra.identities.powers import Finer, FinerError, Powers
+from verify.algebra.identities.numbers import bounds_of, number_sign, rational_root
+from verify.algebra.identities.powers import Divisors, FinerError, Powers
 
 
 def powers() -> Powers:
     """With square roots of primes, as many as are asked for."""
-    finer = Finer()
+    finer = Divisors()
     finer.divisors |= {("root", k): 2 for k in range(40)}
     return Powers(Field((), 40), finer)
 
@@ -36,7 +36,7 @@ def test_sums_of_roots_that_cancel_are_zero_and_others_have_their_sign() -> None
 def test_the_size_of_a_number_bounds_its_conjugates() -> None:
     of = powers()
     x = (root(of, 2).times(Fraction(1, 3)) + root(of, 3)).above
-    own = size(of.field, x)
+    own = bounds_of(of.field, x)
     assert own.degree == 4
     assert own.divisor == 3
     assert 2.2034 < own.house < 2.2035  # √3 + √2/3
@@ -52,7 +52,7 @@ def test_numbers_of_too_high_a_degree_are_left_undecided() -> None:
 
 
 def test_a_unit_that_is_too_coarse_asks_for_a_finer_one_once() -> None:
-    finer = Finer()
+    finer = Divisors()
     of = Powers(Field((), 4), finer)
     with pytest.raises(FinerError):
         of.power(of.field.number(2), Fraction(1, 3))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from verify.algebra.identities import signs
-from verify.algebra.identities.signs import definite
+from verify.algebra.identities.signs import definite_sign
 
 CONTEXT = flint.fmpq_mpoly_ctx.get(["a", "b", "c"], flint.Ordering.lex)
 MONOMIALS = st.tuples(*[st.integers(0, 4)] * 3)
@@ -21,10 +21,10 @@ MONOMIALS = st.tuples(*[st.integers(0, 4)] * 3)
 class Given:
     """a is positive and b between −1 and 1."""
 
-    def positive(self, place: int) -> bool:
+    def is_positive(self, place: int) -> bool:
         return place == 0
 
-    def bounded(self, place: int) -> bool:
+    def is_bounded(self, place: int) -> bool:
         return place == 1
 
 
@@ -45,7 +45,7 @@ def test_no_value_has_another_sign_than_the_one_that_is_shown(
     terms: dict[tuple[int, ...], int], number: int, seed: int
 ) -> None:
     x = CONTEXT.from_dict(dict(terms)) + number
-    sign, strictly = definite(x, Given()), definite(x, Given(), strict=True)
+    sign, strictly = definite_sign(x, Given()), definite_sign(x, Given(), strict=True)
     assert strictly in (None, sign)
     for point in points(seed):
         assert sign is None or sign * x(*point) >= 0
@@ -54,9 +54,9 @@ def test_no_value_has_another_sign_than_the_one_that_is_shown(
 
 def test_a_square_that_is_written_out_has_its_sign() -> None:
     a, b, c = CONTEXT.gens()
-    assert definite((b + c) ** 2 + 1, Given(), strict=True) == 1
-    assert definite((b + c) ** 2 - 1, Given()) is None
-    assert definite(-(c**4) * (a + 1) - a, Given(), strict=True) == -1
+    assert definite_sign((b + c) ** 2 + 1, Given(), strict=True) == 1
+    assert definite_sign((b + c) ** 2 - 1, Given()) is None
+    assert definite_sign(-(c**4) * (a + 1) - a, Given(), strict=True) == -1
 
 
 def test_that_a_squared_distance_vanishes_somewhere_is_seen_without_a_search(
@@ -65,8 +65,8 @@ def test_that_a_squared_distance_vanishes_somewhere_is_seen_without_a_search(
     """The search for a proof ends in none, too, after thousands of polynomials in six letters."""
     u, v, x, y, z, w = flint.fmpq_mpoly_ctx.get([*"uvxyzw"], flint.Ordering.lex).gens()
     distance = (u - v) ** 2 + (x - y) ** 2 + (z - w) ** 2
-    assert definite(u * (1 + y**2), Given(), strict=True) == 1, "u is positive"
-    monkeypatch.setattr(Given, "positive", lambda *_: False)
-    assert definite(u**2 + 1, Given(), strict=True) == 1
-    monkeypatch.setattr(signs, "_definite", lambda *_: pytest.fail("searched"))
-    assert definite(distance, Given(), strict=True) is None
+    assert definite_sign(u * (1 + y**2), Given(), strict=True) == 1, "u is positive"
+    monkeypatch.setattr(Given, "is_positive", lambda *_: False)
+    assert definite_sign(u**2 + 1, Given(), strict=True) == 1
+    monkeypatch.setattr(signs, "_definite_sign", lambda *_: pytest.fail("searched"))
+    assert definite_sign(distance, Given(), strict=True) is None

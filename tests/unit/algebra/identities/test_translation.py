@@ -8,7 +8,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
 from verify.algebra.formula import parse
 from verify.algebra.identities.field import Point
-from verify.algebra.identities.translation import translated
+from verify.algebra.identities.translation import translate_element
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 
@@ -28,7 +28,7 @@ PLACES = [(Fraction(3, 7), Fraction(5, 4)), (Fraction(9, 4), Fraction(1, 6))]
 @pytest.mark.parametrize("text", TEXTS)
 def test_a_translated_element_has_the_same_value(text: str, tangents: bool) -> None:
     ring, (x,) = embed([parse(text)], ["p", "q"])
-    made = translated(ring.generators_in(x), x, tangents=tangents)
+    made = translate_element(ring.generators_in(x), x, tangents=tangents)
     for p, q in PLACES:
         value = enclose(ring, x, {"p": p, "q": q}, 300)
         assert value is not None

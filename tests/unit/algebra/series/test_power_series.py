@@ -8,7 +8,7 @@ import sympy
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.algebra.series.power_series import Derivatives, Series, expand_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
 from verify.schemes.steps.defect import DefectSeries
@@ -26,7 +26,7 @@ def series(ring: Ring, *coefficients: str) -> Series:
     """Of polynomials in p, q and a."""
     names = {name: ring.variable(name) for name in ("p", "q", "a")}
     values = [ring.zero + eval(text, {}, names) for text in coefficients]  # noqa: S307 - own text
-    return Series.of(ring, values, MOST)
+    return Series.from_coefficients(ring, values, MOST)
 
 
 FUNCTIONS = [
@@ -44,7 +44,7 @@ FUNCTIONS = [
 def test_a_function_at_a_point_is_its_taylor_series(text: str) -> None:
     ring, x = ring_with(text)
     u, v = series(ring, "0", "q", "a*p*q", "p"), series(ring, "0", "p", "-q**2")
-    found = at_moved(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
+    found = expand_at(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
     moved = {P: P + H * Q + H**2 * plain("a*p*q") + H**3 * P, Q: Q + H * P - H**2 * Q**2}
     at = {P: sympy.Rational(3, 7), Q: sympy.Rational(5, 11), plain("a"): sympy.Rational(2, 3)}
     whole = plain(text).xreplace(moved)
@@ -59,7 +59,7 @@ def test_a_point_that_is_elsewhere_at_h_0_is_refused() -> None:
     elsewhere, here = series(ring, "p"), series(ring, "0", "q")
     for u, v in ((elsewhere, here), (here, elsewhere)):
         with pytest.raises(ValueError, match="at h = 0"):
-            at_moved(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
+            expand_at(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
 
 
 def test_series_are_multiplied_and_cut_off() -> None:
@@ -69,7 +69,7 @@ def test_series_are_multiplied_and_cut_off() -> None:
     assert (x * y).coefficients == expected.coefficients
     assert (x - x).coefficients == series(ring).coefficients
     assert (x.times(Fraction(1, 2)) + x.times(Fraction(1, 2))).coefficients == x.coefficients
-    assert x.shifted(1).coefficients == series(ring, "0", "p", "q").coefficients
+    assert x.shift(1).coefficients == series(ring, "0", "p", "q").coefficients
 
 
 @pytest.mark.parametrize("name", ["lie2", "symplectic-euler", "explicit-midpoint"])

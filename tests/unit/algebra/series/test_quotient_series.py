@@ -16,7 +16,7 @@ VARIABLES = ("p", "q", "h")
 
 def series(formula: str, length: int) -> list[sympy.Expr] | None:
     ring, (x,) = embed([parse(formula, VARIABLES)], VARIABLES)
-    found = QuotientSeries(ring, length).of(x)
+    found = QuotientSeries(ring, length).expand(x)
     return None if found is None else [ring.expression(c) for c in found.coefficients]
 
 

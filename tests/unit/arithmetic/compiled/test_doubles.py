@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from verify.arithmetic.compiled import doubles
-from verify.arithmetic.number_system import interpreted
+from verify.arithmetic.number_system import interpret
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
@@ -32,7 +32,7 @@ def chain(scheme: str, n: int) -> tuple[Kernel, list[Any]]:
 def test_a_long_kernel_has_the_bits_of_python(scheme: str) -> None:
     kernel, given = chain(scheme, 4)
     ours = doubles.one_point(kernel.source, kernel.names)
-    in_python = interpreted(kernel.source, "kernel", kernel.names)
+    in_python = interpret(kernel.source, "kernel", kernel.names)
     assert ours(100, *given) == tuple(in_python(100, *given))
     assert doubles.prepared_call(ours, 100, *given)() is None
     assert doubles.prepared_call(in_python, 1, *given)()[0] == 1  # type: ignore[index]
@@ -57,7 +57,7 @@ def test_a_kernel_of_the_plane_has_the_bits_of_python(scheme: str, text: str) ->
     asked = frozenset({"lambda", "lambda_plain", "lambda_max", "mse"})
     kernel = kernel_for(hamiltonian, scheme, _OWN, asked)
     start = [0.05, 0.3, 0.7, *map(float, kernel.start)]
-    in_python = interpreted(kernel.source, "kernel", kernel.names)
+    in_python = interpret(kernel.source, "kernel", kernel.names)
     assert doubles.one_point(kernel.source, kernel.names)(300, *start) == in_python(300, *start)
 
 
@@ -79,13 +79,13 @@ def test_what_is_not_in_the_language_is_left_to_python() -> None:
     source = LOOP.format("expm1(x)")
     with pytest.raises(NotImplementedError):
         doubles.one_point(source, {})
-    in_python = float64._compiled(source, "kernel", {"expm1": math.expm1})
+    in_python = float64._compile_now(source, "kernel", {"expm1": math.expm1})
     assert in_python(2, 0.5) == (2, math.expm1(math.expm1(0.5)))
     for text in ("0.5 / y + x", "1 / (y + y) + x"):
-        at = float64._compiled(f"def f(x, y):\n    return {text}\n", "f", {})
+        at = float64._compile_now(f"def f(x, y):\n    return {text}\n", "f", {})
         assert [at(3.0, 2.0), at(-1.0, -0.0)] == [3.25, -math.inf]
     summed = "def f(x):\n    for k in range(1, 3):\n        x = x + k\n    return x\n"
-    assert float64._compiled(summed, "f", {})(0.5) == 3.5
+    assert float64._compile_now(summed, "f", {})(0.5) == 3.5
 
 
 def test_lanes_that_would_part_are_left_to_one_point_after_another() -> None:

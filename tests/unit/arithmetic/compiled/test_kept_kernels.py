@@ -48,8 +48,8 @@ def compilations(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def call(source: str = SOURCE, fraction: int = BITS, **names: object) -> object:
     """What the kernel gives in a process that has not compiled anything yet."""
-    engine._compiled.cache_clear()
-    return engine.compiled(source, fraction, NAMES | names)(*GIVEN)
+    engine._cached_function.cache_clear()
+    return engine.compile_source(source, fraction, NAMES | names)(*GIVEN)
 
 
 def expected() -> object:
@@ -79,8 +79,8 @@ def test_the_second_process_needs_no_ir(kernels: Path, monkeypatch: pytest.Monke
 
 
 def test_what_is_not_called_is_not_compiled_and_not_kept(kernels: Path) -> None:
-    engine._compiled.cache_clear()
-    engine.compiled(SOURCE, BITS, NAMES)
+    engine._cached_function.cache_clear()
+    engine.compile_source(SOURCE, BITS, NAMES)
     assert not kernels.exists()
 
 
@@ -162,7 +162,7 @@ def test_where_nothing_is_kept_it_is_compiled_every_time(
 def test_the_arithmetic_itself_keeps_its_kernels(kernels: Path, compilations: list[str]) -> None:
     made = fixed.at_bits(112)
     for _ in range(2):
-        engine._compiled.cache_clear()
+        engine._cached_function.cache_clear()
         square = made.compile("def f(x):\n    return x * x\n", "f", {})
         assert made.exact(square(made.number(Fraction(3, 2)))) == Fraction(9, 4)
     assert len(compilations) == 1

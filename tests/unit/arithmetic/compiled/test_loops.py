@@ -59,7 +59,7 @@ def kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_it_gives_and_writes_what_python_does(seed: int) -> None:
     here, there = given(seed), given(seed)
     wanted = everything(*here)
-    assert loops.compiled(everything)(*there) == wanted
+    assert loops.compile_function(everything)(*there) == wanted
     for one, other in zip(here[:3], there[:3], strict=True):
         assert one.tobytes() == other.tobytes()
 
@@ -85,7 +85,7 @@ def _with_a_list(x: Any) -> Any:
 @pytest.mark.parametrize("function", [_unknown, _no_integer, _of_numbers, _with_a_list])
 def test_what_is_not_in_the_language_is_refused(function: Any) -> None:
     with pytest.raises((NotImplementedError, KeyError)):
-        loops.compiled(function)(1.5)
+        loops.compile_function(function)(1.5)
 
 
 def test_it_is_compiled_once_for_each_kind_of_arguments(
@@ -100,11 +100,11 @@ def test_it_is_compiled_once_for_each_kind_of_arguments(
 
     monkeypatch.setattr(native, "machine_code", noting)
     for _ in range(2):  # as two processes would
-        assert loops.compiled(_larger)(1.0, 2.0) == (2.0, 1)
-        assert loops.compiled(_larger)(3, 2) == (3, 0)
+        assert loops.compile_function(_larger)(1.0, 2.0) == (2.0, 1)
+        assert loops.compile_function(_larger)(3, 2) == (3, 0)
     assert len(compilations) == len(list(kernels.iterdir())) == 2
     monkeypatch.setenv(VARIABLE, OFF)
-    assert loops.compiled(_larger)(3, 2) == (3, 0)
+    assert loops.compile_function(_larger)(3, 2) == (3, 0)
     assert len(compilations) == 3
 
 
@@ -114,5 +114,5 @@ def test_a_number_of_its_module_is_in_its_name(
     for share in (0.75, 0.5):
         monkeypatch.setitem(everything.__globals__, "SHARE", share)
         here, there = given(1), given(1)
-        assert loops.compiled(everything)(*there) == everything(*here)
+        assert loops.compile_function(everything)(*there) == everything(*here)
     assert len(list(kernels.iterdir())) == 2

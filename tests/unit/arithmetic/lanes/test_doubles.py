@@ -102,6 +102,6 @@ def test_what_it_cannot_do_is_refused(lines: list[str]) -> None:
 def test_a_kernel_without_sines_asks_for_no_circle(
     there: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(libm_circle, "there", lambda: there)
-    monkeypatch.setattr(libm_circle, "rounded", None)
+    monkeypatch.setattr(libm_circle, "is_available", lambda: there)
+    monkeypatch.setattr(libm_circle, "sin_and_cos", None)
     assert differing(source(*KERNELS["sums and products"]), 5, seed=2) == 0

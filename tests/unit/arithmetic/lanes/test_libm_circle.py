@@ -21,7 +21,8 @@ LINES = {"sin": "        s = sin(x)\n", "cos": "        c = cos(x)\n"}
 QUARTER = 1.5707963267948966
 WITHIN = 0.012  # units in the last place, as is promised
 pytestmark = pytest.mark.skipif(
-    not libm_circle.there(), reason="glibc and fused multiply-add, of which either is missing"
+    not libm_circle.is_available(),
+    reason="glibc and fused multiply-add, of which either is missing",
 )
 
 
@@ -104,8 +105,8 @@ def test_extremes_have_the_bits_of_the_c_library() -> None:
 
 
 def test_without_that_library_lanes_ask_the_one_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(libm_circle, "there", lambda: False)
-    monkeypatch.setattr(libm_circle, "rounded", None)  # nothing may ask for it
+    monkeypatch.setattr(libm_circle, "is_available", lambda: False)
+    monkeypatch.setattr(libm_circle, "sin_and_cos", None)  # nothing may ask for it
     x = arguments(1024, seed=2)
     assert same_bits(in_lanes(x, "sin", "cos"), by_libm(x)).all()
 
@@ -169,7 +170,7 @@ def called(write: Written) -> Callable[[np.ndarray], list[np.ndarray]]:
         word = b.uitofp(value, DOUBLES) if value.type == CONDITIONS else b.bitcast(value, DOUBLES)
         b.store(word, b.gep(out, [constant(k, 64)]), align=8)
     b.ret_void()
-    linked, count = native.linked(native.machine_code(module)), len(values)
+    linked, count = native.link(native.machine_code(module)), len(values)
 
     def call(x: np.ndarray) -> list[np.ndarray]:
         found = np.empty((count, x.size))
@@ -183,7 +184,7 @@ def called(write: Written) -> Callable[[np.ndarray], list[np.ndarray]]:
 
 
 def reduced(b: ir.IRBuilder, x: Value) -> list[Value]:
-    found = libm_circle.reduced(b, x)
+    found = libm_circle.reduce(b, x)
     return [*found.sine, *found.cosine, found.quarter, found.within]
 
 
@@ -236,7 +237,7 @@ def asked(x: np.ndarray) -> dict[str, np.ndarray]:
     """Where it is asked for each function."""
 
     def unsure(b: ir.IRBuilder, x: Value) -> list[Value]:
-        return [each.unsure for each in libm_circle.rounded(b, x).values()]
+        return [each.unsure for each in libm_circle.sin_and_cos(b, x).values()]
 
     return {name: row != 0 for name, row in zip(LINES, called(unsure)(x), strict=True)}
 
@@ -258,7 +259,7 @@ def test_a_sine_near_0_has_its_own_room(monkeypatch: pytest.MonkeyPatch) -> None
 def test_beside_a_power_of_two_nothing_is_sure(high: float) -> None:
     def sure(b: ir.IRBuilder, x: Value) -> list[Value]:
         low = b.fmul(x, splat_double(2.0**-60))
-        return [libm_circle._rounded(b, Pair(x, low), splat_double(1.0))[1]]
+        return [libm_circle._round(b, Pair(x, low), splat_double(1.0))[1]]
 
     beside, other = called(sure)(np.array([high, high * 0.99] * (LANES // 2)))[0][:2]
     assert (beside, other) == (0, 1)

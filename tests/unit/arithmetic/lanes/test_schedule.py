@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from verify.arithmetic.lanes import schedule
-from verify.arithmetic.lanes.schedule import reordered
+from verify.arithmetic.lanes.schedule import reorder
 
 LOOP = """\
 a = p * p
@@ -32,13 +32,13 @@ def after(statements: list[ast.stmt]) -> dict[str, Any]:
 
 def test_another_order_does_the_same() -> None:
     statements = ast.parse(LOOP).body
-    other = reordered(statements)
+    other = reorder(statements)
     assert sorted(map(ast.dump, other)) == sorted(map(ast.dump, statements))
     assert after(other) == after(statements)
 
 
 def test_what_waits_for_a_product_does_not_stand_right_behind_it() -> None:
-    order = [ast.unparse(x) for x in reordered(ast.parse(LOOP).body)]
+    order = [ast.unparse(x) for x in reorder(ast.parse(LOOP).body)]
     assert order.index("d = q * q") < order.index("b = a * q")
 
 
@@ -47,7 +47,7 @@ def test_a_return_stays_where_it_is() -> None:
     guard = statements[1]
     assert isinstance(guard, ast.If)
     guard.body = [ast.Return()]
-    assert reordered(statements)[1] is guard
+    assert reorder(statements)[1] is guard
 
 
 @pytest.mark.parametrize("planted", ["_dependencies"])
@@ -57,7 +57,7 @@ def test_an_order_without_dependencies_is_caught(
     monkeypatch.setattr(schedule, planted, lambda statements: [set() for _ in statements])
     statements = ast.parse(LOOP).body
     try:
-        wrong = after(reordered(statements)) != after(statements)
+        wrong = after(reorder(statements)) != after(statements)
     except NameError:
         wrong = True
     assert wrong

@@ -19,7 +19,7 @@ from tests.examples import drawn
 from tests.paths import vectors
 from tests.unit.runs.test_run_range import duffing_steps
 from verify import arithmetic
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import midpoint_and_radius
 from verify.arithmetic.systems import ball
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
@@ -236,16 +236,16 @@ def test_the_radius_is_what_flint_says_and_not_less() -> None:
 
 def test_a_ball_too_large_is_refused_and_one_too_small_is_around_0() -> None:
     with pytest.raises(OverflowError, match="too large"):
-        middle_and_radius(flint.arb(2) ** 2**40)
+        midpoint_and_radius(flint.arb(2) ** 2**40)
     for tiny in (flint.arb(3) ** -(2**40), -(flint.arb(3) ** -(2**40))):
-        middle, radius = middle_and_radius(tiny)
+        middle, radius = midpoint_and_radius(tiny)
         assert middle == 0
         assert 0 < radius < Fraction(1, 2**100_000)
         assert abs(tiny) < flint.arb(2) ** -100_000
-    middle, radius = middle_and_radius(flint.arb(1, flint.arb(2) ** -(2**40)))
+    middle, radius = midpoint_and_radius(flint.arb(1, flint.arb(2) ** -(2**40)))
     assert middle == 1
     assert 0 < radius < Fraction(1, 2**100_000)
-    assert middle_and_radius(flint.arb(2) ** -1000) == (Fraction(1, 2**1000), 0)
+    assert midpoint_and_radius(flint.arb(2) ** -1000) == (Fraction(1, 2**1000), 0)
 
 
 def test_a_defect_that_is_next_to_nothing_is_no_crash() -> None:

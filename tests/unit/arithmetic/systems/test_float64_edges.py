@@ -57,7 +57,7 @@ def test_what_python_refuses_has_the_bits_of_the_compiled_kernel(
     short, long = kernels(formula, scheme)
     starts = list(product(VALUES, VALUES))
     wanted = [long.function(3, 0.5, p, q, *map(float, long.start)) for p, q in starts]
-    monkeypatch.setattr(float64, "_compiled", None)  # not called
+    monkeypatch.setattr(float64, "_compile_now", None)  # not called
     for (p, q), expected in zip(starts, wanted, strict=True):
         found = short.function(3, 0.5, p, q, *map(float, short.start))
         assert all(map(same, found, expected)), (p, q, found, expected)
@@ -65,7 +65,7 @@ def test_what_python_refuses_has_the_bits_of_the_compiled_kernel(
 
 
 def test_an_orbit_that_escapes_is_told_without_compiling(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(float64, "_compiled", None)
+    monkeypatch.setattr(float64, "_compile_now", None)
     h = Hamiltonian.parse("p**2/2 - exp(q)")
     found = run(h, "lie2", q="10", p="3", step_size="5", steps=12)
     assert found.status == "left range"

@@ -18,9 +18,9 @@ from verify import arithmetic
 from verify.arithmetic.systems import mpfr, mpmath
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.digits_on_demand import measure
-from verify.runs.float64 import bounded
+from verify.runs.float64 import bound_errors
 from verify.runs.run import run
 from verify.scenes.observables import REPORTED
 
@@ -131,7 +131,7 @@ def test_of_stops_in_one_context_those_before_the_first_error_are_kept(
 ) -> None:
     """What a flag remembers is seen when the context is left, some stops later."""
     one, zero = MADE.number(Fraction(1)), MADE.number(Fraction(0))
-    found = alone(MADE.states(counting(bad, worse), 2, 6, [one], [zero]))
+    found = run_alone(MADE.states(counting(bad, worse), 2, 6, [one], [zero]))
     assert found == [[2], [4], [6], [8], [10], [12]][:kept]
 
 
@@ -144,7 +144,8 @@ def test_stops_that_stay_in_range_share_a_context() -> None:
 
     one, zero = MADE.number(Fraction(1)), MADE.number(Fraction(0))
     assert (
-        len(alone(replace(MADE, context=context).states(counting(99), 1, 50, [one], [zero]))) == 50
+        len(run_alone(replace(MADE, context=context).states(counting(99), 1, 50, [one], [zero])))
+        == 50
     )
     assert len(entered) == 1
 
@@ -226,9 +227,9 @@ def test_the_bounds_of_float64_are_those_that_mpmath_would_give(text: str) -> No
         Hamiltonian.parse(text), "lie2", Fraction(3, 2), Fraction(0), 500, Fraction(1, 70)
     )
     first = of.run(arithmetic.get("float64", 17))
-    found = alone(bounded(of, first, {}))
+    found = run_alone(bound_errors(of, first, {}))
     assert found.rigorous
-    by_mpmath = alone(measure(of, "mpmath", 30)).bounds
+    by_mpmath = run_alone(measure(of, "mpmath", 30)).bounds
     for name, (value, bound) in found.values.items():
         true, error = by_mpmath.values[name]
         assert value == first.values[name]

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from tests.helpers.constructed.runs import made_run
-from verify.claims.kinds.comparisons.solution_error import _crest, _Error, _largest, _shown
+from verify.claims.kinds.comparisons.solution_error import _crest, _Error, _format_error, _largest
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 OSCILLATOR = Hamiltonian.parse("p**2/2 + q**2/2")
@@ -53,6 +53,6 @@ def test_a_crest_rises_by_a_quarter_of_the_bend_and_a_valley_by_nothing() -> Non
 
 def test_digits_of_an_error_are_those_that_are_known_or_a_bound() -> None:
     run = made_run("0.01", {})
-    assert _shown(_Error(run, Fraction("0.1234"), Fraction("0.1236"))) == "1.2e-01"
-    assert _shown(_Error(run, Fraction("0.11"), Fraction("0.13"))) == "1e-01"
-    assert _shown(_Error(run, Fraction("0.01"), Fraction("0.13"))) == "1.30e-01"
+    assert _format_error(_Error(run, Fraction("0.1234"), Fraction("0.1236"))) == "1.2e-01"
+    assert _format_error(_Error(run, Fraction("0.11"), Fraction("0.13"))) == "1e-01"
+    assert _format_error(_Error(run, Fraction("0.01"), Fraction("0.13"))) == "1.30e-01"

@@ -67,7 +67,7 @@ def test_the_other_count_is_that_of_the_run_itself_one_step_on(tmp_path: Any) ->
     )  # fmt: skip
     findings = Findings({"made": scene}, {task.key: first})
     with precision():
-        changed, _ = module._shifted(findings, [task], exact, "lie2")
+        changed, _ = module._shift_runs(findings, [task], exact, "lie2")
     for name in ("lambda", "mse"):
         by_shift = Fraction(changed[task.key].values[name].value)
         assert abs(by_shift / Fraction(later.values[name].value) - 1) < Fraction(1, 10**15)

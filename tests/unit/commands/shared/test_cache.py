@@ -19,7 +19,7 @@ RUN = f"run --system pendulum --arithmetic fixed {START}".split()
 def ask(*arguments: str) -> Result:
     """The command in a process that has compiled nothing yet."""
     kernel_for.cache_clear()
-    engine._compiled.cache_clear()
+    engine._cached_function.cache_clear()
     return CliRunner().invoke(cli, arguments)
 
 

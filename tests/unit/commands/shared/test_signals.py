@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands.main import TERMINATED, heard_signals
+from verify.commands.main import TERMINATED, hear_signals
 
 WAIT = 10  # seconds
 
@@ -21,7 +21,7 @@ def signalled_in_a_callback(number: signal.Signals) -> None:
             gc.callbacks.remove(once)
             signal.raise_signal(number)
 
-    with heard_signals():
+    with hear_signals():
         gc.callbacks.append(once)
         gc.collect()
         until = time.monotonic() + WAIT
@@ -56,7 +56,7 @@ def test_what_a_library_makes_of_a_signal_while_it_is_imported_is_that_signal(
         except BaseException as error:
             raise ImportError("initialization failed") from error
 
-    with pytest.raises(raised), heard_signals():
+    with pytest.raises(raised), hear_signals():
         import_library()
 
 
@@ -74,7 +74,7 @@ def imported(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, more: str
     """A module that clears what is raised as it is imported, as gmpy2 does."""
     (folder / f"{folder.name}.py").write_text(SWALLOWS.format(name=name, more=more))
     monkeypatch.syspath_prepend(folder)
-    with heard_signals():
+    with hear_signals():
         __import__(folder.name)
         time.sleep(WAIT)
         raise AssertionError("the signal is lost")
@@ -104,13 +104,13 @@ def test_an_import_that_does_not_end_is_ended(
 
 
 def test_an_error_without_a_signal_stays_that_error() -> None:
-    with pytest.raises(ImportError), heard_signals():
+    with pytest.raises(ImportError), hear_signals():
         raise ImportError
 
 
 def test_handlers_are_given_back() -> None:
     before = [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
-    with heard_signals():
+    with hear_signals():
         pass
     assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)] == before
 
@@ -124,7 +124,7 @@ def test_what_else_is_raised_there_is_told_as_before(monkeypatch: pytest.MonkeyP
         gc.callbacks.remove(once)
         raise ValueError
 
-    with heard_signals():
+    with hear_signals():
         gc.callbacks.append(once)
         gc.collect()
     assert told == [ValueError]

@@ -18,7 +18,7 @@ def test_an_interruption_as_the_folder_is_made_says_what_is_kept(
         path.mkdir()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(tasks, "keepable", made_and_interrupted)
+    monkeypatch.setattr(tasks, "ensure_keepable", made_and_interrupted)
     with pytest.raises(KeyboardInterrupt), tasks.kept_tasks({}, folder):
         pytest.fail("it has begun")
     said = f"interrupted: 0 of 0 tasks are kept in {folder}; the same command goes on from there\n"

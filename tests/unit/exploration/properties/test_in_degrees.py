@@ -35,7 +35,7 @@ def example_of(scheme: str, hamiltonian: str = HENON_HEILES) -> Sample:
     data = {"hamiltonian": hamiltonian, "schemes": [scheme], "grid": grid}
     if Hamiltonian.parse(hamiltonian).time_dependent:
         data["t0"] = "0.7"
-    return Sample.of(scene_from(data, "scene"))
+    return Sample.from_scene(scene_from(data, "scene"))
 
 
 @pytest.fixture(autouse=True)
@@ -169,7 +169,7 @@ def test_a_property_of_the_plane_speaks_of_no_degrees_and_the_other_way_round() 
              "grid": {"steps": 2, "step_sizes": ["0.1"],
                       "initial_values": [{"q": 1, "p": 0}]}}  # fmt: skip
     for name in OF_DEGREES_ALONE:
-        assert not properties.get(name).holds(Sample.of(scene_from(plane, "scene"))), name
+        assert not properties.get(name).holds(Sample.from_scene(scene_from(plane, "scene"))), name
 
 
 def test_a_scheme_is_that_of_the_sample() -> None:

@@ -71,16 +71,16 @@ def slow_clock(sample: Sample, patch: Patch) -> Sample:
     """The flow's own clock runs by half: by it the slopes are twice as large for half the time."""
     from verify.flows import extrapolation
 
-    class Slow(extrapolation.Written):
+    class Slow(extrapolation.ElementCode):
         @classmethod
-        def of(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
-            return super().of(arithmetic, [(ring, 2 * x) for ring, x in slopes], names)
+        def from_elements(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
+            return super().from_elements(arithmetic, [(ring, 2 * x) for ring, x in slopes], names)
 
-        def gragg_rule(self) -> Any:
-            rule = super().gragg_rule()
+        def build_gragg_rule(self) -> Any:
+            rule = super().build_gragg_rule()
             return lambda p, q, t, time, count: rule(p, q, t / 2, time / 2, count)
 
-    patch.setattr(extrapolation, "Written", Slow)
+    patch.setattr(extrapolation, "ElementCode", Slow)
     return sample
 
 
@@ -157,5 +157,5 @@ def test_of_which_h_a_period_is_known(hamiltonian: str, speaks: bool) -> None:
 
 def test_no_order_is_too_high_at_a_time_at_which_more_vanishes() -> None:
     """Scene 314 of seed 1, shrunk: at t = 0 from p = 0 lie3's error is O(h⁵), and O(h⁴) beside."""
-    sample = example_of("lie3", "exp(p) + q*t").at((Fraction(0), Fraction(0)))
+    sample = example_of("lie3", "exp(p) + q*t").with_place((Fraction(0), Fraction(0)))
     assert properties.get("convergence-order").holds(sample)

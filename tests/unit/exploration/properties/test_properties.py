@@ -37,7 +37,7 @@ def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4", t0: s
             "initial_values": [{"q": "1.1", "p": "-0.3"}],
         },
     }
-    return Sample.of(scene_from(data, "scene"))
+    return Sample.from_scene(scene_from(data, "scene"))
 
 
 @pytest.fixture(autouse=True)
@@ -130,7 +130,7 @@ def twice_the_potential(sample: Sample, patch: Patch) -> Sample:
 
     def twice(flow: Any, eta: int) -> TwoForm:
         form = true(flow, eta)
-        return TwoForm.of(form.ring, form.names, lambda a, b: 2 * form.at(a, b))
+        return TwoForm.from_entries(form.ring, form.names, lambda a, b: 2 * form.entry(a, b))
 
     patch.setattr(growth, "potential_of_lie", twice)
     return sample
@@ -157,15 +157,15 @@ def believes_all(sample: Sample, patch: Patch) -> Sample:
     """A checker for which every polynomial is zero."""
     from verify.proof.certificates.checker import Identities
 
-    patch.setattr(Identities, "gaps", lambda _: iter(()))
+    patch.setattr(Identities, "residuals", lambda _: iter(()))
     return sample
 
 
 def an_order_too_high(sample: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.orders import every_hamiltonian as module
 
-    true = module._proved
-    patch.setattr(module, "_proved", lambda *asked: replace(true(*asked), order=4))
+    true = module._prove_every
+    patch.setattr(module, "_prove_every", lambda *asked: replace(true(*asked), order=4))
     return sample
 
 
@@ -173,13 +173,13 @@ def half_a_flow(sample: Sample, patch: Patch) -> Sample:
     """q moves with the flow of H, and p by half of it."""
     from verify.flows import extrapolation
 
-    class Halved(extrapolation.Written):
+    class Halved(extrapolation.ElementCode):
         @classmethod
-        def of(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
+        def from_elements(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
             (ring, dp), of_q = slopes
-            return super().of(arithmetic, [(ring, dp / 2), of_q], names)
+            return super().from_elements(arithmetic, [(ring, dp / 2), of_q], names)
 
-    patch.setattr(extrapolation, "Written", Halved)
+    patch.setattr(extrapolation, "ElementCode", Halved)
     return sample
 
 

@@ -197,7 +197,7 @@ def test_a_property_sees_a_small_error(
 
 def test_an_order_that_is_higher_at_the_initial_value_is_no_violation() -> None:
     """At the equilibrium the step is the flow; beside it the order is that proved."""
-    at_rest = example_of("lie2").at((Fraction(0), Fraction(0)))
+    at_rest = example_of("lie2").with_place((Fraction(0), Fraction(0)))
     assert properties.get("convergence-order").holds(at_rest)
 
 
@@ -211,18 +211,18 @@ def test_a_field_that_wants_many_steps_in_a_short_time_is_left_out() -> None:
     """At such a place no flow is followed for minutes; a gentler one of the same kind is."""
     steep = "2*q**6/7 + 6*cosh(3*p + 3*q)/7 + 9*exp(2*p - 2*q)"
     sample = example_of("lie1", steep)
-    far = sample.at((Fraction(-40, 3), Fraction(-61, 50)))
+    far = sample.with_place((Fraction(-40, 3), Fraction(-61, 50)))
     assert not properties.get("exact-flows").holds(far)
-    assert properties.get("exact-flows").holds(sample.at((Fraction(0), Fraction(0))))
+    assert properties.get("exact-flows").holds(sample.with_place((Fraction(0), Fraction(0))))
 
 
 def test_where_h_is_steep_nothing_is_held_against_what_rounding_and_higher_orders_leave() -> None:
     """Scenes 20360 and 28671 of seed 7, for which the properties once failed."""
     law = example_of("lie4", "2*exp(p - 3*q) - 7*exp(2*p + 3*q)/9")
-    law = replace(law.at((Fraction(5, 3), Fraction(3, 2))), step_size=Fraction(1, 1000))
+    law = replace(law.with_place((Fraction(5, 3), Fraction(3, 2))), step_size=Fraction(1, 1000))
     assert properties.get("growth-laws").holds(law)
     steep = "-2*cosh(3*p - 2*q) + 3*p*q**2/7 - 2*exp(p + 3*q)/7"
-    run = example_of("implicit-midpoint", steep).at((Fraction(-1), Fraction(38, 25)))
+    run = example_of("implicit-midpoint", steep).with_place((Fraction(-1), Fraction(38, 25)))
     assert properties.get("symplectic-schemes").holds(replace(run, step_size=Fraction(1, 1000)))
 
 
@@ -232,7 +232,7 @@ def test_what_more_digits_solve_otherwise_is_not_held_against_the_scheme(
     """Scene 69831 of seed 7, shrunk: 80 digits find a far solution of the second step, 160 do not.
     A determinant that is off where twice as many find another point says nothing."""
     formula = "p**4/2 + 3*q**2 + cosh(3*p + 2*q)/8 + 7*exp(2*p - 3*q)/5"
-    sample = example_of("implicit-midpoint", formula).at((Fraction(-2), Fraction(-1, 5)))
+    sample = example_of("implicit-midpoint", formula).with_place((Fraction(-2), Fraction(-1, 5)))
     sample = replace(sample, step_size=Fraction(1, 10))
     assert properties.get("symplectic-schemes").holds(sample)
     monkeypatch.setattr(mpfr_runs, "_DIGITS", 80)

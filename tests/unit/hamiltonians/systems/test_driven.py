@@ -10,7 +10,7 @@ import pytest
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.calls.given import hamiltonian_from
+from verify.calls.inputs import hamiltonian_from
 from verify.flows.solution import exact_solution, numerical_solution
 from verify.hamiltonians import forced_motion, systems
 from verify.proof.order import prove

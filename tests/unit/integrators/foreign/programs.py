@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from verify.integrators.foreign.called import ForeignFunction, of_command, of_library
+from verify.integrators.foreign.called import ForeignFunction, step_of_command, step_of_library
 from verify.integrators.user_code.number_type import DOUBLE, NumberType
 from verify.integrators.user_code.step import StepError
 
@@ -29,12 +29,12 @@ def program(source: str, *arguments: str) -> Iterator[ForeignFunction]:
 
 @contextmanager
 def command(text: str) -> Iterator[ForeignFunction]:
-    yield from _ended(of_command(text, DOUBLE, 60).function)
+    yield from _ended(step_of_command(text, DOUBLE, 60).function)
 
 
 @contextmanager
 def library_step(target: str, degrees: int, kind: NumberType = DOUBLE) -> Iterator[ForeignFunction]:
-    yield from _ended(of_library(target, degrees, kind, 60).function)
+    yield from _ended(step_of_library(target, degrees, kind, 60).function)
 
 
 def _ended(function: Any) -> Iterator[ForeignFunction]:

@@ -14,7 +14,7 @@ from tests.paths import ROOT
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.foreign import process
-from verify.integrators.foreign.called import is_library, of_command, of_library
+from verify.integrators.foreign.called import is_library, step_of_command, step_of_library
 from verify.integrators.results import Claims, Finding
 from verify.integrators.user_code.number_type import DOUBLE, NumberType, type_of
 from verify.verdict import Verdict
@@ -66,7 +66,7 @@ NOISE = {"double": 1e-11, "long-double": 1e-14, "float128": 1e-26, "double-doubl
 
 def checked(path: str, name: str, claims: Claims, formula: str = "p**2/2 - cos(q)") -> Finding:
     kind: NumberType = type_of(name)
-    step = of_library(f"{path}:step", 1, kind, 60)
+    step = step_of_library(f"{path}:step", 1, kind, 60)
     return judged(step, claims, hamiltonian=formula)
 
 
@@ -121,9 +121,9 @@ void first_half_only(int n, double t, double h, double *p, double *q)
 def test_a_library_calls_its_own_step_and_not_glibcs(tmp_path: Path) -> None:
     path, harmonic = library(tmp_path, "own.c", CALLS_ITSELF), Hamiltonian.parse("(p**2 + q**2)/2")
     claims = Claims(order=1, symplectic=True)
-    found = judged(of_library(f"{path}:twice", 1, DOUBLE, 60), claims, hamiltonian=harmonic)
+    found = judged(step_of_library(f"{path}:twice", 1, DOUBLE, 60), claims, hamiltonian=harmonic)
     assert (found.verdict, found.convergence_order) == (Verdict.MEASURED, 1), found.reason
-    half = of_library(f"{path}:first_half_only", 1, DOUBLE, 60)
+    half = step_of_library(f"{path}:first_half_only", 1, DOUBLE, 60)
     assert judged(half, claims, hamiltonian=harmonic).verdict is Verdict.REFUTED
 
 
@@ -138,9 +138,9 @@ def test_a_library_is_loaded_beside_a_sanitizer(
     path = library(tmp_path, "step.c", OF_C["double"], "-lm")
     monkeypatch.setenv("LD_PRELOAD", sanitizer)
     monkeypatch.setenv("ASAN_OPTIONS", "detect_leaks=0")
-    step = of_library(f"{path}:step", 1, DOUBLE, 60)
+    step = step_of_library(f"{path}:step", 1, DOUBLE, 60)
     monkeypatch.delenv("LD_PRELOAD")
-    assert step.at((0.5, 0.25), 0.0, 0.0) == (0.5, 0.25)
+    assert step.evaluate((0.5, 0.25), 0.0, 0.0) == (0.5, 0.25)
 
 
 HENON = """
@@ -169,12 +169,12 @@ def test_a_step_in_fortran_is_judged_in_two_degrees_of_freedom(tmp_path: Path) -
     energy = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
     exact, claims = Hamiltonian.parse(energy), Claims(order=2, symplectic=True)
     path = library(tmp_path, "henon.f90", HENON)
-    found = judged(of_library(f"{path}:step", 2, DOUBLE, 60), claims, hamiltonian=exact)
+    found = judged(step_of_library(f"{path}:step", 2, DOUBLE, 60), claims, hamiltonian=exact)
     assert found.verdict is Verdict.MEASURED, found.reason
     assert (found.convergence_order, found.symplectic) == (2, True)
     wrong = HENON.replace("q = q + h*p", "q = q + h*p; p(1) = p(1) + h**3*q(2)")
     path = library(tmp_path, "wrong.f90", wrong)
-    found = judged(of_library(f"{path}:step", 2, DOUBLE, 60), claims, hamiltonian=exact)
+    found = judged(step_of_library(f"{path}:step", 2, DOUBLE, 60), claims, hamiltonian=exact)
     assert found.verdict is Verdict.REFUTED
     assert found.symplectic is False
 
@@ -196,7 +196,7 @@ def test_a_compiled_module_of_fortran_stays_in_the_folder_of_its_source(
 
 def program(mode: str, claims: Claims = Claims(order=2)) -> Finding:  # noqa: B008 - it is frozen
     command = shlex.join([sys.executable, BAD, mode])
-    return judged(of_command(command, DOUBLE, 60), claims)
+    return judged(step_of_command(command, DOUBLE, 60), claims)
 
 
 @pytest.mark.left_to_ci
@@ -261,7 +261,7 @@ def test_a_program_that_misbehaves_at_times_is_undecided(mode: str, said: str) -
 
 
 def test_no_process_is_left_behind() -> None:
-    step = of_command(shlex.join([sys.executable, BAD, "right"]), DOUBLE, 60)
+    step = step_of_command(shlex.join([sys.executable, BAD, "right"]), DOUBLE, 60)
     assert judged(step, Claims(order=2)).verdict is Verdict.MEASURED
     own = step.function.program  # type: ignore[attr-defined]
     pid = own._running.pid
@@ -279,22 +279,22 @@ def test_no_process_is_left_behind() -> None:
 )
 def test_a_command_that_is_none_is_told(command: str, problem: str) -> None:
     with pytest.raises(InputError, match=problem):
-        of_command(command, DOUBLE, 60)
+        step_of_command(command, DOUBLE, 60)
 
 
 def test_a_library_that_does_not_load_is_told(tmp_path: Path) -> None:
     junk = tmp_path / "junk.so"
     junk.write_text("no library")
     with pytest.raises(InputError, match="does not load"):
-        of_library(f"{junk}:step", 1, DOUBLE, 60)
+        step_of_library(f"{junk}:step", 1, DOUBLE, 60)
     with pytest.raises(InputError, match="no file"):
-        of_library(f"{tmp_path}/none.so:step", 1, DOUBLE, 60)
+        step_of_library(f"{tmp_path}/none.so:step", 1, DOUBLE, 60)
     path = library(tmp_path, "step.c", OF_C["double"], "-lm")
     with pytest.raises(InputError, match="there is no stop in it; is step meant"):
-        of_library(f"{path}:stop", 1, DOUBLE, 60)
+        step_of_library(f"{path}:stop", 1, DOUBLE, 60)
     for target in (path, f"{path}:", f"{path}:a-b"):
         with pytest.raises(InputError, match=r"LIB\.so:SYMBOL"):
-            of_library(target, 1, DOUBLE, 60)
+            step_of_library(target, 1, DOUBLE, 60)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from tests.unit.integrators.foreign.programs import HERE, IN_STEP, THERE, program, python, said
 from verify.errors import InputError
 from verify.integrators.foreign import process
-from verify.integrators.foreign.called import of_command
+from verify.integrators.foreign.called import step_of_command
 from verify.integrators.user_code.number_type import DOUBLE
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="Linux gives orphans to the guard")
@@ -81,9 +81,9 @@ def test_a_program_and_its_daemon_end_where_we_are_killed(tmp_path: Path) -> Non
     file = tmp_path / "pid"
     ours = (
         "import os, signal, sys\n"
-        "from verify.integrators.foreign.called import of_command\n"
+        "from verify.integrators.foreign.called import step_of_command\n"
         "from verify.integrators.user_code.number_type import DOUBLE\n"
-        "step = of_command(sys.argv[1], DOUBLE, 60).function\n"
+        "step = step_of_command(sys.argv[1], DOUBLE, 60).function\n"
         "step(0.5, 0.25, 0.0, 0.125)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
@@ -113,7 +113,7 @@ def test_a_program_that_the_system_does_not_start_is_told(tmp_path: Path) -> Non
     broken.write_text("no program of any kind")
     broken.chmod(0o755)
     with pytest.raises(InputError, match="does not start: Exec format error"):
-        of_command(str(broken), DOUBLE, 60)
+        step_of_command(str(broken), DOUBLE, 60)
 
 
 def test_no_file_or_process_of_ours_is_left_open() -> None:

@@ -30,9 +30,11 @@ FLOATS = st.floats(-1e6, 1e6, allow_nan=False).map(Fraction)
 @given(FLOATS, FLOATS, st.sampled_from(sorted(TYPES)))
 def test_what_is_written_is_read_back(x: Fraction, y: Fraction, name: str) -> None:
     kind = TYPES[name]
-    made = [kind.rounded(x + y / 3**40), kind.rounded(y)]
+    made = [kind.round_number(x + y / 3**40), kind.round_number(y)]
     assert read_digits(digits_of(made, kind), 2, kind) == made
-    assert [kind.rounded(Fraction(x)) for x in numbers_of(line_of(made, kind), 2, kind)] == made
+    assert [
+        kind.round_number(Fraction(x)) for x in numbers_of(line_of(made, kind), 2, kind)
+    ] == made
 
 
 @given(FLOATS, FLOATS, st.sampled_from([DOUBLE, LONG_DOUBLE, FLOAT128]))
@@ -41,8 +43,8 @@ def test_a_rounded_number_is_the_nearest_of_its_bits(
 ) -> None:
     assert isinstance(kind, type(DOUBLE))
     exact = x + y / 3**40
-    made = kind.rounded(exact)
-    assert kind.rounded(made) == made
+    made = kind.round_number(exact)
+    assert kind.round_number(made) == made
     if exact:
         assert abs(made - exact) <= abs(exact) * Fraction(1, 2**kind.bits) + Fraction(1, 2**1074)
 
@@ -83,7 +85,7 @@ def test_another_count_of_numbers_is_told(line: str, kind: object) -> None:
 def test_what_is_no_number_of_the_type_is_rounded(x: Fraction, y: Fraction) -> None:
     exact = x + y / 3**40
     for kind in (DOUBLE, LONG_DOUBLE, FLOAT128):
-        assert read_digits(digits_of([exact], kind), 1, kind) == [kind.rounded(exact)]
+        assert read_digits(digits_of([exact], kind), 1, kind) == [kind.round_number(exact)]
 
 
 @pytest.mark.parametrize("power", [-1000, -1, 0, 1, 52])

@@ -143,11 +143,11 @@ def test_a_program_that_always_fails_is_not_started_for_ever() -> None:
 
 def test_an_alarm_amid_a_call_does_not_shift_the_answers() -> None:
     """The answer that comes too late is not that to the next line."""
-    from verify.integrators.user_code.step import StepError, within
+    from verify.integrators.user_code.step import StepError, limit_time
 
     slow = IN_STEP.replace("    print", "    time.sleep(q if q > 1 else 0)\n    print")
     with program("import time\n" + slow) as function:
         assert function(*HERE) == THERE
-        with pytest.raises(StepError, match="too slow"), within(0.3, "too slow"):
+        with pytest.raises(StepError, match="too slow"), limit_time(0.3, "too slow"):
             function(0.5, 1.5, 0.0, 0.125)
         assert function(*HERE) == THERE

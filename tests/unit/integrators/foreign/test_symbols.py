@@ -7,7 +7,7 @@ import pytest
 from tests.helpers.programs.compilers import library
 from tests.unit.integrators.foreign.programs import HERE, library_step, said
 from verify.errors import InputError
-from verify.integrators.foreign.called import functions_of, of_library, prototype
+from verify.integrators.foreign.called import functions_of, prototype, step_of_library
 from verify.integrators.user_code.number_type import (
     DOUBLE,
     DOUBLE_DOUBLE,
@@ -45,7 +45,7 @@ BY_POINTER = "void step(int *n, double *t, double *h, double *p, double *q) { p[
 
 def refused(path: str, symbol: str) -> str:
     with pytest.raises(InputError) as caught:
-        of_library(f"{path}:{symbol}", 1, DOUBLE, 60)
+        step_of_library(f"{path}:{symbol}", 1, DOUBLE, 60)
     assert f"wanted: void {symbol}{TAKES}" in str(caught.value)
     return caught.value.problem
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify.integrators.measures.order import PlaceOrder, Tail, _judged, _row, _settled
+from verify.integrators.measures.order import PlaceOrder, Tail, _row, _select_slowest, _settle_power
 from verify.integrators.measures.slopes import Run, Slopes, on_their_way
 from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
@@ -21,7 +21,7 @@ def judged(*errors):
     step = SimpleNamespace(names=("p", "q"))
     rows = [[(h, abs(e(h)), 1e-16) for h in STEPS] for e in errors]
     below = [[e(h) < 0 for h in STEPS] for e in errors]
-    return _judged(step, PLACE, rows, below, [0] * len(STEPS), STEPS, "floats", 0.0)
+    return _select_slowest(step, PLACE, rows, below, [0] * len(STEPS), STEPS, "floats", 0.0)
 
 
 def settled(h):
@@ -89,7 +89,7 @@ ABOVE, BELOW = Run(6, 1.0, 0.5, 5), Run(1, 0.25, 0.125, 3)
 
 def left(slopes, rows=ROWS, counts=(0,) * 6):
     """The power and the tail, of floats at a place of two units."""
-    power, _, tail = _settled(slopes, rows, counts, (1.0,) * 6, "floats", 2.0)
+    power, _, tail = _settle_power(slopes, rows, counts, (1.0,) * 6, "floats", 2.0)
     return power, tail
 
 

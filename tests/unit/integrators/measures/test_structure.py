@@ -17,7 +17,7 @@ def place(z: tuple[float, float], units: tuple[float, float], t: float = 0.0) ->
 
 
 def followed(step: Any, *places: Any, moving: bool = True) -> dict[str, float]:
-    return _farthest(SimpleNamespace(names=NAMES, at=step, moving=moving), places)
+    return _farthest(SimpleNamespace(names=NAMES, evaluate=step, moving=moving), places)
 
 
 def test_a_force_that_grows_in_time_is_read_at_the_time_of_each_step() -> None:
@@ -76,4 +76,4 @@ def test_what_the_user_allows_is_kept_only_where_so_little_would_be_seen(
     here, clear = SimpleNamespace(defect=defect, blur=blur), SimpleNamespace(defect=0.0, blur=1e-12)
     for readings in ((here,), (here, clear), (clear, here)):
         structure = Structure("floats", readings)  # type: ignore[arg-type]
-        assert structure.kept(Fraction(1, 1000)) is kept
+        assert structure.is_kept(Fraction(1, 1000)) is kept

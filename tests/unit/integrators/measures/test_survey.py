@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.integrators.measures.survey import _changed, unit_of_map
+from verify.integrators.measures.survey import _has_changed, unit_of_map
 from verify.integrators.user_code.loading import callee_from
 
 
@@ -16,10 +16,10 @@ def test_one_entry_that_moves_by_a_tenth_of_the_largest_is_a_change() -> None:
         for column in (0, 1):
             moved = [list(x) for x in still]
             moved[row][column] += 0.3
-            assert _changed(still, moved)
+            assert _has_changed(still, moved)
             moved[row][column] = still[row][column] + 0.1
-            assert not _changed(still, moved)
-    assert not _changed(still, still)
+            assert not _has_changed(still, moved)
+    assert not _has_changed(still, still)
 
 
 @pytest.mark.parametrize("unit", ["1/1000", "1", "300"])

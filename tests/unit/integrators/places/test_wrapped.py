@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.places.wrapped import periods_of, unwrapped, wrapped
+from verify.integrators.places.wrapped import find_wrapped_periods, periods_of, unwrap
 
 PI = Fraction(math.pi)
 
@@ -45,12 +45,12 @@ def test_a_step_is_compared_modulo_what_it_reduces_and_nothing_else() -> None:
         periods_of(Hamiltonian.parse("p**2/2 - cos(q)")),
     )
     flow, h = (Fraction(1), Fraction(7)), Fraction(1, 10**6)
-    assert wrapped([(flow, flow)], pendulum, h) == ()
+    assert find_wrapped_periods([(flow, flow)], pendulum, h) == ()
     for k in (-2, -1, 1):
         ends = [((flow[0], flow[1] + k * period), flow), (flow, flow)]
-        assert wrapped(ends, pendulum, h) == (0, period)
+        assert find_wrapped_periods(ends, pendulum, h) == (0, period)
     for off in (Fraction(1, 50), Fraction(1, 2), period / 2):
-        assert wrapped([((flow[0], flow[1] + period + off), flow)], pendulum, h) == ()
-    assert wrapped([((flow[0] + period, flow[1]), flow)], pendulum, h) == ()
-    assert unwrapped(flow[1] + 3 * period, Fraction(6), period) == flow[1]
-    assert unwrapped(flow[1], Fraction(6), Fraction(0)) == flow[1]
+        assert find_wrapped_periods([((flow[0], flow[1] + period + off), flow)], pendulum, h) == ()
+    assert find_wrapped_periods([((flow[0] + period, flow[1]), flow)], pendulum, h) == ()
+    assert unwrap(flow[1] + 3 * period, Fraction(6), period) == flow[1]
+    assert unwrap(flow[1], Fraction(6), Fraction(0)) == flow[1]

@@ -12,8 +12,8 @@ from tests.helpers.tables.mistakes import judged, outcome, places, right_tables,
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.tables import kinds
-from verify.integrators.tables.told import TableClaim
-from verify.schemes.printed.asked import Asked
+from verify.integrators.tables.table_claim import TableClaim
+from verify.schemes.printed.condition_set import ConditionSet
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
@@ -358,7 +358,7 @@ def test_a_wrong_digit_of_order_2_says_how_far_off_it_is_and_below_which_h_it_is
     cost = found["digits"].cost
     assert cost is not None
     assert cost.below == pytest.approx(0.75e-10 * 6, rel=1e-3, abs=0)
-    assert "below h = 4.5e-10 it is wrong digits that make the error" in str(cost.said)
+    assert "below h = 4.5e-10 it is wrong digits that make the error" in str(cost.sentence)
 
 
 @pytest.mark.left_to_ci
@@ -588,7 +588,7 @@ def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds(
     a[2][1] = "0.0591751719536137"
     counts: list[int] = []
 
-    def counted(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
+    def counted(numbers: PrintedNumbers, asked: ConditionSet, order: int) -> Judged:
         counts.append(len(asked.equations))
         return judge(numbers, asked, order)
 

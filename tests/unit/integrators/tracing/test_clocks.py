@@ -23,7 +23,7 @@ def series(order: int, off: Fraction, at: int) -> tuple[Series, Series]:
         terms = [field.power(n)[place] / math.factorial(n) for n in range(order + 1)]
         if at <= order:
             terms[at] = terms[at] * flint.fmpq((1 + off).numerator, off.denominator)
-        made.append(Series.of(field.ring, terms, MOST))
+        made.append(Series.from_coefficients(field.ring, terms, MOST))
     return made[0], made[1]
 
 

@@ -12,9 +12,9 @@ import pytest
 
 from verify.integrators.traced import domain_of
 from verify.integrators.tracing.dual import Duals
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.number import Kind, UntraceableError
-from verify.integrators.tracing.trace import Tape, in_order, replayed, through
+from verify.integrators.tracing.trace import Tape, evaluate_nodes, in_order, replay_in
 
 MP = mpmath.mp.clone()
 MP.dps = 60
@@ -120,7 +120,7 @@ def test_values_and_derivatives_are_those_of_mpmath(name: str) -> None:
     function, by_mpmath, at = {**SMOOTH, **BY_COMPARISONS}[name]
     kind, x = Duals(), MP.mpf(Fraction(at).numerator) / Fraction(at).denominator
     with kind.running():
-        found = copied(function, kind)(kind.state(Fraction(at), Fraction(0))[0])
+        found = copy_function(function, kind)(kind.state(Fraction(at), Fraction(0))[0])
     assert abs(digits(found.value) - by_mpmath(x)) < 1e-50
     assert abs(digits(found.slopes[0]) - MP.diff(by_mpmath, x)) < 1e-20
 
@@ -129,14 +129,14 @@ def test_values_and_derivatives_are_those_of_mpmath(name: str) -> None:
 def test_a_trace_is_the_same_function(name: str) -> None:
     function, by_mpmath, at = SMOOTH[name]
     tape, kind = Tape(), Duals()
-    node = copied(function, tape)(tape.symbol("x")).node
+    node = copy_function(function, tape)(tape.symbol("x")).node
     tape.check()
     assert tape.outside.texts == []
     assert not tape.rounded
     x = MP.mpf(Fraction(at).numerator) / Fraction(at).denominator
     with kind.running():
         symbols = {"x": kind.rational(Fraction(at))}
-        made = through(in_order(node), replayed(kind, symbols))
+        made = evaluate_nodes(in_order(node), replay_in(kind, symbols))
     assert abs(digits(made[node.number].value) - by_mpmath(x)) < 1e-50
 
 
@@ -144,7 +144,7 @@ def test_a_trace_is_the_same_function(name: str) -> None:
 def test_symbols_are_not_compared(name: str) -> None:
     tape = Tape()
     with pytest.raises(UntraceableError, match="compares"):
-        copied(BY_COMPARISONS[name][0], tape)(tape.symbol("x"))
+        copy_function(BY_COMPARISONS[name][0], tape)(tape.symbol("x"))
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_symbols_are_not_compared(name: str) -> None:
 )
 def test_a_domain_is_said_with_it(function: Callable[..., Any], where: str) -> None:
     tape = Tape()
-    copied(function, tape)(tape.symbol("x"))
+    copy_function(function, tape)(tape.symbol("x"))
     assert domain_of(tape).texts == (where,)
 
 
@@ -171,7 +171,7 @@ def test_what_is_asked_of_plain_numbers_still_counts(kind: Kind) -> None:
         return x
 
     with Duals().running():
-        assert (copied(stages, kind)(kind.rational(Fraction(1)))).known() == 6
+        assert (copy_function(stages, kind)(kind.rational(Fraction(1)))).exact_value() == 6
 
 
 @pytest.mark.parametrize("angle", range(-175, 180, 10))
@@ -185,5 +185,5 @@ def test_angles_of_all_quadrants_are_in_order(angle: int) -> None:
     node = (tape.symbol("y").arctan2(tape.symbol("x"))).node
     with kind.running():
         symbols = {"x": kind.rational(x), "y": kind.rational(y)}
-        traced = through(in_order(node), replayed(kind, symbols))[node.number]
+        traced = evaluate_nodes(in_order(node), replay_in(kind, symbols))[node.number]
         assert abs(traced.value - found.value) < 1e-55

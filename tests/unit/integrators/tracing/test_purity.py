@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.trace import Tape
 
 
 def impure(function: Callable[..., Any]) -> list[str]:
     tape = Tape()
-    copied(function, tape)(tape.symbol("p"), tape.symbol("q"))
+    copy_function(function, tape)(tape.symbol("p"), tape.symbol("q"))
     return tape.outside.texts
 
 
@@ -57,7 +57,7 @@ def test_copies_are_of_one_world() -> None:
 
     tape = Tape()
     p, q = tape.symbol("p"), tape.symbol("q")
-    assert copied(step, tape)(p, q)[0] is p
+    assert copy_function(step, tape)(p, q)[0] is p
     assert tape.outside.texts == ["table is changed"]
     assert table == []
 

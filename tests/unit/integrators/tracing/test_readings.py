@@ -9,7 +9,7 @@ import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.clocks import misread
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.readings import NoReadingsError, Readings
 from verify.integrators.tracing.trace import Node, Tape
 
@@ -20,7 +20,7 @@ HALF = Fraction(1, 2)
 def traced(step: Callable[..., Any]) -> tuple[Node, Node]:
     tape = Tape()
     p, q, t, h = (tape.symbol(name) for name in "pqth")
-    x, y = copied(step, tape)(p, q, t, h)
+    x, y = copy_function(step, tape)(p, q, t, h)
     return x.node, y.node
 
 
@@ -52,11 +52,11 @@ def test_the_stages_of_a_runge_kutta_method() -> None:
 
 def test_a_step_is_mended_at_its_readings_and_nowhere_else() -> None:
     readings = Readings(FORCED, *traced(midpoint))
-    again = Readings(FORCED, *readings.mended())
+    again = Readings(FORCED, *readings.with_due_times())
     assert [read.time for read in again.reads] == [read.due for read in readings.reads]
     (said,) = misread(FORCED, *traced(midpoint), 1)
     assert "it is of order 2 with H read at t + h/2 in place of t + h" in said
-    assert misread(FORCED, *readings.mended(), 2) == []
+    assert misread(FORCED, *readings.with_due_times(), 2) == []
 
 
 def test_what_has_that_order_anyhow_is_told_nothing() -> None:

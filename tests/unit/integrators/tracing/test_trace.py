@@ -14,7 +14,7 @@ from tests.helpers.programs import user_steps as own_steps
 from verify.algebra.formula import symbol
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.number import UntraceableError, constant, reading
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import _Peeler, shears_of, traced_map
@@ -26,7 +26,7 @@ P, Q, H = symbol("p"), symbol("q"), symbol("h")
 
 def traced(function: Callable[..., Any]) -> tuple[Any, Any, Tape]:
     tape = Tape()
-    p, q = copied(function, tape)(*(tape.symbol(name) for name in "pqh"))
+    p, q = copy_function(function, tape)(*(tape.symbol(name) for name in "pqh"))
     return (p * 1).node, (q * 1).node, tape
 
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 
 import pytest
 
-from verify.integrators.user_code.step import StepError, within
+from verify.integrators.user_code.step import StepError, limit_time
 
 
 def busy(seconds: float) -> None:
@@ -63,7 +63,7 @@ def seconds_until(slow: Callable[[], None], problem: str) -> float:
 @pytest.mark.parametrize("first", [in_a_finalizer, in_a_collection, in_a_bare_except])
 def test_an_alarm_that_is_dropped_rings_again(first: Callable[[], None]) -> None:
     def slow() -> None:
-        with within(0.1, "it takes too long"):
+        with limit_time(0.1, "it takes too long"):
             first()
             busy(10)
 
@@ -73,12 +73,12 @@ def test_an_alarm_that_is_dropped_rings_again(first: Callable[[], None]) -> None
 @pytest.mark.left_to_ci
 def test_an_outer_limit_goes_on_after_an_inner_one() -> None:
     def inner() -> None:
-        with within(0.05, "inner"):
+        with limit_time(0.05, "inner"):
             in_a_finalizer()
             busy(10)
 
     def outer() -> None:
-        with within(0.3, "outer"):
+        with limit_time(0.3, "outer"):
             for _ in range(100):
                 seconds_until(inner, "inner")
 
@@ -89,15 +89,15 @@ def test_an_outer_limit_goes_on_after_an_inner_one() -> None:
 def test_however_little_time_is_left_an_alarm_is_a_step_error(seconds: float) -> None:
     """As where a call begins that has some microseconds left of all the time that there is."""
     for _ in range(3):
-        with suppress(StepError), within(seconds, "it takes too long"):
+        with suppress(StepError), limit_time(seconds, "it takes too long"):
             pass
-        with pytest.raises(StepError, match="too long"), within(seconds, "it takes too long"):
+        with pytest.raises(StepError, match="too long"), limit_time(seconds, "it takes too long"):
             busy(10)
 
 
 def test_no_alarm_rings_after_the_end() -> None:
     def slow() -> None:
-        with within(0.05, "it takes too long"):
+        with limit_time(0.05, "it takes too long"):
             busy(10)
 
     seconds_until(slow, "it takes too long")

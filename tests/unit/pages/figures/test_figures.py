@@ -10,8 +10,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from tests.unit.pages.test_page import page_of, real
-from verify.pages.figures.axes import decades
-from verify.pages.figures.over_time_figure import merged
+from verify.pages.figures.axes import set_decade_ticks
+from verify.pages.figures.over_time_figure import merge_buckets
 from verify.pages.page import render
 from verify.scenes.results.run import SeriesPoint
 
@@ -62,8 +62,8 @@ def test_neighbouring_buckets_are_put_together_with_their_extremes() -> None:
         SeriesPoint(first=i, last=i, delta_j=(f"-{i}e-9", f"{i}e-9"), lam=("0", str(i)))
         for i in range(1, 6)
     ]
-    assert merged(points, 5) == points
-    whole = merged(points, 1)
+    assert merge_buckets(points, 5) == points
+    whole = merge_buckets(points, 1)
     assert whole == [SeriesPoint(first=1, last=5, delta_j=("-5e-9", "5e-9"), lam=("0", "5"))]
 
 
@@ -74,7 +74,7 @@ def test_neighbouring_buckets_are_put_together_with_their_extremes() -> None:
 def test_a_tick_of_a_logarithmic_axis_says_where_it_stands(low: float, high: float) -> None:
     axes = Figure().subplots()
     axes.set_ylim(low, high)
-    decades(axes.yaxis)
+    set_decade_ticks(axes.yaxis)
     axes.figure.canvas.draw()
     digits = {ord(a): b for a, b in zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-", strict=True)}
     labels = [label.get_text() for label in axes.get_yticklabels()]

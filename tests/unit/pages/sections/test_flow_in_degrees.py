@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.constructed.flows import circle, exact, flow, image, outline
 from verify.errors import InputError
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.orbit_points_figure import drawn
+from verify.pages.figures.orbit_points_figure import select_points
 from verify.pages.plotting import plot_flow
 from verify.pages.sections.flow_finding import finding, findings
 from verify.pages.sections.scene.flow import SECTION
@@ -98,7 +98,7 @@ def test_points_of_an_orbit_that_escapes_do_not_blow_up_the_picture() -> None:
         coordinate="q1", value="0", rising=True, draw=("q2", "p2"), step_size="0.1", steps=9,
         time="0.9", sections=(sections,),
     )  # fmt: skip
-    points, outside = drawn(result)
+    points, outside = select_points(result)
     assert outside == 1
     assert np.nanmax(np.abs(np.concatenate(points[0]))) <= 1
     assert not np.isnan(points[0][0]).any()

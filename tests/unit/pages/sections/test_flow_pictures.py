@@ -9,7 +9,7 @@ from matplotlib.transforms import Bbox
 from tests.helpers.constructed.flows import FAILED, circle, exact, flow, image, outline, spiral
 from tests.unit.pages.test_page import scene
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.label_place import place_of
+from verify.pages.figures.label_place import choose_place
 from verify.pages.sections.scene import flow as section
 from verify.scenes.results.regions import FlowResult
 
@@ -74,9 +74,9 @@ def test_an_outline_that_is_drawn_out_is_said_to_be() -> None:
 def test_a_label_keeps_clear_of_what_is_drawn_and_of_other_labels() -> None:
     named = np.array([[40.0, 40.0], [60.0, 60.0]])
     room = Bbox([[0, 0], [100, 100]])
-    free = place_of((20, 10), named, named, [], room)
+    free = choose_place((20, 10), named, named, [], room)
     assert free.y0 >= 60, "above, where nothing else is"
     above = np.column_stack([np.linspace(0, 100, 50), np.full(50, 68.0)])
-    moved = place_of((20, 10), named, np.vstack([named, above]), [], room)
+    moved = choose_place((20, 10), named, np.vstack([named, above]), [], room)
     assert not moved.y0 < 68 < moved.y1
-    assert place_of((20, 10), named, named, [free], room).bounds != free.bounds
+    assert choose_place((20, 10), named, named, [free], room).bounds != free.bounds

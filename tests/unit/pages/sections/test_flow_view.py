@@ -12,7 +12,7 @@ from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, claim, proof, report, run, scene
 from verify.pages.figures.flow_figure import draw_flow
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.svg import styled
+from verify.pages.figures.svg import page_style
 from verify.pages.page import render
 from verify.pages.text.typography import number
 from verify.scenes.paper_figures import PaperFigure
@@ -147,7 +147,7 @@ def test_names_that_are_markup_stay_text() -> None:
 
 @pytest.mark.parametrize("made", [TWO, THREE, flow(image(), FAILED)])
 def test_all_panels_have_equal_axes_and_one_scale(made: FlowResult) -> None:
-    with styled():
+    with page_style():
         drawn = draw_flow(grid_of(made))
         drawn.canvas.draw()
     assert len({axes.get_xlim() for axes in drawn.axes}) == 1
@@ -182,7 +182,7 @@ def test_of_many_numbers_of_steps_a_few_are_drawn_and_it_is_said() -> None:
 
 def test_the_image_is_at_its_place() -> None:
     """The circle about (1, 0) of radius 1, read back from the path that is drawn."""
-    with styled():
+    with page_style():
         (axes,) = draw_flow(grid_of(flow(image(steps=100)))).axes
     before, after = (axes.patches[i].get_path().get_extents() for i in (0, 1))
     assert before.extents == pytest.approx((-1, -1, 1, 1), abs=1e-3)

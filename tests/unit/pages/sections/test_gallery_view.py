@@ -18,7 +18,7 @@ from tests.unit.pages.text.test_markdown import (
 from verify.pages.figures.gallery_figure import marks
 from verify.pages.markdown.page import render as render_text
 from verify.pages.page import render
-from verify.pages.sections.gallery_finding import findings, power
+from verify.pages.sections.gallery_finding import findings, format_power
 from verify.scenes.results.exploration import Gallery, GalleryScene
 
 
@@ -112,9 +112,9 @@ def test_a_value_is_told_in_words(measure: str, value: float, said: str) -> None
 
 
 def test_a_mantissa_that_rounds_up_to_ten_is_one() -> None:
-    assert power(4.9999).replace("\xa0", " ") == "1.0 × 10⁵"
-    assert power(1.9999) == "100"
-    assert power(-3.9999).replace("\xa0", " ") == "1.0 × 10⁻⁴"
+    assert format_power(4.9999).replace("\xa0", " ") == "1.0 × 10⁵"
+    assert format_power(1.9999) == "100"
+    assert format_power(-3.9999).replace("\xa0", " ") == "1.0 × 10⁻⁴"
 
 
 # -- Λ in float64 ---------------------------------------------------------------------------------

@@ -9,9 +9,9 @@ import pytest
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_separation_view import text_of
 from tests.unit.pages.test_page import report, run, scene
-from verify.pages.figures.figures import MOST_LINES, Line, thinned
+from verify.pages.figures.figures import MOST_LINES, Line, select_lines
 from verify.pages.page import render
-from verify.pages.sections.rows import MOST_ROWS, shown
+from verify.pages.sections.rows import MOST_ROWS, select_members
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
@@ -72,13 +72,13 @@ def test_a_failure_beyond_the_room_is_shown_all_the_same() -> None:
 
 def test_what_failed_has_room_first_and_the_order_stays() -> None:
     groups = [list(range(500)), list(range(500, 1000))]
-    of_groups = list(shown(groups, lambda k: k % 2))
+    of_groups = list(select_members(groups, lambda k: k % 2))
     assert [sorted(group) for group in of_groups] == of_groups
     held = [k for group in of_groups for k in group]
     assert len(held) == MOST_ROWS
     assert {k for k in range(1000) if k % 2} <= set(held)
     assert [k for k in held if k % 2 == 0] == list(range(0, 200, 2))
-    assert len([k for group in shown(groups, lambda _: True) for k in group]) == MOST_ROWS
+    assert len([k for group in select_members(groups, lambda _: True) for k in group]) == MOST_ROWS
 
 
 def test_a_figure_draws_so_many_lines_with_both_extremes_and_says_so() -> None:
@@ -95,7 +95,7 @@ def test_a_figure_draws_so_many_lines_with_both_extremes_and_says_so() -> None:
 @pytest.mark.parametrize("count", [1, 2, MOST_LINES, MOST_LINES + 1, 1000])
 def test_thinned_lines_keep_the_highest_and_the_lowest(count: int) -> None:
     made = [Line(str(k), (("1", float(k * 7919 % count)),)) for k in range(count)]
-    kept = thinned(made)
+    kept = select_lines(made)
     assert len(kept) == min(count, MOST_LINES)
     heights = [line.points[0][1] for line in kept]
     assert {0.0, float(max(x.points[0][1] for x in made))} <= set(heights)

@@ -10,7 +10,7 @@ from verify.proof.order import prove
 from verify.proof.plane.potential import potential_of
 from verify.scenes.results.growth import GrowthLawResult
 from verify.schemes import get
-from verify.studies.growth.prediction import average_of
+from verify.studies.growth.prediction import compute_average
 
 PENDULUM = "p**2/2 - cos(q)"
 MIDPOINT = "p_next = p - h*sin(q + h*p/2); q_next = q + h*(p - h*sin(q)/2)"
@@ -34,7 +34,7 @@ CASES = [
 
 
 def page_of(hamiltonian: Hamiltonian, scheme: str) -> str:
-    law = average_of(hamiltonian, scheme, q="0.7", p="0.1", digits=8)
+    law = compute_average(hamiltonian, scheme, q="0.7", p="0.1", digits=8)
     laws = (GrowthLawResult(law=law, predictions=()),)
     return text_of(render(report((scene(growth_laws=laws, proofs=(proof(scheme=scheme),)),))))
 

@@ -19,7 +19,7 @@ from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.pages.page import render
 from verify.pages.sections.separation_finding import finding
-from verify.pages.text.typography import grouped, step
+from verify.pages.text.typography import group_digits, step
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import SeriesPoint
@@ -169,12 +169,12 @@ def certified(**changes: Any) -> SceneResult:
 
 
 def test_thirty_digits_stand_in_groups_and_none_is_lost() -> None:
-    shown = str(grouped("-1.32096189159046688939637825375e-06"))
+    shown = str(group_digits("-1.32096189159046688939637825375e-06"))
     assert re.sub("<[^>]*>", "", shown) == "−1.32096189159046688939637825375\xa0×\xa010⁻⁶"
     assert shown.count("<br>") == 1
     assert "<span>−1.32096</span><span>18915</span>" in shown
-    assert grouped("1.25e-05") == "1.25\xa0×\xa010⁻⁵"
-    assert grouped("123456789012345678901234567890") == "123456789012345678901234567890"
+    assert group_digits("1.25e-05") == "1.25\xa0×\xa010⁻⁵"
+    assert group_digits("123456789012345678901234567890") == "123456789012345678901234567890"
 
 
 def test_the_table_of_runs_says_which_of_them_are_certified() -> None:

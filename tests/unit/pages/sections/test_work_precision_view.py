@@ -13,7 +13,7 @@ from tests.unit.pages.test_page import EVIL, report, run, scene
 from verify.pages.figures.work_precision_plots import standalone
 from verify.pages.page import render
 from verify.scenes.results.work_precision import WorkLine
-from verify.studies.work_precision.lines import comparisons
+from verify.studies.work_precision.lines import compare_all
 
 FAILED = point(
     limited_by="failed", lambda_limited_by="failed", failed_step=7, seconds=None,
@@ -60,7 +60,7 @@ def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
 
 def test_orders_comparisons_and_costs_stand_on_the_page() -> None:
     lines = ladder("lie2"), ladder("stormer-verlet", area_preserving=True)
-    text = text_of(page_of(*lines, comparisons=comparisons(lines, "1")))
+    text = text_of(page_of(*lines, comparisons=compare_all(lines, "1")))
     assert "2.00 ± 0.00" in text
     assert "At equal run time" in text
     assert "0, proved" in text
@@ -190,7 +190,7 @@ def test_the_figures_are_one_file_too() -> None:
 def test_what_others_wrote_stays_text() -> None:
     lines = with_points(EVIL, FAILED), ladder("lie2")
     page = page_of(
-        *lines, comparisons=comparisons(lines, "1"), clock=EVIL, reference=EVIL,
+        *lines, comparisons=compare_all(lines, "1"), clock=EVIL, reference=EVIL,
         systems_scheme=EVIL, left_out=((EVIL, EVIL),),
         systems=(system(arithmetic=EVIL, reason=EVIL),),
     )  # fmt: skip

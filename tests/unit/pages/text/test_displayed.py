@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from verify.pages.markdown.markup import Node, tree
 from verify.pages.markdown.mathml_to_tex import tex
-from verify.pages.text.displayed import displayed
+from verify.pages.text.displayed import display_formula
 from verify.pages.text.prose import prose
 from verify.papers import check_theorem, names
 from verify.proof.lie_argument import STEPS
@@ -19,7 +19,7 @@ from verify.prose import Display, Prose, read_prose
 
 
 def as_tex(text: str) -> str:
-    return tex(tree(displayed(text)))
+    return tex(tree(display_formula(text)))
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_a_long_chain_has_a_row_for_each_relation_and_a_long_sum_for_each_term()
     assert as_tex(chain).count(r"\\") == 1
     total = "ΔJ = (h/2)(T'T''V''' − V'V''T''') + (h/4)(T''V'' − T'T'''V'V''')"
     assert as_tex(total).count(r"\\") == 1
-    assert "mtable" not in displayed("|Λ| ≤ e^(Nε) − 1")
+    assert "mtable" not in display_formula("|Λ| ≤ e^(Nε) − 1")
 
 
 def test_the_stop_that_ends_a_formula_stands_in_its_line() -> None:
@@ -105,7 +105,7 @@ def test_people_quote_a_line_of_its_own_twice() -> None:
         "str", "Formula", "str", "Display", "str", "Number",
     ]  # fmt: skip
     assert found == "by h^2 x ≤ y and 1.5"
-    assert Prose.of_data(found.as_data()).parts == found.parts
+    assert Prose.from_data(found.as_data()).parts == found.parts
 
 
 def displays(texts: Iterable[Prose]) -> list[str]:
@@ -127,7 +127,7 @@ def test_so_is_every_formula_of_the_argument_by_lie_derivatives() -> None:
 
 
 def is_set_whole(text: str) -> None:
-    markup = displayed(text)
+    markup = display_formula(text)
     shown = unescape(re.sub("<[^>]*>", "", markup))
     plain = re.sub(r"[\s{}()_^/\"|‖.,;:√=]", "", text.translate(_SPELT))
     assert sorted(re.sub(r"[\s()/|‖.,;:=]", "", shown.translate(_SPELT))) == sorted(plain), text
@@ -149,5 +149,5 @@ def test_any_text_is_set_and_escaped(text: str) -> None:
     def tags(node: Node) -> set[str]:
         return {node.tag} | {tag for child in node.elements() for tag in tags(child)}
 
-    found = tags(tree(displayed(text)))
+    found = tags(tree(display_formula(text)))
     assert all(tag == "" or re.fullmatch("m[a-z]+", tag) for tag in found)

@@ -21,7 +21,7 @@ from tests.helpers.constructed.stability import MAP, case
 from tests.helpers.constructed.work import ladder, result
 from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
-from verify.pages.markdown.from_markup import Markdown, escaped, markdown, table
+from verify.pages.markdown.from_markup import Markdown, escape_markdown, markdown, table
 from verify.pages.markdown.page import render, write
 from verify.pages.page import page_view
 from verify.pages.page import render as page_as_html
@@ -98,7 +98,7 @@ def strange(text: str) -> Iterator[str]:
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_hostile_text_is_read_as_the_text_it_is(text: str) -> None:
-    for shown in (escaped(text), markdown(Markup("{}").format(text))):
+    for shown in (escape_markdown(text), markdown(Markup("{}").format(text))):
         tokens = parsed(shown)
         assert [t.type for t in tokens][:2] == ["paragraph_open", "inline"]
         assert len([t for t in tokens if t.type == "paragraph_open"]) == 1
@@ -247,8 +247,8 @@ def test_the_first_picture_stands_once_and_is_pointed_to() -> None:
     text, figures = written()
     told = page_view(real()).first.plot
     assert told is not None
-    assert text.count(f"![{escaped(told.lead)}]") == 1
-    assert f"Picture: [{escaped(told.lead)}](#telling)" in text
+    assert text.count(f"![{escape_markdown(told.lead)}]") == 1
+    assert f"Picture: [{escape_markdown(told.lead)}](#telling)" in text
     assert len(figures) == text.count("![")
 
 

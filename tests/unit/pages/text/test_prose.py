@@ -2,7 +2,7 @@
 
 import pytest
 
-from verify.pages.text.prose import cell, prose, quoted, sentence
+from verify.pages.text.prose import cell, prose, prose_with_backticks, sentence
 from verify.prose import Formula, Number, Prose
 
 
@@ -23,7 +23,7 @@ from verify.prose import Formula, Number, Prose
     ],
 )
 def test_what_people_write_is_set_with_what_they_quote(text: str, markup: str) -> None:
-    assert markup in quoted(text)
+    assert markup in prose_with_backticks(text)
 
 
 @pytest.mark.parametrize(

@@ -148,7 +148,7 @@ def test_a_map_that_is_one_to_one_or_changes_areas_says_nothing_against_criterio
 
 
 def test_the_determinant_of_a_truncated_flow_is_not_1() -> None:
-    assert refused(error_measures.eq_14(most=3, eta=2))
+    assert refused(error_measures.eq_14(highest=3, eta=2))
 
 
 def test_a_mean_square_about_another_value_is_not_the_mse() -> None:

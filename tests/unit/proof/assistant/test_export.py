@@ -8,10 +8,10 @@ import pytest
 from tests.helpers.rocq.assumptions import assuming_words, without_comments
 from tests.helpers.rocq.exports import ALL, certificate, export, export_of, proved
 from verify.errors import InputError
-from verify.proof.assistant.coefficients import of_stages
+from verify.proof.assistant.coefficients import export_stages
 from verify.proof.assistant.export import check_file_name
-from verify.proof.assistant.formulas import safe
-from verify.proof.assistant.text import written
+from verify.proof.assistant.formulas import safe_names
+from verify.proof.assistant.text import render_file
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.coefficients import Stages
 
@@ -48,7 +48,7 @@ def test_no_text_that_is_told_ends_the_comment_it_stands_in() -> None:
     entries = check(certificate("yoshida4"))
     assert isinstance(entries, Stages)
     told = replace(
-        export("yoshida4").of,
+        export("yoshida4").facts,
         statement=HOSTILE,
         hamiltonian=HOSTILE,
         leading=HOSTILE,
@@ -56,7 +56,7 @@ def test_no_text_that_is_told_ends_the_comment_it_stands_in() -> None:
         scheme=HOSTILE,
         domain=(HOSTILE,),
     )
-    text = written(of_stages(entries), told, stands_alone=False)
+    text = render_file(export_stages(entries), told, stands_alone=False)
     assert text.count("Axiom a") == 18
     assert text.count('"') == export("yoshida4").text.count('"')
     assert without_comments(text).split() == without_comments(export("yoshida4").text).split()
@@ -90,8 +90,8 @@ def test_a_file_is_called_as_a_module() -> None:
 
 
 def test_a_name_gets_an_apostrophe_where_it_is_a_word_or_what_another_is_called_to_be() -> None:
-    found = safe(["x", "is_x", "w", "H", "Qed", "a"], ["a", "H"], ["is_"])
+    found = safe_names(["x", "is_x", "w", "H", "Qed", "a"], ["a", "H"], ["is_"])
     assert found == {"x": "x", "is_x": "is_x'", "w": "w", "H": "H'", "Qed": "Qed'", "a": "a'"}
-    assert safe(["fun", "is_fun"], [], ["is_"]) == {"fun": "fun'", "is_fun": "is_fun"}
-    assert safe(["is_w", "w"], [], ["is_"]) == {"is_w": "is_w", "w": "w'"}
-    assert safe(["x", "is_x"], ["x"], ["is_"]) == {"x": "x'", "is_x": "is_x"}
+    assert safe_names(["fun", "is_fun"], [], ["is_"]) == {"fun": "fun'", "is_fun": "is_fun"}
+    assert safe_names(["is_w", "w"], [], ["is_"]) == {"is_w": "is_w", "w": "w'"}
+    assert safe_names(["x", "is_x"], ["x"], ["is_"]) == {"x": "x'", "is_x": "is_x"}

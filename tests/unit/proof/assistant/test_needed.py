@@ -7,11 +7,11 @@ import pytest
 
 from tests.helpers.rocq.exports import ALL, export
 from verify.proof.assistant.shipped import (
-    as_modules,
     files,
-    in_order,
-    needed,
+    format_modules,
     parts_of,
+    select_needed,
+    sort_by_imports,
     text_of,
     without_comments,
     words_of,
@@ -62,7 +62,7 @@ def test_the_parts_are_the_file(text: str) -> None:
 def left(by: str, *names: str) -> dict[str, str]:
     """Of these files, each of which imports those before it."""
     texts = {"Numbers": NUMBERS, "Others": OTHERS}
-    return needed(
+    return select_needed(
         {x: texts[x] for x in names}, {x: names[: k + 1] for k, x in enumerate(names)}, by
     )
 
@@ -109,7 +109,7 @@ def test_an_export_holds_what_its_files_name_and_no_lemma_that_nothing_names(nam
     held = {module.split(".")[0]: module.partition("\n")[2] for module in modules[1:]}
     assert len(held) > 5
     for file, text in held.items():
-        below = in_order([file])
+        below = sort_by_imports([file])
         whole = names_in(map(text_of, below))
         stated = names_in(held[name] for name in below if name in held)
         assert words_of(without_comments(text)) & whole <= stated, file
@@ -120,5 +120,5 @@ def test_an_export_holds_what_its_files_name_and_no_lemma_that_nothing_names(nam
 
 
 def test_most_of_the_theory_is_left_out_where_little_is_needed() -> None:
-    assert as_modules(["Theorems"], by="").count("Lemma ") < 5
-    assert as_modules(["Totals"], by="total_zero").count("Lemma total_") == 1
+    assert format_modules(["Theorems"], by="").count("Lemma ") < 5
+    assert format_modules(["Totals"], by="total_zero").count("Lemma total_") == 1

@@ -9,11 +9,11 @@ import pytest
 from tests.helpers.rocq.assumptions import assuming_words, without_comments
 from verify.proof.assistant.shipped import (
     FOLDER,
-    as_modules,
     files,
+    format_modules,
     imports_of,
-    in_order,
     install,
+    sort_by_imports,
     text_of,
 )
 
@@ -33,12 +33,12 @@ def test_no_two_files_have_one_name() -> None:
 def test_every_import_is_of_a_file_and_all_files_have_an_order() -> None:
     assert {name for imported in needs().values() for name in imported} < set(files())
     before: set[str] = set()
-    for name in in_order(files()):
+    for name in sort_by_imports(files()):
         assert set(imports_of(name)) <= before, name
         before.add(name)
     assert before == set(files())
-    assert in_order(["Step"])[-1] == "Step"
-    assert set(in_order(["Step"])) < before
+    assert sort_by_imports(["Step"])[-1] == "Step"
+    assert set(sort_by_imports(["Step"])) < before
 
 
 def test_there_is_no_circle_of_imports() -> None:
@@ -79,10 +79,10 @@ def test_no_folder_has_many_files() -> None:
 
 
 def test_what_stands_alone_imports_nothing_but_the_library() -> None:
-    plain = without_comments(as_modules(["Step"], by="defect_of_step"))
+    plain = without_comments(format_modules(["Step"], by="defect_of_step"))
     assert re.findall(r"^From (\w+) Require", plain, re.MULTILINE) == ["Coq"]
     opened = re.findall(r"^Module (\w+)\.$", plain, re.MULTILINE)
-    assert opened == [name for name in in_order(["Step"]) if name in opened]
+    assert opened == [name for name in sort_by_imports(["Step"]) if name in opened]
     assert opened[-1] == "Step"
     ended = re.findall(r"^End (\w+)\.$", plain, re.MULTILINE)
     assert [name for name in ended if name in opened and ended.count(name) == 1] != []
@@ -91,7 +91,7 @@ def test_what_stands_alone_imports_nothing_but_the_library() -> None:
 
 def test_the_theory_is_installed_with_its_order(tmp_path: Path) -> None:
     written = install(tmp_path / "theory")
-    assert [path.stem for path in written] == in_order(files())
+    assert [path.stem for path in written] == sort_by_imports(files())
     assert [path.read_text(encoding="utf-8") for path in written] == [
         text_of(path.stem) for path in written
     ]

@@ -24,14 +24,14 @@ def of(hamiltonian: str, scheme: str = "lie2") -> dict[str, Any]:
 def test_l_is_shown_to_be_not_zero_where_functions_may_be_taken_of_0(hamiltonian: str) -> None:
     found = export_of(of(hamiltonian))
     assert NOT_ZERO in found.theorems
-    assert "L not zero" in found.of.statement
+    assert "L not zero" in found.facts.statement
     assert UNSAID not in found.text
 
 
 def test_what_is_not_shown_is_not_said() -> None:
     found = export_of(of("p**2/2 + exp(q**2 + 1)"))
     assert NOT_ZERO not in found.theorems
-    assert "not zero" not in found.of.statement
+    assert "not zero" not in found.facts.statement
     assert (
         f"That L is not zero, so that the order is this one and no higher, {UNSAID}" in found.text
     )

@@ -6,7 +6,7 @@ import pytest
 
 from tests.paths import ROOT
 from verify.proof.assistant.shipped import files, text_of
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 
 @pytest.mark.parametrize(
@@ -19,7 +19,7 @@ from verify.proof.assistant.stated import Shipped
     ],
 )
 def test_a_theorem_of_the_theory_has_its_name(file: str, name: str) -> None:
-    assert str(Shipped(file, name)) == f"{file}.{name}"
+    assert str(ShippedTheorem(file, name)) == f"{file}.{name}"
     assert re.search(rf"^\s*(Theorem|Lemma|Corollary) {name}\b", text_of(file), re.MULTILINE)
 
 
@@ -36,7 +36,7 @@ def test_a_theorem_of_the_theory_has_its_name(file: str, name: str) -> None:
 )
 def test_what_the_theory_does_not_state_is_refused(file: str, name: str) -> None:
     with pytest.raises(ValueError, match=r"theorem=.*states none"):
-        Shipped(file, name)
+        ShippedTheorem(file, name)
 
 
 def test_every_file_of_the_theory_states_something_or_defines() -> None:
@@ -51,4 +51,4 @@ def test_the_page_about_theorems_names_what_the_theory_states() -> None:
     named = set(re.findall(r"`([A-Z]\w+)\.(\w+)`", page)) - {("File", "name")}  # of all of them
     assert len(named) > 20
     for file, name in named:
-        Shipped(file, name)
+        ShippedTheorem(file, name)

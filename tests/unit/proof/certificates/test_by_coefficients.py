@@ -14,8 +14,8 @@ from tests.oracle.printed_certificates import is_true
 from verify.errors import InputError
 from verify.proof.certificates import by_coefficients as written
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
+from verify.proof.certificates.every import certify_every
 from verify.proof.every import prove_every
 from verify.schemes import get, names
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
@@ -31,7 +31,7 @@ FORM = {False: "every smooth H", True: "every smooth H = T(p) + V(q)"}
 
 @cache
 def _certificate(name: str) -> dict[str, Any]:
-    return as_read(of_every(prove_every(name)))
+    return as_read(certify_every(prove_every(name)))
 
 
 def certificate(name: str) -> dict[str, Any]:
@@ -39,8 +39,8 @@ def certificate(name: str) -> dict[str, Any]:
     return copy.deepcopy(_certificate(name))
 
 
-def accepted(data: dict[str, Any]) -> Established:
-    return established(check(data))
+def accepted(data: dict[str, Any]) -> EstablishedStatement:
+    return state_theorem(check(data))
 
 
 def refused(data: dict[str, Any], reason: str) -> None:
@@ -106,9 +106,9 @@ def test_so_it_has_in_time_separable_and_in_several_degrees(name: str) -> None:
     said = accepted(of_every_in_time(name))
     form = "T(p, t) + V(q, t)" if separable else "H(p, q, t)"
     assert said.statement.startswith(f"det J = 1 for every smooth {'H = ' * separable}{form} and")
-    alone = accepted(as_read(of_every(prove_every(name, True))))
+    alone = accepted(as_read(certify_every(prove_every(name, True))))
     assert alone.statement.startswith(f"det J = 1 for {FORM[True]} and")
-    said = accepted(as_read(of_every(prove_every(name, degrees=3))))
+    said = accepted(as_read(certify_every(prove_every(name, degrees=3))))
     where = f"{FORM[separable]} in 3 degrees of freedom"
     assert said.statement.startswith(f"S = JᵀΩJ − Ω = 0 for {where} and the")
     assert (said.degrees, said.symplectic) == (3, True)
@@ -147,7 +147,7 @@ INNER = "1/(2 - 2**(1/3))"
 
 def of_sizes(size: str) -> dict[str, Any]:
     """That of two kicks of this size and of what is left to 1."""
-    return as_read(of_every(prove_every(f"kick {size}; drift 1; kick 1 - ({size})")))
+    return as_read(certify_every(prove_every(f"kick {size}; drift 1; kick 1 - ({size})")))
 
 
 @pytest.mark.parametrize(
@@ -193,14 +193,14 @@ def test_a_tableau_with_dependent_numbers_would_be_refused(monkeypatch: pytest.M
     """√(3 + 2√2) is 1 + √2: the proof sees that, the file has a polynomial for each alone."""
     half, root = sympy.Rational(1, 2), sympy.sqrt(2)
     hidden = sympy.sqrt(3 + 2 * root) - 1  # √2
-    tableau = ImplicitTableau.of(
+    tableau = ImplicitTableau.from_numbers(
         ((half / 2, half / 2 - root), (half / 2 + hidden, half / 2)), (half, half)
     )
     assert all(condition.holds for condition in tableau.area_conditions())
     made = replace(get("gauss4"), every_h=TreeConditions(tableau))
     monkeypatch.setattr("verify.proof.certificates.every.get", lambda _: made)
     proof = replace(prove_every("gauss4"), verdict=Verdict.PROVED)
-    refused(as_read(of_every(proof)), r"tableau: b_1 a_12 \+ b_2 a_21 - b_1 b_2 is not zero")
+    refused(as_read(certify_every(proof)), r"tableau: b_1 a_12 \+ b_2 a_21 - b_1 b_2 is not zero")
 
 
 def test_what_does_not_preserve_area_has_none_by_its_coefficients() -> None:
@@ -210,4 +210,4 @@ def test_what_does_not_preserve_area_has_none_by_its_coefficients() -> None:
         data = of_every_in_time(name)
         assert "tableau" not in data
         told = f"det J − 1 = L h^{get(name).order + 1}"
-        assert told in str(established(check(data)))
+        assert told in str(state_theorem(check(data)))

@@ -14,7 +14,8 @@ def test_the_checker_is_small_and_imports_nothing_of_the_provers() -> None:
     own = ("checker", "entries", "balls", "readers", "numbers", "coefficients")
     for name in (*own, "established"):
         source = (folder / f"{name}.py").read_text()
-        lines += len(source.splitlines()) * (name != "established")
+        code = [line for line in source.splitlines() if not line.lstrip().startswith("#")]
+        lines += len(code) * (name != "established")
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.Import):
                 imported |= {alias.name for alias in node.names}

@@ -14,9 +14,9 @@ from tests.helpers.sampled.certificates import as_read, of_every_in_time, of_tex
 from tests.oracle.printed_certificates import is_true
 from verify.errors import InputError
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.every import of_every
-from verify.proof.certificates.file import checked
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
+from verify.proof.certificates.every import certify_every
+from verify.proof.certificates.file import check_file
 from verify.proof.every import prove_every
 
 ONE = [
@@ -49,7 +49,7 @@ def certificate(request: pytest.FixtureRequest) -> dict[str, Any]:
     if request.param.endswith(" in time"):
         return of_every_in_time(request.param.removesuffix(" in time"))
     if request.param in EVERY:
-        return as_read(of_every(prove_every(request.param)))
+        return as_read(certify_every(prove_every(request.param)))
     return of_text(*CERTIFICATES[request.param])
 
 
@@ -149,7 +149,7 @@ def test_what_is_printed_is_true_and_with_an_error_planted_is_not(
 ) -> None:
     if len(certificate.get("leading", "")) > 40:
         pytest.skip("takes long; it is as true as the shorter ones of its sort")
-    said = asdict(established(check(certificate)))
+    said = asdict(state_theorem(check(certificate)))
     assert is_true(said, points=1)
     wrong = [{"p_next": f"{said['p_next']} + h*p*q"}] * ("p1 = " not in said["p_next"])
     if said["order"]:
@@ -161,25 +161,25 @@ def test_what_is_printed_is_true_and_with_an_error_planted_is_not(
 
 def test_a_file_is_checked(tmp_path: Path) -> None:
     path = tmp_path / "c.json"
-    data = of_every(prove_every("lie2"))
+    data = certify_every(prove_every("lie2"))
     path.write_text(json.dumps(data))
-    assert isinstance(checked(path), Established)
+    assert isinstance(check_file(path), EstablishedStatement)
     for broken in (
         {**data, "leading": [["x", "p"]]},
         {**data, "p_next": 3},
         {**data, "order": "3"},
     ):
         path.write_text(json.dumps(broken))
-        assert isinstance(checked(path), str)
+        assert isinstance(check_file(path), str)
     del data["q_next"]
     path.write_text(json.dumps(data))
-    assert checked(path) == "q_next is missing"
+    assert check_file(path) == "q_next is missing"
     for text in ("{", "[]", '{"format": "other"}'):
         path.write_text(text)
         with pytest.raises(InputError):
-            checked(path)
+            check_file(path)
     with pytest.raises(InputError):
-        checked(tmp_path / "none.json")
+        check_file(tmp_path / "none.json")
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ import pytest
 from tests.helpers.sampled.certificates import as_read, of_text
 from verify.proof.certificates import checker
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.every import certify_every
 from verify.proof.every import prove_every
 
 
 def forged(**changes: Any) -> dict[str, Any]:
-    return as_read(of_every(prove_every("lie1"))) | changes
+    return as_read(certify_every(prove_every("lie1"))) | changes
 
 
 def refused(data: dict[str, Any], why: str) -> None:

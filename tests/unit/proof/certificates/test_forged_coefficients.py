@@ -12,19 +12,19 @@ from tests.helpers.sampled.certificates import as_read, of_every_in_time
 from tests.oracle.printed_certificates import is_true
 from verify.proof.certificates import numbers
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
+from verify.proof.certificates.every import certify_every
 from verify.proof.every import prove_every
 
 TABLEAUX = ["gauss4", "gauss6"]
 
 
 def certificate(name: str) -> dict[str, Any]:
-    return as_read(of_every(prove_every(name)))
+    return as_read(certify_every(prove_every(name)))
 
 
-def accepted(data: dict[str, Any]) -> Established:
-    return established(check(data))
+def accepted(data: dict[str, Any]) -> EstablishedStatement:
+    return state_theorem(check(data))
 
 
 def refused(data: dict[str, Any], reason: str) -> None:
@@ -170,7 +170,7 @@ def test_every_number_is_named_once_and_used() -> None:
     refused(data | {"numbers": []}, "tableau: 'w' stands for nothing")
     refused(data | {"numbers": [[f"w{k}", *ROOT[1:]] for k in range(9)]}, "more than 8")
     refused(data | {"numbers": {}}, "numbers: dict is no list")
-    lie = as_read(of_every(prove_every("lie1")))
+    lie = as_read(certify_every(prove_every("lie1")))
     refused(lie | {"numbers": [ROOT]}, "no entry of this name: 'numbers'")
 
 
@@ -213,7 +213,9 @@ def test_a_sum_that_grows_with_each_of_its_terms_is_refused_quickly() -> None:
     data = certificate("yoshida4")
     data["stages"][0][0] = terms
     refused(data, "stages: a coefficient grows too long")
-    refused(as_read(of_every(prove_every("lie1"))) | {"leading": terms}, "leading: a coefficient")
+    refused(
+        as_read(certify_every(prove_every("lie1"))) | {"leading": terms}, "leading: a coefficient"
+    )
 
 
 def test_numbers_that_depend_on_each_other_show_nothing() -> None:

@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.sampled.certificates import of_every_in_time, of_text
 from tests.oracle.printed_certificates import is_true
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import established
+from verify.proof.certificates.established import state_theorem
 
 DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 FROZEN = DRIVEN.replace("t)/2", "d)/2")
@@ -33,7 +33,7 @@ def test_a_frozen_clock_is_no_flow_in_time() -> None:
     refused(data, "p 2 is not zero")
     refused(data | {"convergence_order": 1}, "potential is not zero")
     del data["potential"]
-    said = established(check(data | {"convergence_order": 1}))  # which is true of that map
+    said = state_theorem(check(data | {"convergence_order": 1}))  # which is true of that map
     assert (said.order, said.convergence_order, said.potential) == (3, 1, None)
     assert is_true(asdict(said))
     assert not is_true(asdict(said) | {"convergence_order": 2})
@@ -62,7 +62,7 @@ def test_an_autonomous_certificate_has_no_mark_and_holds_with_one() -> None:
     data = of_text("p**2/2 - cos(q)", "lie2")
     assert "time_dependent" not in data
     data["witness"]["t"] = "1/3"
-    assert established(check(data | {"time_dependent": True})).order == 3
+    assert state_theorem(check(data | {"time_dependent": True})).order == 3
     refused(data, "gives values to p, q")
 
 
@@ -98,18 +98,18 @@ def test_a_stage_in_time_has_a_time_and_no_other_has() -> None:
 
 @pytest.mark.left_to_ci
 def test_what_is_printed_names_time_and_says_the_truth() -> None:
-    said = established(check(of_every_in_time("stormer-verlet")))
+    said = state_theorem(check(of_every_in_time("stormer-verlet")))
     assert said.hamiltonian == "every smooth H = T(p, t) + V(q, t)"
     assert said.p_next.startswith("p1 = p - h*(1/2)*H_q(p, q, t); ")
     assert said.q_next == "q1 = q; q2 = q1 + h*(1)*H_p(p1, q1, t + (1/2)*h); q3 = q2"
     assert is_true(asdict(said))
     assert not is_true(asdict(said) | {"p_next": said.p_next.replace("h*(1/2)", "h*(1/2)*p", 1)})
-    said = established(check(of_every_in_time("implicit-midpoint")))
+    said = state_theorem(check(of_every_in_time("implicit-midpoint")))
     assert said.p_next == (
         "p1 = p - h*(1)*H_q(p + (1/2)*(p1 - p), q + (1/2)*(q1 - q), t + (1/2)*h)"
     )
     assert is_true(asdict(said))
-    said = established(check(of_every_in_time("lie2")))
+    said = state_theorem(check(of_every_in_time("lie2")))
     assert said.statement == (
         "det J − 1 = L h^3 + O(h^4), L not zero for some H, for every smooth H(p, q, t) and this "
         "map, which agrees with the flow up to h^2, and L = D·G, D = ∂/∂t + X"
@@ -121,6 +121,6 @@ def test_what_is_printed_names_time_and_says_the_truth() -> None:
 
 def test_a_splitting_with_times_of_its_own() -> None:
     name = "kick 1/3 at 0; drift 1/2; kick 2/3 at 1/2; drift 1/2; order 1"
-    said = established(check(of_every_in_time(name)))
+    said = state_theorem(check(of_every_in_time(name)))
     assert "H_q(p2, q2, t + (1/2)*h)" in said.p_next
     assert is_true(asdict(said))

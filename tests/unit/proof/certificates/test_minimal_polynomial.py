@@ -36,7 +36,7 @@ def test_each_generator_has_the_polynomial_that_sympy_finds(number: sympy.Expr) 
     minimal, own = generators(number)
     assert own
     for index, expression in own.items():
-        found = [int(c) for c in minimal.of(index).coeffs()]
+        found = [int(c) for c in minimal.polynomial_of(index).coeffs()]
         wanted = sympy.minimal_polynomial(expression, X, polys=True).clear_denoms(convert=True)[1]
         assert found == [int(c) for c in reversed(wanted.all_coeffs())]
 
@@ -45,13 +45,13 @@ def test_what_is_not_made_by_roots_or_of_too_high_a_degree_has_none() -> None:
     minimal, own = generators(sympy.sqrt(sympy.pi))
     for index in own:
         with pytest.raises(ValueError, match="not made by roots"):
-            minimal.of(index)
+            minimal.polynomial_of(index)
     ring, _ = embed([sympy.root(3 + R, 5)], ())
     first, second = (g.index for g in ring.generators if g.kind == "root")
-    assert MinimalPolynomials(ring, 10).of(second).degree() == 10
-    assert MinimalPolynomials(ring, 9).of(first).degree() == 2
+    assert MinimalPolynomials(ring, 10).polynomial_of(second).degree() == 10
+    assert MinimalPolynomials(ring, 9).polynomial_of(first).degree() == 2
     with pytest.raises(ValueError, match="is of degree 10, or seems so; allowed: up to 9"):
-        MinimalPolynomials(ring, 9).of(second)
+        MinimalPolynomials(ring, 9).polynomial_of(second)
 
 
 def test_long_decimals_under_roots_take_no_time() -> None:
@@ -60,5 +60,5 @@ def test_long_decimals_under_roots_take_no_time() -> None:
     roots = [sympy.sqrt(sympy.Rational(text)) for text in texts]
     begun = time.perf_counter()
     minimal, own = generators(1 / sympy.Add(*roots))
-    assert max(minimal.of(index).degree() for index in own) == 16
+    assert max(minimal.polynomial_of(index).degree() for index in own) == 16
     assert time.perf_counter() - begun < 20

@@ -9,9 +9,9 @@ import pytest
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.every import of_every as certificate_of_every
-from verify.proof.certificates.one import of_one as certificate_of_one
+from verify.proof.certificates.established import EstablishedStatement, state_theorem
+from verify.proof.certificates.every import certify_every as certificate_of_every
+from verify.proof.certificates.one import certify_one as certificate_of_one
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.schemes import get
@@ -45,8 +45,8 @@ def of_every(scheme: str, degrees: int, timed: bool) -> dict[str, Any]:
     return certificate_of_every(prove_every(scheme, degrees=degrees, timed=timed))
 
 
-def accepted(data: dict[str, Any]) -> Established:
-    return established(check(data))
+def accepted(data: dict[str, Any]) -> EstablishedStatement:
+    return state_theorem(check(data))
 
 
 def refused(data: dict[str, Any], reason: str) -> None:

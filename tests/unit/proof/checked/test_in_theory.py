@@ -11,19 +11,19 @@ from verify.proof.checked.proved import (
     ALL,
     DEFECT,
     MAP,
-    Proved,
-    of_every_hamiltonian,
+    ProvedStatement,
+    proved_for_every,
 )
 from verify.proof.every import prove_every
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 
 
-def every(scheme: str, about: frozenset = ALL) -> Proved:
-    return of_every_hamiltonian(prove_every(scheme), get(scheme), about)
+def every(scheme: str, about: frozenset = ALL) -> ProvedStatement:
+    return proved_for_every(prove_every(scheme), get(scheme), about)
 
 
-def names(proved: Proved) -> list[str]:
+def names(proved: ProvedStatement) -> list[str]:
     return [str(mark).partition(":")[0].removeprefix("Rocq, ") for mark in in_theory.marks(proved)]
 
 
@@ -78,7 +78,7 @@ def test_a_mark_has_the_order_of_its_scheme() -> None:
     assert "no term below h^5" in mark
     assert "−div(X^4 f)/5!" in mark
     (timed,) = in_theory.marks(
-        of_every_hamiltonian(prove_every("lie4", timed=True), get("lie4"), DEFECT)
+        proved_for_every(prove_every("lie4", timed=True), get("lie4"), DEFECT)
     )
     assert "H(p, q, t)" in timed
     assert "−div(D^4 f)/5!" in timed
@@ -86,13 +86,11 @@ def test_a_mark_has_the_order_of_its_scheme() -> None:
 
 def test_in_degrees_s_and_det_j_have_theorems_of_their_own() -> None:
     proof = prove_every("lie2", degrees=2)
-    assert names(of_every_hamiltonian(proof, get("lie2"), DEFECT)) == ["Theorems.defect_of_lie"]
+    assert names(proved_for_every(proof, get("lie2"), DEFECT)) == ["Theorems.defect_of_lie"]
     volume = frozenset({"volume"})
-    assert names(of_every_hamiltonian(proof, get("lie2"), volume)) == [
-        "Theorems.determinant_of_lie"
-    ]
+    assert names(proved_for_every(proof, get("lie2"), volume)) == ["Theorems.determinant_of_lie"]
     verlet = prove_every("stormer-verlet", degrees=2)
-    assert names(of_every_hamiltonian(verlet, get("stormer-verlet"), volume)) == []
+    assert names(proved_for_every(verlet, get("stormer-verlet"), volume)) == []
 
 
 def test_odd_eta_is_shown_by_an_h_without_time_for_every_h_alone() -> None:
@@ -119,10 +117,10 @@ def test_where_delta_j_is_zero_its_first_coefficient_is_no_theorem_of_it() -> No
 def test_a_stage_has_the_theorem_where_its_condition_holds(
     stage: Stage, separable: bool, holds: bool
 ) -> None:
-    assert stages.fulfilled(StageEquations((stage,), separable)) is holds
+    assert stages.stages_fulfil(StageEquations((stage,), separable)) is holds
 
 
 def test_a_tableau_has_the_theorem_where_its_condition_holds() -> None:
-    assert tableau.fulfilled(get("gauss4").every_h)
-    assert not tableau.fulfilled(get("rk4").every_h)
-    assert not tableau.fulfilled(get("yoshida4").every_h)
+    assert tableau.fulfils(get("gauss4").every_h)
+    assert not tableau.fulfils(get("rk4").every_h)
+    assert not tableau.fulfils(get("yoshida4").every_h)

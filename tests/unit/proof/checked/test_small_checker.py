@@ -7,41 +7,41 @@ import pytest
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.certificates.every import of_every
+from verify.proof.certificates.every import certify_every
 from verify.proof.checked import small_checker
 from verify.proof.checked.proved import (
     ALL,
     DEFECT,
-    Proved,
-    of_every_hamiltonian,
-    of_one_hamiltonian,
+    ProvedStatement,
+    proved_for_every,
+    proved_for_one,
 )
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.schemes import get
 
 
-def marks(proved: Proved) -> list[str]:
+def marks(proved: ProvedStatement) -> list[str]:
     return [str(mark) for mark in small_checker.marks(proved)]
 
 
-def one(system: str, scheme: str, **values: int) -> Proved:
+def one(system: str, scheme: str, **values: int) -> ProvedStatement:
     hamiltonian = systems.get(system).hamiltonian().with_values(values)
     proof = prove(get(scheme).step_map(hamiltonian), get(scheme))
-    return of_one_hamiltonian(proof, hamiltonian, get(scheme), ALL)
+    return proved_for_one(proof, hamiltonian, get(scheme), ALL)
 
 
-def every(scheme: str) -> Proved:
-    return of_every_hamiltonian(prove_every(scheme), get(scheme), ALL)
+def every(scheme: str) -> ProvedStatement:
+    return proved_for_every(prove_every(scheme), get(scheme), ALL)
 
 
-def made_by(*certificates: Any, about: Any = DEFECT) -> Proved:
-    return Proved(get("lie2"), about, False, True, False, 1, certificates=certificates)
+def made_by(*certificates: Any, about: Any = DEFECT) -> ProvedStatement:
+    return ProvedStatement(get("lie2"), about, False, True, False, 1, certificates=certificates)
 
 
 def forged() -> Any:
     """The certificate of lie2, with another leading coefficient."""
-    data = of_every(prove_every("lie2"))
+    data = certify_every(prove_every("lie2"))
     (first, *names), *others = data["leading"]
     return {**data, "leading": [[f"{first}1", *names], *others]}
 
@@ -54,7 +54,7 @@ def test_the_mark_is_what_the_certificate_establishes() -> None:
     assert marks(every("symplectic-euler")) == [
         "small checker: det J = 1 for every smooth H = T(p) + V(q) and the scheme of these stages"
     ]
-    (timed,) = marks(of_every_hamiltonian(prove_every("lie2", timed=True), get("lie2"), ALL))
+    (timed,) = marks(proved_for_every(prove_every("lie2", timed=True), get("lie2"), ALL))
     assert "for every smooth H(p, q, t)" in timed
 
 
@@ -62,7 +62,7 @@ def test_a_parameter_without_a_value_is_a_symbol_in_the_mark() -> None:
     hamiltonian = Hamiltonian(systems.get("duffing").hamiltonian().expression)
     scheme = get("lie2")
     proof = prove(scheme.step_map(hamiltonian), scheme)
-    (mark,) = marks(of_one_hamiltonian(proof, hamiltonian, scheme, ALL))
+    (mark,) = marks(proved_for_one(proof, hamiltonian, scheme, ALL))
     assert mark.endswith("L = 3*delta*p*q")
 
 
@@ -79,11 +79,11 @@ def test_a_map_that_is_no_polynomial_in_h_and_changes_area_has_no_mark() -> None
 def test_in_degrees_s_is_certified_and_of_det_j_nothing() -> None:
     hamiltonian = systems.get("henon-heiles").hamiltonian()
     proof, scheme = prove(get("lie2").step_map(hamiltonian), get("lie2")), get("lie2")
-    (mark,) = marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT))
+    (mark,) = marks(proved_for_one(proof, hamiltonian, scheme, DEFECT))
     assert "S = JᵀΩJ − Ω = L h^3" in mark
-    assert marks(of_one_hamiltonian(proof, hamiltonian, scheme, frozenset({"volume"}))) == []
+    assert marks(proved_for_one(proof, hamiltonian, scheme, frozenset({"volume"}))) == []
     verlet = prove_every("stormer-verlet", degrees=2)
-    (mark,) = marks(of_every_hamiltonian(verlet, get("stormer-verlet"), frozenset({"volume"})))
+    (mark,) = marks(proved_for_every(verlet, get("stormer-verlet"), frozenset({"volume"})))
     assert "S = JᵀΩJ − Ω = 0" in mark
 
 
@@ -91,21 +91,21 @@ def test_in_degrees_s_is_certified_and_of_det_j_nothing() -> None:
 
 
 def test_a_certificate_that_is_refused_makes_no_mark() -> None:
-    true = made_by(lambda: of_every(prove_every("lie2")))
+    true = made_by(lambda: certify_every(prove_every("lie2")))
     assert len(marks(true)) == 1
     assert marks(made_by(forged)) == []
 
 
 def test_after_one_that_is_refused_no_other_is_tried() -> None:
     """It is of this proof, and wrong: a mark by another way would hide that."""
-    assert marks(made_by(forged, lambda: of_every(prove_every("lie2")))) == []
+    assert marks(made_by(forged, lambda: certify_every(prove_every("lie2")))) == []
 
 
 def test_what_cannot_be_certified_leaves_the_next_or_nothing() -> None:
     def none() -> Any:
         raise InputError("map", "x", "no certificate")
 
-    assert len(marks(made_by(none, lambda: of_every(prove_every("lie2"))))) == 1
+    assert len(marks(made_by(none, lambda: certify_every(prove_every("lie2"))))) == 1
     assert marks(made_by(none)) == []
     assert marks(made_by()) == []
 

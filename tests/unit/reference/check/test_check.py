@@ -10,7 +10,7 @@ import pytest
 
 from tests.helpers.constructed.reference import SCENES, changed, flipped, made, put, repaired
 from verify.errors import InputError
-from verify.reference.check.check import Checked, check
+from verify.reference.check.check import CheckResult, check
 from verify.reference.make.models import DATA_FORMAT, Data, Manifest
 from verify.reference.make.writing import MANIFEST, digest, json_text
 
@@ -28,7 +28,7 @@ def folder(data: list[Data], tmp_path: Path) -> Path:
     return tmp_path / "set"
 
 
-def look(folder: Path, share: float = 0.0, **more: Any) -> Checked:
+def look(folder: Path, share: float = 0.0, **more: Any) -> CheckResult:
     return check(folder, share=share, seed=1, **more)
 
 
@@ -208,9 +208,9 @@ def test_a_scene_that_is_not_the_one_that_is_known_is_told(folder: Path, tmp_pat
     own.mkdir()
     for name, toml in SCENES.items():
         (own / f"{name}.toml").write_text(toml)
-    assert not look(folder, own=own).differences
+    assert not look(folder, scenes_folder=own).differences
     (own / "mine.toml").write_text(SCENES["mine"].replace("A pendulum", "A pendulom"))
-    assert "scene mine" in str(look(folder, own=own).differences[0])
+    assert "scene mine" in str(look(folder, scenes_folder=own).differences[0])
 
 
 # -- what cannot be read --------------------------------------------------------------------------

@@ -14,10 +14,10 @@ import pytest
 from tests.helpers.constructed.reference import changed, made, put, repaired
 from verify.errors import InputError
 from verify.files import write_atomically
-from verify.reference.check.check import Checked, check
-from verify.reference.check.recompute import recomputed
+from verify.reference.check.check import CheckResult, check
+from verify.reference.check.recompute import recompute_unit
 from verify.reference.compare.published import load as published
-from verify.reference.make.make import alone, load
+from verify.reference.make.make import check_is_alone, load
 from verify.reference.make.models import Data
 from verify.reference.make.writing import MANIFEST
 
@@ -47,7 +47,7 @@ def folder(data: Data, tmp_path: Path) -> Path:
     return tmp_path / "set"
 
 
-def look(folder: Path, **more: Any) -> Checked:
+def look(folder: Path, **more: Any) -> CheckResult:
     return check(folder, **({"share": 0.0, "seed": 1} | more))
 
 
@@ -80,7 +80,7 @@ def test_a_number_that_cannot_be_held_is_a_difference(
 
 def test_a_value_beyond_all_rationals_is_compared(data: Data) -> None:
     forged = changed(data, NUMBER, {"value": "1.23456789e+999999999", "radius": "5e+999999990"})
-    assert [x.column for x in recomputed(forged, "file", "run", 0).differences] == ["q"]
+    assert [x.column for x in recompute_unit(forged, "file", "run", 0).differences] == ["q"]
 
 
 @pytest.mark.parametrize(
@@ -167,11 +167,11 @@ def test_a_sample_does_no_more_steps_than_it_may_and_says_so(folder: Path) -> No
 def test_a_folder_with_other_files_is_refused(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(SCENES["mine"])
     asked = load([tmp_path / "mine.toml"])
-    alone(folder, asked, parquet=False)
+    check_is_alone(folder, asked, parquet=False)
     (folder / "mine-runs.parquet").touch()
-    alone(folder, asked, parquet=True)
+    check_is_alone(folder, asked, parquet=True)
     with pytest.raises(InputError, match=r"mine-runs\.parquet"):
-        alone(folder, asked, parquet=False)
+        check_is_alone(folder, asked, parquet=False)
 
 
 # -- the exact flow at a burst --------------------------------------------------------------------
@@ -189,13 +189,13 @@ def test_rows_of_a_solution_that_blows_up_are_looked_at(
     else:
         planted["p"] = good["p"] | {"value": good["p"]["value"][:-5] + "1e+00"}
     forged = changed(data, ["flow", 0, "rows", row], planted)
-    differences = recomputed(forged, "file", "flow", 0).differences
+    differences = recompute_unit(forged, "file", "flow", 0).differences
     assert [x.column for x in differences] == [found]
 
 
 def test_an_early_burst_is_a_difference(data: Data) -> None:
     nothing = data.flow[0].rows[2].model_dump(mode="json") | {"step": 1}
-    (only,) = recomputed(
+    (only,) = recompute_unit(
         changed(data, ["flow", 0, "rows", 1], nothing), "file", "flow", 0
     ).differences
     assert (only.column, only.wanted) == ("status", "finished")

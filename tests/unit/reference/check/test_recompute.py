@@ -8,7 +8,7 @@ import pytest
 
 from tests.helpers.constructed.reference import SCENES, changed, made
 from verify.reference.check.difference import Difference, Findings
-from verify.reference.check.recompute import recomputed
+from verify.reference.check.recompute import recompute_unit
 from verify.reference.make.models import Data
 
 KINDS = {"proof": "proofs", "run": "runs", "flow": "flow"}
@@ -56,7 +56,7 @@ def units(of: Data) -> Iterator[tuple[str, int]]:
 
 
 def again(of: Data, kind: str, index: int) -> Findings:
-    return recomputed(of, "file", kind, index)
+    return recompute_unit(of, "file", kind, index)
 
 
 @pytest.mark.left_to_ci

@@ -62,7 +62,7 @@ def test_taylor_coefficients_are_those_of_sympy(formula: str) -> None:
         qs = [flint.arb(x) for x in (flint.fmpq(5, 4), flint.fmpq(-1, 3), 0, 1)]
         known.begin([ps[0], qs[0], 0])
         for k in range(1, 4):
-            known.more([ps[k], qs[k]])
+            known.extend([ps[k], qs[k]])
         for k in range(4):
             exact = (sympy.diff(along, T, k) / sympy.factorial(k)).subs(T, 0).evalf(60)
             assert known.c[h][k].overlaps(flint.arb(f"{exact} +/- 1e-45")), k

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from verify.reference.compare.allowance import USUAL, WORST, Allowance
-from verify.reference.compare.column_meanings import _sum, readings
+from verify.reference.compare.column_meanings import _predict_sum, readings
 from verify.reference.compare.findings import DOUBLE, Spread
 from verify.structures import AREA, SYMPLECTIC
 
@@ -23,7 +23,7 @@ def allowance(spreads: dict[str, Spread] | None, *, planar: bool, unit: Fraction
     coordinates = ("p", "q") if planar else ("p1", "q1")
     structure = AREA if planar else SYMPLECTIC
     hamiltonian = SimpleNamespace(structure=structure, planar=planar, coordinates=coordinates)
-    scatters: Any = SimpleNamespace(at=lambda *_: spreads)
+    scatters: Any = SimpleNamespace(spreads_at=lambda *_: spreads)
     return Allowance(SimpleNamespace(hamiltonian=hamiltonian), unit, scatters)  # type: ignore[arg-type]
 
 
@@ -37,13 +37,13 @@ def test_what_is_carried_is_added_to_what_there_is_in_any_case(step: int, planar
     many, few = 1 + isqrt(step), 4 if planar else 8
     smallest = Fraction(1, 2**1022)
     assert least == (few * DOUBLE * Fraction(7, 2) + smallest) * many
-    found, nothing = made.of(name, step, KNOWN), still.of(name, step, KNOWN)
+    found, nothing = made.after_steps(name, step, KNOWN), still.after_steps(name, step, KNOWN)
     long = least if planar else least * many
     assert (nothing.usual, nothing.worst) == (least, long)
     assert found.usual == least + USUAL * moved.usual * DOUBLE
     assert found.worst == long + WORST * moved.worst * DOUBLE
-    assert allowance(None, planar=planar).of(name, step, KNOWN) is None
-    assert allowance({}, planar=planar).of(name, step, KNOWN) == nothing
+    assert allowance(None, planar=planar).after_steps(name, step, KNOWN) is None
+    assert allowance({}, planar=planar).after_steps(name, step, KNOWN) == nothing
 
 
 def test_of_a_coarser_unit_all_is_more_but_what_underflows() -> None:
@@ -64,7 +64,7 @@ def test_a_sum_of_all_delta_j_is_foretold_within_its_radius(seed: int, late: int
     known = {"lambda": (product - 1, Fraction(0)),
              "mse": (sum(x * x for x in changes) / len(changes), Fraction(0))}  # fmt: skip
     setting: Any = SimpleNamespace(numbers=lambda *_: known, late=late)
-    found = _sum(setting, 30, len(changes) - late)
+    found = _predict_sum(setting, 30, len(changes) - late)
     assert found is not None
     off, cubes = abs(found.value - sum(changes)), sum(abs(x) ** 3 for x in changes)
     assert off <= found.radius
@@ -73,11 +73,11 @@ def test_a_sum_of_all_delta_j_is_foretold_within_its_radius(seed: int, late: int
     for missing in ("lambda", "mse"):
         less = {n: x for n, x in known.items() if n != missing}
         lacking: Any = SimpleNamespace(numbers=lambda *_, less=less: less, late=late)
-        assert _sum(lacking, 30, len(changes) - late) is None
+        assert _predict_sum(lacking, 30, len(changes) - late) is None
     at_start: Any = SimpleNamespace(
         numbers=lambda *_: {"lambda": (Fraction(0), Fraction(0))}, late=0
     )
-    begun = _sum(at_start, 30, 0)
+    begun = _predict_sum(at_start, 30, 0)
     assert begun is not None
     assert begun.value == 0
 

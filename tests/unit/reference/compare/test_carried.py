@@ -8,17 +8,17 @@ from typing import Any
 import pytest
 
 from verify.reference.compare.findings import DOUBLE
-from verify.reference.compare.scatter import Carried, _Row
+from verify.reference.compare.scatter import CarriedRounding, _Row
 
 NAMES = ("p1", "p2", "q1", "q2")
 SIZE = Fraction(3, 2)
 
 
 def carried_at(rows: dict[int, Any], step: int) -> Any:
-    made = object.__new__(Carried)
+    made = object.__new__(CarriedRounding)
     hamiltonian = SimpleNamespace(coordinates=NAMES, degrees=2)
     vars(made).update(_orbit=SimpleNamespace(hamiltonian=hamiltonian), _rows=rows)
-    return made.at(step)
+    return made.spreads_at(step)
 
 
 @pytest.mark.parametrize("step", [1, 9, 100, 5000])

@@ -11,7 +11,7 @@ import pytest
 
 from tests.unit.reference.compare.test_compare import named
 from verify.errors import InputError
-from verify.reference.compare.compare import Compared, compare
+from verify.reference.compare.compare import Comparison, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.submitted import read
@@ -82,7 +82,7 @@ WELL = {"scene": "driven-duffing", "step_size": "0.01", "q0": "0.5", "p0": "-0.5
 MATHIEU = {"scene": "driven-mathieu", "step_size": "0.01", "q0": "1", "p0": "0"}
 
 
-def of(ours: Published, folder: Path, text: str, **given: str) -> Compared:
+def of(ours: Published, folder: Path, text: str, **given: str) -> Comparison:
     path = folder / "theirs.csv"
     path.write_text(text)
     return compare(ours, read(path, ours, given, {}))

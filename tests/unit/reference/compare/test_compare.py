@@ -21,9 +21,9 @@ from tests.helpers.programs.submitted_programs import (
     lie3,
 )
 from verify.reference.compare.column_meanings import readings
-from verify.reference.compare.compare import Compared, compare
+from verify.reference.compare.compare import Comparison, compare
 from verify.reference.compare.findings import Verdict
-from verify.reference.compare.mistakes import of_states
+from verify.reference.compare.mistakes import state_mistakes
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import read
@@ -43,7 +43,9 @@ def ours() -> Published:
     return load(PUBLISHED, "duffing")
 
 
-def of(ours: Published, folder: Path, program: Program, table: str = "", **given: str) -> Compared:
+def of(
+    ours: Published, folder: Path, program: Program, table: str = "", **given: str
+) -> Comparison:
     path = folder / "theirs.csv"
     path.write_text(table or program.table())
     said = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", **given}
@@ -51,7 +53,7 @@ def of(ours: Published, folder: Path, program: Program, table: str = "", **given
     return compare(ours, read(path, ours, said, {}))
 
 
-def named(found: Compared) -> list[set[str]]:
+def named(found: Comparison) -> list[set[str]]:
     return [{name for name, _ in x.mistakes} for x in found.diagnoses]
 
 
@@ -242,7 +244,7 @@ def test_another_reading_of_an_area_error_is_named(
 
 def test_every_mistake_has_its_table(ours: Published) -> None:
     run = next(x for x in ours.scene("duffing") if x.run.scheme == "lie2" and x.run.p == "1.5")
-    names = {x.name for x in of_states(Setting(run.orbit, Points({})))}
+    names = {x.name for x in state_mistakes(Setting(run.orbit, Points({})))}
     assert {n for n in names if not n.startswith("scheme ")} == {
         n for n in MISTAKES if not n.startswith("scheme ") and n not in ("double-h", "single")
     }

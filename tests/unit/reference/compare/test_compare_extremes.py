@@ -10,7 +10,7 @@ import pytest
 
 from verify.errors import InputError
 from verify.reference.compare.agreement import is_single, number
-from verify.reference.compare.compare import Compared, compare
+from verify.reference.compare.compare import Comparison, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.judge import may_overflow
 from verify.reference.compare.published import PublishedRun, load
@@ -37,7 +37,9 @@ def run_of(scene: str, scheme: str, h: float, q: float) -> PublishedRun:
     return next(x for x in load(PUBLISHED, scene).runs() if tuple(x.inputs.values())[:3] == inputs)
 
 
-def of(folder: Path, run: PublishedRun, step: Step, change: Callable[[int, Any], Any]) -> Compared:
+def of(
+    folder: Path, run: PublishedRun, step: Step, change: Callable[[int, Any], Any]
+) -> Comparison:
     """A table of p and q by the step in doubles, p of each row changed."""
     _, h, q, p = run.inputs.values()
     lines = ["step,p,q"]
@@ -99,7 +101,7 @@ def test_a_number_on_the_way_may_overflow_where_none_of_the_run_does() -> None:
 def test_a_large_angle_scatters_p_as_much_as_doubles_do() -> None:
     """q = 10⁸ is known to 10⁻⁸ in doubles, and so is the force after one step; h = 0.01."""
     run = run_of("extreme-pendulum-top", "lie2", 0.01, 1e8)
-    spreads = Scatter([run.orbit]).at(0, 100)
+    spreads = Scatter([run.orbit]).spreads_at(0, 100)
     assert spreads is not None
     assert spreads["p"].worst > 1e7
 
@@ -130,7 +132,7 @@ def test_an_exponent_may_not_be_huge() -> None:
 RIM = "9999999999999999999999/10000000000000000000000"  # q = 1 is an unstable equilibrium
 
 
-def soft(folder: Path, rows: str) -> Compared:
+def soft(folder: Path, rows: str) -> Comparison:
     ours = load(PUBLISHED, "extreme-soft-duffing")
     path = folder / "theirs.csv"
     path.write_text(f"step,p,q\n{rows}\n")

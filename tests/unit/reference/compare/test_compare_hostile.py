@@ -23,5 +23,5 @@ def test_a_number_of_very_many_digits_is_refused(tmp_path: Path, part: str) -> N
 
 def test_a_mistake_is_not_run_for_very_many_steps() -> None:
     case = next(load(PUBLISHED, "extreme-zero").runs()).orbit
-    assert Points({}).at(case, 10**30, 30) is None
-    assert Points({}).at(case, 10, 30) is not None
+    assert Points({}).point_at(case, 10**30, 30) is None
+    assert Points({}).point_at(case, 10, 30) is not None

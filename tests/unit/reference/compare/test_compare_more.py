@@ -17,7 +17,7 @@ from tests.helpers.programs.submitted_programs import (
 )
 from tests.unit.reference.compare.test_compare import CORNER, ORIGIN, named, of, single
 from verify.reference.compare.compare import compare
-from verify.reference.compare.mistakes import of_states
+from verify.reference.compare.mistakes import state_mistakes
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import read
@@ -51,7 +51,7 @@ def test_a_leapfrogs_half_step_is_named(
 
 def test_a_half_step_of_position_verlet_is_of_q(ours: Published) -> None:
     case = next(x for x in ours.scene("duffing") if x.run.scheme == "stormer-verlet").orbit
-    found = of_states(Setting(replace(case, scheme="position-verlet"), Points({})))
+    found = state_mistakes(Setting(replace(case, scheme="position-verlet"), Points({})))
     assert {x.name for x in found if x.name.startswith("half-q")} == {
         "half-q-ahead",
         "half-q-behind",

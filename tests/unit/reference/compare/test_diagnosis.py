@@ -1,6 +1,5 @@
 """A mistake is named where it fits, and where the right reading is off by many times more."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +8,7 @@ import pytest
 
 from verify.reference.compare import diagnosis
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
+from verify.reference.compare.findings import DOUBLE, ColumnFindings, Fit, RunFindings, Verdict
 
 PLACE = (7, "lambda")
 UNIT = DOUBLE
@@ -21,9 +20,9 @@ def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
     """The names that are said of a column that is off by `right` in the right reading, and by
     `other` in the first of the others; the rest of them do not fit."""
     wrong = Fit({"lambda": Verdict.MORE})
-    wrong.parts, wrong.apart = {"lambda": PLACE[0]}, {PLACE: right}
+    wrong.parts, wrong.distances = {"lambda": PLACE[0]}, {PLACE: right}
     near = Fit({"lambda": Verdict.AGREES if fits else Verdict.MORE})
-    near.apart = {PLACE: other}
+    near.distances = {PLACE: other}
     asked: list[Any] = []
 
     def fit(_: Any, __: Any, ___: Any, read: Any = None, *, wholly: bool = True) -> Fit:
@@ -36,8 +35,10 @@ def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
         fit=fit, digits=lambda _: 17, cells={PLACE: SimpleNamespace(theirs=THEIRS)},
         names=["lambda"], right=None, state=[],
     )  # fmt: skip
-    findings = RunFindings("a run", {"lambda": Of(Verdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT)
-    named = Diagnosis(judge, findings)._of_column(None, "lambda")  # type: ignore[arg-type]
+    findings = RunFindings(
+        "a run", {"lambda": ColumnFindings(Verdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT
+    )
+    named = Diagnosis(judge, findings)._explain_column(None, "lambda")  # type: ignore[arg-type]
     return [name for name, _ in named]
 
 
@@ -60,18 +61,18 @@ def test_a_mistake_of_the_state_is_told_by_the_same_rule(
     times: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     right, other = Fit({"lambda": Verdict.MORE}), Fit({"lambda": Verdict.AGREES})
-    right.parts, right.apart = {"lambda": PLACE[0]}, {PLACE: times * ROUNDED}
-    other.apart = {PLACE: ROUNDED}
+    right.parts, right.distances = {"lambda": PLACE[0]}, {PLACE: times * ROUNDED}
+    other.distances = {PLACE: ROUNDED}
     late = SimpleNamespace(name="late", says="a step late", setting="late", synonyms=())
     judge = SimpleNamespace(
         fit=lambda setting, *_, **__: other if setting == "late" else right,
         units=lambda: [UNIT], right="right", cells={PLACE: SimpleNamespace(theirs=THEIRS)},
-        known=lambda *_: {},
+        numbers=lambda *_: {},
     )  # fmt: skip
-    for where in ("of_inputs", "of_states"):
-        names: Callable[[Any], Any] = lambda _, where=where: [late] if where == "of_states" else []  # type: ignore[misc]  # noqa: E731
-        monkeypatch.setattr(diagnosis, where, names)
-    found = list(Diagnosis(judge, RunFindings("a run"))._fitting(["lambda"]))  # type: ignore[arg-type]
+    for where in ("input_mistakes", "state_mistakes"):
+        mistakes = [late] if where == "state_mistakes" else []
+        monkeypatch.setattr(diagnosis, where, lambda _, mistakes=mistakes: mistakes)
+    found = list(Diagnosis(judge, RunFindings("a run"))._fitting_mistakes(["lambda"]))  # type: ignore[arg-type]
     assert found == ([late] if times >= 30 else [])
 
 

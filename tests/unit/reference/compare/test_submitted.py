@@ -9,7 +9,7 @@ import pytest
 from tests.helpers.programs.submitted_programs import Program
 from verify.errors import InputError
 from verify.reference.compare.published import Published, load
-from verify.reference.compare.rows import Theirs
+from verify.reference.compare.rows import SubmittedTable
 from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED
 
@@ -23,8 +23,10 @@ def ours() -> Published:
 
 
 @pytest.fixture
-def table(ours: Published, tmp_path: Path) -> Callable[..., Theirs]:
-    def read_it(text: str | bytes, names: dict[str, str] | None = None, **given: str) -> Theirs:
+def table(ours: Published, tmp_path: Path) -> Callable[..., SubmittedTable]:
+    def read_it(
+        text: str | bytes, names: dict[str, str] | None = None, **given: str
+    ) -> SubmittedTable:
         path = tmp_path / "theirs.csv"
         path.write_bytes(text.encode() if isinstance(text, str) else text)
         return read(path, ours, given or GIVEN, names or {})
@@ -51,7 +53,9 @@ FORMS = {
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_a_table_is_read_in_the_form_that_it_has(table: Callable[..., Theirs], form: str) -> None:
+def test_a_table_is_read_in_the_form_that_it_has(
+    table: Callable[..., SubmittedTable], form: str
+) -> None:
     found = table(FORMS[form])
     ((_, rows),) = found.runs.values()
     assert sorted(rows) == [0, 1, 10, 100]
@@ -61,7 +65,7 @@ def test_a_table_is_read_in_the_form_that_it_has(table: Callable[..., Theirs], f
 
 
 def test_keys_are_columns_or_options(
-    table: Callable[..., Theirs], ours: Published, tmp_path: Path
+    table: Callable[..., SubmittedTable], ours: Published, tmp_path: Path
 ) -> None:
     head, *lines = GOOD.splitlines()
     keyed = "\n".join([f"scheme,h,q0,p0,{head}", *(f"lie2,0.01,1.5,0,{x}" for x in lines)])
@@ -76,7 +80,7 @@ def test_keys_are_columns_or_options(
 
 @pytest.mark.parametrize("q0", ["0.1", "1.5", "7"])
 def test_an_input_of_which_the_scene_has_several_is_wanted(
-    table: Callable[..., Theirs], q0: str
+    table: Callable[..., SubmittedTable], q0: str
 ) -> None:
     told = {name: x for name, x in GIVEN.items() if name != "p0"} | {"q0": q0}
     with pytest.raises(InputError, match=r"--p: .*no column of theirs.csv is p0; .*has: 0, 1\.5"):
@@ -89,14 +93,16 @@ def path_of(folder: Path, content: str) -> Path:
     return path
 
 
-def test_an_h_that_reads_as_the_same_double_is_taken_and_told(table: Callable[..., Theirs]) -> None:
+def test_an_h_that_reads_as_the_same_double_is_taken_and_told(
+    table: Callable[..., SubmittedTable],
+) -> None:
     found = table(GOOD, **(GIVEN | {"step_size": "0.01000000000000000020816681711721685"}))
     assert len(found.runs) == 1
     assert set(found.read_as) == {"step_size"}
     assert table(GOOD, **(GIVEN | {"step_size": "0.01001"})).runs == {}
 
 
-def test_columns_may_have_other_names(table: Callable[..., Theirs]) -> None:
+def test_columns_may_have_other_names(table: Callable[..., SubmittedTable]) -> None:
     renamed = GOOD.replace("step,p,q", "step,velocity,position")
     found = table(renamed, {"q": "position", "p": "velocity"})
     ((_, rows),) = found.runs.values()
@@ -108,7 +114,7 @@ def test_columns_may_have_other_names(table: Callable[..., Theirs]) -> None:
         table(GOOD, {"pp": "p"})
 
 
-def test_rows_that_the_data_do_not_have_are_counted(table: Callable[..., Theirs]) -> None:
+def test_rows_that_the_data_do_not_have_are_counted(table: Callable[..., SubmittedTable]) -> None:
     found = table(Program().table(range(0, 12)))
     assert (found.rows, found.other_steps, found.outside) == (12, 9, 0)
     other = table(GOOD.replace("step,", "scheme,step,").replace("\n", "\nlie77,").rstrip("lie7,"),
@@ -118,7 +124,7 @@ def test_rows_that_the_data_do_not_have_are_counted(table: Callable[..., Theirs]
     assert other.first_outside.endswith(", scheme = lie77")
 
 
-def test_a_name_in_the_file_cannot_reach_the_terminal(table: Callable[..., Theirs]) -> None:
+def test_a_name_in_the_file_cannot_reach_the_terminal(table: Callable[..., SubmittedTable]) -> None:
     found = table(GOOD.replace("step,p,q", "step,p,\x1b[31mq"))
     assert found.ignored == ("\N{REPLACEMENT CHARACTER}[31mq",)
     long = table(GOOD.replace("step,p,q", f"step,p,{'q' * 500}"))
@@ -149,7 +155,7 @@ BAD = {
 
 @pytest.mark.parametrize("what", BAD)
 def test_what_is_no_table_is_one_line_that_says_why(
-    table: Callable[..., Theirs], what: str
+    table: Callable[..., SubmittedTable], what: str
 ) -> None:
     content, problem = BAD[what]
     with pytest.raises(InputError, match=problem) as caught:
@@ -159,7 +165,7 @@ def test_what_is_no_table_is_one_line_that_says_why(
 
 
 @pytest.mark.left_to_ci
-def test_a_long_table_is_not_held_in_memory(table: Callable[..., Theirs]) -> None:
+def test_a_long_table_is_not_held_in_memory(table: Callable[..., SubmittedTable]) -> None:
     lines = "".join(f"{n},0.123456789012345,1.23456789012345\n" for n in range(10_000, 40_000))
     content = (GOOD + lines).encode()
     tracemalloc.start()

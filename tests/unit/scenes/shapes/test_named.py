@@ -189,7 +189,7 @@ def winding(points: np.ndarray) -> int:
 
 def test_a_placed_shape_is_scaled_about_the_origin_and_moved() -> None:
     mp = precise(30)
-    placed = shapes.get("square").placed(Fraction(3, 10), Fraction(-2), Fraction(1, 2))
+    placed = shapes.get("square").place_at(Fraction(3, 10), Fraction(-2), Fraction(1, 2))
     x, y = placed.outlines[0].arcs[0](mp, mp.mpf(0))
     assert x == number(mp, Fraction(3, 10)) - mp.mpf(1) / 2
     assert y == mp.mpf(-5) / 2

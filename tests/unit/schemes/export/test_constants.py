@@ -52,7 +52,7 @@ def test_each_number_is_taken_out_once_with_its_sign_before() -> None:
     x, y = sympy.symbols("x y", real=True)
     found = Constants(lambda k: f"c{k}")
     third, root = sympy.Rational(1, 3), sympy.cbrt(2)
-    left = found.taken_out(third * x - third * y**2 + root * x / 5 + 7 * sympy.sqrt(x) + 2)
+    left = found.extract(third * x - third * y**2 + root * x / 5 + 7 * sympy.sqrt(x) + 2)
     assert {c.exact for c in found} == {"1/3", "2**(1/3)/5"}
     values = {sympy.Symbol(c.name, real=True): sympy.sympify(c.exact) for c in found}
     gap = left.subs(values) - (third * x - third * y**2 + root * x / 5 + 7 * sympy.sqrt(x) + 2)

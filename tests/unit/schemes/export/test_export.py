@@ -17,7 +17,7 @@ from tests.helpers.maps import by_formulas
 from verify import InputError, schemes
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP
-from verify.calls.given import hamiltonian_from
+from verify.calls.inputs import hamiltonian_from
 from verify.schemes.maps.parts import parts_of
 
 Functions = tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]

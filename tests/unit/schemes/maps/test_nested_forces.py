@@ -11,7 +11,7 @@ from verify.algebra import formula as formulas
 from verify.algebra.domain import Domain
 from verify.algebra.formula import parse, read, symbol
 from verify.algebra.requirement import Requirement
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.errors import LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
@@ -73,15 +73,17 @@ def test_what_is_not_simplified_in_time_is_asked_for_as_it_is_written() -> None:
 
 def test_a_sign_that_is_seen_in_time_is_still_seen() -> None:
     q, h = symbol("q"), symbol("h")
-    assert Domain.of([Requirement(1 + q**2 + h**4, "!=")]) == Domain()
-    assert Domain.of([Requirement(parse("q**4 + 2*q**2 + 3"), ">")]) == Domain()
-    assert Domain.of([Requirement(parse("q**2 - 1"), ">")]).texts == ("q**2 - 1 > 0",)
+    assert Domain.from_requirements([Requirement(1 + q**2 + h**4, "!=")]) == Domain()
+    assert Domain.from_requirements([Requirement(parse("q**4 + 2*q**2 + 3"), ">")]) == Domain()
+    assert Domain.from_requirements([Requirement(parse("q**2 - 1"), ">")]).texts == (
+        "q**2 - 1 > 0",
+    )
 
 
 def test_a_formula_that_is_not_read_in_time_is_refused_by_its_name(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert read("sin(q)/(1 + cos(q)**2)", source="made")
-    monkeypatch.setattr(formulas, "limited", lambda *of: limited(*of, most=20))
+    monkeypatch.setattr(formulas, "limit_effort", lambda *of: limit_effort(*of, most=20))
     with pytest.raises(LimitError, match=r"made=tanh.*: to read it takes too long"):
         read("tanh(q/7)/(1 + cos(3*q)**2)", source="made")

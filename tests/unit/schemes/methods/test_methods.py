@@ -13,7 +13,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.proof import Proof
-from verify.proof.symmetry import by_series
+from verify.proof.symmetry import judge_symmetry
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict
 
@@ -38,7 +38,9 @@ def proof_of(scheme_name: str, hamiltonian: Hamiltonian) -> Proof:
 
 @pytest.mark.parametrize("file", FILES.names)
 def test_each_file_answers_to_its_names_and_to_no_other(file: str) -> None:
-    answered = [name for name in (*NAMES, *USERS_OWN) if schemes._made(file, name) is not None]
+    answered = [
+        name for name in (*NAMES, *USERS_OWN) if schemes._scheme_from_file(file, name) is not None
+    ]
     assert answered, "an orphan: no name reaches this file"
     told = getattr(FILES.module(file), "EXAMPLES", [file])
     assert [name for name in answered if name not in USERS_OWN] == list(told)
@@ -124,7 +126,9 @@ def test_a_scheme_is_symmetric_exactly_where_it_claims_to_be(name: str) -> None:
     found = prove_symmetry(scheme)
     assert found.verdict is (Verdict.PROVED if scheme.symmetric else Verdict.REFUTED), found.reason
     if scheme.symmetric and scheme.explicit:
-        series = by_series(scheme.step_map(Hamiltonian.parse("p**3/3 + p**2/2 + q**3 - q**2")), 5)
+        series = judge_symmetry(
+            scheme.step_map(Hamiltonian.parse("p**3/3 + p**2/2 + q**3 - q**2")), 5
+        )
         assert (series.verdict, series.power) == (Verdict.UNDECIDED, None)
     if not scheme.symmetric:
         assert found.power is not None

@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
-from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluated
+from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluate
 from verify.schemes.printed.splitting_order import judge_order
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
@@ -241,7 +241,7 @@ def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
 def _slope(name: str) -> float:
     """By how much one step's error on the pendulum shrinks when h is halved, as a power of 2."""
     numbers = {n: float(x) for n, x in table(name).printed.values.items()}
-    sizes = [evaluated(size, numbers, float) for size in table(name).sizes]
+    sizes = [evaluate(size, numbers, float) for size in table(name).sizes]
     parts = list(zip([kind for kind, _ in table(name).parts], sizes, strict=True))
 
     def one(p: float, q: float, h: float) -> tuple[float, float]:

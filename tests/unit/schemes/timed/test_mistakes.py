@@ -8,7 +8,7 @@ import sympy
 from verify.schemes import get
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.mistakes import Reading, mistakes_of_splitting, name_of
+from verify.schemes.conditions.timed.mistakes import Reading, find_mistakes, name_of
 from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, ZERO, ONE, HALF = sympy.Rational, sympy.S.Zero, sympy.S.One, sympy.S.Half
@@ -26,7 +26,7 @@ def clocks(wanted):
 
 
 def named(times, kinetic=Kinetic.AUTONOMOUS, within=Fraction(0)):
-    return mistakes_of_splitting(Splitting(PARTS, times, kinetic), within)
+    return find_mistakes(Splitting(PARTS, times, kinetic), within)
 
 
 @pytest.mark.parametrize(
@@ -66,13 +66,13 @@ def test_kicks_and_drifts_have_each_their_own_name() -> None:
     assert named((ZERO,) * len(PARTS), Kinetic.QUADRATIC) == found[:1]
 
 
-RK4 = ImplicitTableau.of(
+RK4 = ImplicitTableau.from_numbers(
     [[0] * 4, [HALF, 0, 0, 0], [0, HALF, 0, 0], [0, 0, 1, 0]], [R(1, 6), R(1, 3), R(1, 3), R(1, 6)]
 )
 
 
 def named_stages(clock=None):
-    numbers = RK4.at_times(clock).numbers
+    numbers = RK4.with_times(clock).numbers
     ring, weights = numbers.ring, numbers.b
     right = [ring.reduce(sum(row, ring.zero)) for row in numbers.a]
     before = [sum(weights[:k], ring.zero) for k in range(4)]

@@ -10,7 +10,7 @@ from tests.helpers.stepping.steps_in_time import agreement, flow, problem, runge
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get
-from verify.schemes.conditions.coloured_trees import all_trees, equation_text, of_all
+from verify.schemes.conditions.coloured_trees import all_trees, equation_text, unrestricted_grammar
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.timed.for_scheme import conditions_for
@@ -18,7 +18,7 @@ from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, F = sympy.Rational, Fraction
-TIMED = of_all(1, timed=True)
+TIMED = unrestricted_grammar(1, timed=True)
 CLASSES = {None: "any", Kinetic.GENERAL: "general", Kinetic.MASS: "mass",
            Kinetic.QUADRATIC: "quadratic", Kinetic.AUTONOMOUS: "autonomous"}  # fmt: skip
 TABLEAUS = {
@@ -61,7 +61,7 @@ def by_series(rows, weights, clock, kind: str, most: int) -> int:
 @pytest.mark.parametrize("seed", range(20))
 def test_the_order_is_that_of_the_steps_series(seed: int) -> None:
     rows, weights, clock = drawn(seed)
-    tableau, most = ImplicitTableau.of(rows, weights).at_times(clock), 4
+    tableau, most = ImplicitTableau.from_numbers(rows, weights).with_times(clock), 4
     for kinetic in (None, Kinetic.MASS, Kinetic.QUADRATIC):
         found, _ = agreed_order(TreeConditions(tableau, kinetic), most - 2)
         assert found == by_series(rows, weights, clock, CLASSES[kinetic], most), kinetic
@@ -71,7 +71,7 @@ def test_samples_have_several_orders() -> None:
     found = set()
     for seed in range(20):
         rows, weights, clock = drawn(seed)
-        tableau = ImplicitTableau.of(rows, weights).at_times(clock)
+        tableau = ImplicitTableau.from_numbers(rows, weights).with_times(clock)
         found.add(agreed_order(TreeConditions(tableau), 2)[0])
     assert {1, 2, 3, 4} <= found
 
@@ -105,7 +105,7 @@ def test_with_right_clocks_each_tree_with_leaves_of_time_holds(name: str) -> Non
 def test_one_stage_of_the_wrong_time_is_refuted_with_its_residue() -> None:
     rows, weights = TABLEAUS["rk4"]
     clock = [0, R(1, 2), R(1, 2), 1 + R(1, 10**6)]
-    tableau = ImplicitTableau.of(rows, weights).at_times(clock)
+    tableau = ImplicitTableau.from_numbers(rows, weights).with_times(clock)
     order, wrong = agreed_order(TreeConditions(tableau), 4)
     assert (order, wrong.name, wrong.residue) == (1, "b·t = 1/2", "1.6667e-07")
 
@@ -132,8 +132,8 @@ def test_conditions_are_written_with_t_for_the_stages_times() -> None:
 
 
 def test_bad_input_is_refused() -> None:
-    tableau = ImplicitTableau.of([[R(1, 2)]], [1])
+    tableau = ImplicitTableau.from_numbers([[R(1, 2)]], [1])
     with pytest.raises(ValueError, match="as many stages"):
-        tableau.at_times([0, 1])
+        tableau.with_times([0, 1])
     with pytest.raises(InputError, match="up to 8"):
-        TreeConditions(tableau.at_times([0])).order_conditions(9)
+        TreeConditions(tableau.with_times([0])).order_conditions(9)

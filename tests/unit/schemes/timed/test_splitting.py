@@ -17,7 +17,7 @@ from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.quadratic import combinations
-from verify.schemes.conditions.words.words import joined, lyndon, text, words
+from verify.schemes.conditions.words.words import concatenate, lyndon, text, words
 
 R, F = sympy.Rational, Fraction
 KINDS = {
@@ -208,7 +208,10 @@ def brackets(kinds: str, most: int, quadratic: bool):
         words_in, h = element
         found: dict = {}
         for word, n in words_in.items():
-            for other, sign in ((joined((letter,), word), n), (joined(word, (letter,)), -n)):
+            for other, sign in (
+                (concatenate((letter,), word), n),
+                (concatenate(word, (letter,)), -n),
+            ):
                 found[other] = found.get(other, 0) + sign
         own = hamiltonian(letter)
         value = diff(own, "p") * diff(h, "q") - diff(own, "q") * diff(h, "p")

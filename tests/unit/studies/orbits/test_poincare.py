@@ -20,8 +20,8 @@ from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene
 from verify.studies.kinds.orbits import STUDY
 from verify.studies.orbits import by_exact_flow, by_scheme
-from verify.studies.orbits.at_surface import Asked, sections_of
-from verify.studies.orbits.passes import Surface, together
+from verify.studies.orbits.at_surface import SectionRequest, sections_of
+from verify.studies.orbits.passes import Surface, count_agreeing
 from verify.studies.plan import plan_scenes
 
 OSCILLATORS = Hamiltonian.parse("(p1**2 + q1**2)/2 + p2**2/2 + q2**2")
@@ -38,7 +38,7 @@ def made(
     name: str, *starts: Any, of: Hamiltonian = HENON_HEILES, surface: Surface = RISING,
     steps: int = 500, digits: int = 25, h: Fraction = H,
 ) -> MapSections:  # fmt: skip
-    return sections_of(Asked(of, surface, ("q2", "p2"), h, steps, digits), name, starts)
+    return sections_of(SectionRequest(of, surface, ("q2", "p2"), h, steps, digits), name, starts)
 
 
 @pytest.mark.parametrize(("rising", "value"), [(True, 0), (False, 0), (True, Fraction(1, 4))])
@@ -59,7 +59,7 @@ def test_the_exact_flow_passes_where_algebra_says(rising: bool, value: Fraction)
 
 def test_a_scheme_passes_on_the_surface_by_a_step_of_its_own() -> None:
     given = {"step_size": H, "steps": 100, "digits": 30}
-    passes = by_scheme.passes(OSCILLATORS, "lie2", CALM, RISING, **given)  # type: ignore[arg-type]
+    passes = by_scheme.find_passes(OSCILLATORS, "lie2", CALM, RISING, **given)  # type: ignore[arg-type]
     assert len(passes.states) == 1
     assert not passes.left
     (state,) = passes.states
@@ -133,18 +133,18 @@ def test_passes_are_known_as_far_as_both_reckonings_have_them(
     again: Sequence[Fraction], known: int, apart: Fraction
 ) -> None:
     one, other = ([{"q": Fraction(x)} for x in xs] for xs in ((1, 2, 3), again))
-    assert together(one, other, Fraction(1, 5)) == (known, apart)
+    assert count_agreeing(one, other, Fraction(1, 5)) == (known, apart)
 
 
 def test_a_pass_elsewhere_is_no_longer_the_same_point(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control of `known`: a second reckoning that is off by 10⁻⁵ confirms nothing."""
-    right, calls = by_exact_flow.passes_together, iter(range(2))
+    right, calls = by_exact_flow.find_all_passes, iter(range(2))
 
     def planted(h: Any, starts: Any, surface: Surface, *rest: Any) -> Any:
         off = Fraction(next(calls), 10**5)
         return right(h, starts, Surface(surface.names, "q1", off, rising=True), *rest)
 
-    monkeypatch.setattr(by_exact_flow, "passes_together", planted)
+    monkeypatch.setattr(by_exact_flow, "find_all_passes", planted)
     assert made(EXACT_FLOW, CALM).orbits[0].known == 0
 
 
@@ -178,8 +178,8 @@ def found(folder: Path) -> PoincareResult:
     path.write_text(SCENE)
     scene = load_scene(path)
     results = execute(plan_scenes([scene]), Store(None), where=THIS_PROCESS)
-    assert STUDY.found is not None
-    (result,) = STUDY.found(scene, results)["poincare"]
+    assert STUDY.results_for_scene is not None
+    (result,) = STUDY.results_for_scene(scene, results)["poincare"]
     assert isinstance(result, PoincareResult)
     assert PoincareResult.model_validate_json(result.model_dump_json()) == result
     return result

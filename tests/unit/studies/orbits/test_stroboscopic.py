@@ -38,8 +38,8 @@ def found(
     path.write_text(head + SECTION_OF.format(periods=periods, digits=digits))
     scene = load_scene(path)
     results = execute(plan_scenes([scene]), Store(None), where=THIS_PROCESS)
-    assert STUDY.found is not None
-    (result,) = STUDY.found(scene, results)["stroboscopic"]
+    assert STUDY.results_for_scene is not None
+    (result,) = STUDY.results_for_scene(scene, results)["stroboscopic"]
     assert isinstance(result, StroboscopicResult)
     assert StroboscopicResult.model_validate_json(result.model_dump_json()) == result
     return result

@@ -33,14 +33,14 @@ def test_with_the_value_put_in_it_is_the_formula_of_the_proof(field: str) -> Non
     value = {sympy.Symbol("delta", real=True): sympy.Integer(10**12)}
     assert sympy.expand(of_symbol.subs(value) - of_value) == 0
     assert "delta" in getattr(found.symbolic, field)
-    assert found.shown is found.symbolic
+    assert found.readable is found.symbolic
 
 
 @pytest.mark.parametrize("value", [Fraction(1), Fraction(10**10), Fraction(1, 7)])
 def test_a_value_that_can_be_read_is_put_in(value: Fraction) -> None:
     found = proved(value)
     assert found.symbolic is None
-    assert found.shown is found
+    assert found.readable is found
 
 
 def test_a_long_denominator_is_long_too_and_without_formulas_there_are_none() -> None:

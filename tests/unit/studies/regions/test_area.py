@@ -113,7 +113,7 @@ def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) ->
     if preserves:
         assert abs(true.change) <= true.error
     assert abs(found.change - true.change) <= found.error + true.error
-    assert true.rounded < found.rounded / 10**9
+    assert true.rounding_error < found.rounding_error / 10**9
 
 
 @pytest.mark.left_to_ci

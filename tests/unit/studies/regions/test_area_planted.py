@@ -23,18 +23,18 @@ from tests.helpers.known_areas import (
     wide,
 )
 from verify.studies.regions import area as area_probe
-from verify.studies.regions.area import Goal, Measured, Probe
+from verify.studies.regions.area import Goal, MeasuredArea, Probe
 
 TRUE = linear_determinant("lie3", Fraction(1, 20), 40)
 
 
 def test_a_panel_that_is_dropped_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = Probe._measured
+    right = Probe._build_result
 
-    def planted(self: Probe, families: Any, *rest: Any) -> Measured:
+    def planted(self: Probe, families: Any, *rest: Any) -> MeasuredArea:
         return right(self, families[1:], *rest)
 
-    monkeypatch.setattr(Probe, "_measured", planted)
+    monkeypatch.setattr(Probe, "_build_result", planted)
     found = measured(SQUARE, MadePlane(bent))
     assert abs(found.change - Fraction(1, 3)) > 100 * found.error
 
@@ -51,7 +51,7 @@ def test_a_wrong_number_of_the_rule_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
 
     def planted(bits: int) -> Any:
         made = right(bits)
-        swept = made.swept.copy()
+        swept = made.area_matrix.copy()
         swept[2, 3] += swept[2, 3] // 10**6
         return type(made)(made.bits, made.nodes, made.weights, made.derivative, swept)
 
@@ -68,8 +68,8 @@ def test_rounding_is_measured_in_both_arithmetics() -> None:
 
     found = measured(CIRCLE, MadePlane(lossy), Goal(Fraction(0), Fraction(1, 10**9)))
     assert abs(found.change) <= found.error
-    assert found.rounded > 1e-13
-    assert measured(CIRCLE, still()).rounded < 1e-15
+    assert found.rounding_error > 1e-13
+    assert measured(CIRCLE, still()).rounding_error < 1e-15
 
 
 def test_a_sample_of_panels_in_finer_arithmetic_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,7 +79,7 @@ def test_a_sample_of_panels_in_finer_arithmetic_is_enough(monkeypatch: pytest.Mo
     monkeypatch.setattr(plane, "sampled", 1 << 30)
     every = measured(outline, plane, CHANGED)
     assert few.change == every.change
-    assert every.rounded / 8 <= few.rounded <= 8 * every.rounded
+    assert every.rounding_error / 8 <= few.rounding_error <= 8 * every.rounding_error
 
 
 @pytest.mark.parametrize("sampled", [1, 3, 10, 1000])
@@ -90,7 +90,7 @@ def test_the_rounding_of_a_sample_stands_for_all_panels(sampled: int) -> None:
     vars(probe).update(
         goals=[None],
         plane=SimpleNamespace(radius=None, sampled=sampled, finer=None),
-        _of=lambda families, _: families,
+        _select_outline=lambda families, _: families,
         _images=lambda starts, _: starts,
         _areas=lambda starts: [(7 * k + 2, -k - 3) for k in starts],
     )

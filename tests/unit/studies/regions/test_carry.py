@@ -140,7 +140,7 @@ def test_a_linear_map_changes_the_area_by_its_determinant(digits: int) -> None:
 
 def test_every_printed_number_carries_the_rounding_of_its_text() -> None:
     for value, error in ((1.5049, 0.001), (1.5, 1e-30), (-9.96e-7, 4e-9), (1e-9, 3e-9)):
-        text, bound = module._shown(Fraction(value), Fraction(error))
+        text, bound = module._format_with_error(Fraction(value), Fraction(error))
         off = abs(Fraction(text) - Fraction(value))
         assert off + Fraction(error) <= Fraction(bound) <= 3 * Fraction(error) + Fraction(1, 10**11)
 
@@ -225,13 +225,13 @@ def test_a_region_away_from_the_shapes_origin_needs_no_map_there() -> None:
 
 
 def test_a_mean_of_another_region_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = region_mean._cone
+    right = region_mean._sample_cells
     assert carried(steps=30).agree
 
     def planted(outline: Any, *given: Any) -> Any:
-        return right(outline.placed(Fraction(1, 50), Fraction(0), Fraction(1)), *given)
+        return right(outline.place_at(Fraction(1, 50), Fraction(0), Fraction(1)), *given)
 
-    monkeypatch.setattr(region_mean, "_cone", planted)
+    monkeypatch.setattr(region_mean, "_sample_cells", planted)
     assert carried(steps=30).agree is False
 
 

@@ -8,7 +8,7 @@ from tests.helpers.known_areas import linear_determinant
 from tests.unit.studies.regions.test_carry import OSCILLATOR, carried, within
 from verify.scenes.region_sections import PlacedShape
 from verify.studies.regions import area
-from verify.studies.regions.point_carriers import _greatest
+from verify.studies.regions.point_carriers import _greatest_with_error
 
 FEWER_NODES = 20_000  # what no number of nodes follows these do not either
 TRUE = linear_determinant("lie2", Fraction(1, 10), 10)
@@ -86,8 +86,8 @@ def test_a_curve_too_long_for_the_nodes_is_not_tried_with_more_digits(
 
 
 def test_a_greatest_value_is_no_better_known_than_those_that_may_be_greater() -> None:
-    assert _greatest([(1.0, 0.25), (0.5, 0.125)]) == (1.0, 0.25)
-    assert _greatest([(1.0, 0.25), (0.5, 2.0)]) == (1.0, 1.5)
+    assert _greatest_with_error([(1.0, 0.25), (0.5, 0.125)]) == (1.0, 0.25)
+    assert _greatest_with_error([(1.0, 0.25), (0.5, 2.0)]) == (1.0, 1.5)
 
 
 def test_an_image_that_is_not_resolved_is_told_even_where_area_is_preserved(

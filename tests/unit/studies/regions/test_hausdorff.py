@@ -8,7 +8,7 @@ import pytest
 
 from verify.errors import InputError
 from verify.studies.regions import hausdorff as module
-from verify.studies.regions.hausdorff import RELATIVE, Distance, _one_way, hausdorff
+from verify.studies.regions.hausdorff import RELATIVE, Distance, _enclose_directed, hausdorff
 from verify.studies.regions.segment_tree import boxes, nearest, new_stack, segments, to_segment
 
 Array = Any
@@ -94,8 +94,10 @@ def test_both_directions_count() -> None:
     for first, second in (([near], [near, far]), ([near, far], [near])):
         assert holds(hausdorff(first, second), 9.1, 1e-3)
     one, two = segments([near]), segments([near, far])
-    assert _one_way(one, two, 0.0, 1e-14)[1] < 1e-13, "a distance of one direction is refuted"
-    assert _one_way(two, one, 0.0, 1e-14)[0] > 9
+    assert _enclose_directed(one, two, 0.0, 1e-14)[1] < 1e-13, (
+        "a distance of one direction is refuted"
+    )
+    assert _enclose_directed(two, one, 0.0, 1e-14)[0] > 9
 
 
 def test_the_maximum_within_a_segment_is_found() -> None:
@@ -133,15 +135,15 @@ def test_the_distance_lies_in_its_enclosure_however_wide_that_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The loops as plain Python, with another accuracy."""
-    monkeypatch.setattr(module, "_compiled", lambda: module._directed)
+    monkeypatch.setattr(module, "_compile_loop", lambda: module._directed_distance)
     random = np.random.default_rng(7)
     missed = 0
     for _ in range(40):
         first, second = (segments([random.normal(size=(6, 2))]) for _ in range(2))
         monkeypatch.setattr(module, "RELATIVE", 1e-12)
-        low, high = _one_way(first, second, 0.0, 1e-14)
+        low, high = _enclose_directed(first, second, 0.0, 1e-14)
         monkeypatch.setattr(module, "RELATIVE", 0.2)
-        least, most = _one_way(first, second, 0.0, 1e-14)
+        least, most = _enclose_directed(first, second, 0.0, 1e-14)
         assert least <= high
         assert low <= most <= least * 1.2 + 1e-13
         missed += least < low - 1e-6

@@ -29,7 +29,7 @@ def carried(
     scheme: str = "lie2", hamiltonian: Hamiltonian = HENON_HEILES, shape: str = "circle",
     plane: int = 1, steps: int = N, h: Fraction = H, digits: int = 17, mean: bool = True,
 ) -> FlowImage:  # fmt: skip
-    place = Place.of(POINT, plane)
+    place = Place.from_point(POINT, plane)
     q, p = POINT[f"q{plane}"], POINT[f"p{plane}"]
     put = PlacedShape(shape=shape, centre={"q": q, "p": p}, scale=Fraction(1, 10))  # type: ignore[arg-type]
     return carry(
@@ -151,13 +151,13 @@ def test_the_defect_of_another_plane_is_noticed(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_curve_that_is_carried_wrongly_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """One momentum is off by 10⁻⁶ of itself: no picture shows it."""
-    right = point_carriers._image
+    right = point_carriers._apply_map
 
     def planted(point_map: Any, place: Any, points: Any) -> Any:
         q1, q2, p1, p2 = right(point_map, place, points)
         return q1, q2, p1 * (1 + 1e-6), p2
 
-    monkeypatch.setattr(point_carriers, "_image", planted)
+    monkeypatch.setattr(point_carriers, "_apply_map", planted)
     assert carried(steps=20).agree is False
 
 

@@ -19,7 +19,7 @@ from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions import mean_lambda as region_mean
 from verify.studies.regions.area import Goal
-from verify.studies.regions.mean_lambda import _cone, mean_over, middle_of
+from verify.studies.regions.mean_lambda import _sample_cells, find_middle, mean_over
 
 CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
@@ -27,13 +27,13 @@ H, N = Fraction(1, 10), 30
 
 
 def placed(outline: Outline, q: Any, p: Any, scale: Any) -> Outline:
-    return outline.placed(Fraction(q), Fraction(p), Fraction(scale))
+    return outline.place_at(Fraction(q), Fraction(p), Fraction(scale))
 
 
 def integral(f: Any, outline: Outline, centre: tuple[float, float]) -> float:
     arcs = range(len(outline.arcs))
     cells = [(k, s / 8, (s + 1) / 8, 0.0, 1.0) for k in arcs for s in range(8)]
-    x, y, weights = _cone(outline, centre, cells)
+    x, y, weights = _sample_cells(outline, centre, cells)
     return float(weights @ f(x, y))
 
 
@@ -54,14 +54,14 @@ def test_the_mean_for_a_linear_map_is_the_determinant() -> None:
 
 @pytest.mark.parametrize("outline", [CIRCLE, SQUARE], ids=["circle", "square"])
 def test_the_middle_of_what_is_the_same_on_all_sides_is_its_centre(outline: Outline) -> None:
-    assert middle_of(placed(outline, 3, "-1/2", "1/4")) == pytest.approx((3, -0.5), abs=1e-15)
+    assert find_middle(placed(outline, 3, "-1/2", "1/4")) == pytest.approx((3, -0.5), abs=1e-15)
 
 
 def test_rays_from_the_middle_of_a_cat_do_not_leave_it() -> None:
     """What is swept has one sign: no ray meets the outline twice."""
     cells = [(arc, k / 8, (k + 1) / 8, 0.0, 1.0) for arc in range(len(CAT.arcs)) for k in range(8)]
-    signs = np.sign(_cone(CAT, middle_of(CAT), cells)[2])
-    outside = np.sign(_cone(CAT, (5.0, 1.0), cells)[2])
+    signs = np.sign(_sample_cells(CAT, find_middle(CAT), cells)[2])
+    outside = np.sign(_sample_cells(CAT, (5.0, 1.0), cells)[2])
     assert len(set(signs)) == 1 < len(set(outside))
 
 
@@ -79,7 +79,7 @@ def apart(monkeypatch: pytest.MonkeyPatch, planted: Any, steps: int = N) -> floa
     """By how many of its errors the mean is away from the change of area."""
     own = placed(SQUARE, 1, 0, "1/2")
     with monkeypatch.context() as patch:
-        patch.setattr(region_mean, "_cone", planted)
+        patch.setattr(region_mean, "_sample_cells", planted)
         found = mean_over(own, (1.0, 0.0), DUFFING, "lie2", H, steps)
     area = measured(own, floats("lie2", H, N, DUFFING), CHANGED)
     return abs(found.value - float(area.change)) / (found.error + float(area.error))
@@ -90,17 +90,17 @@ def test_half_the_region_a_flipped_sign_and_a_step_too_many_are_seen(
 ) -> None:
     def half(*given: Any) -> Any:
         """What rays to two of the four sides sweep."""
-        x, y, weights = _cone(*given)
+        x, y, weights = _sample_cells(*given)
         return x, y, np.where(x - 1 > y, weights, 0.0)
 
     def one_sign(*given: Any) -> Any:
-        x, y, weights = _cone(*given)
+        x, y, weights = _sample_cells(*given)
         return 2 - x, y + 0.5, weights
 
-    assert apart(monkeypatch, _cone) <= 1
+    assert apart(monkeypatch, _sample_cells) <= 1
     assert apart(monkeypatch, half) > 10
     assert apart(monkeypatch, one_sign) > 10
-    assert apart(monkeypatch, _cone, steps=N + 1) > 10
+    assert apart(monkeypatch, _sample_cells, steps=N + 1) > 10
 
 
 def test_sums_that_agree_by_chance_are_not_taken_for_right() -> None:

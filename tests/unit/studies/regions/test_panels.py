@@ -52,7 +52,7 @@ def test_the_area_that_powers_sweep(a: int, b: int) -> None:
 
 
 def test_the_swept_matrix_is_antisymmetric_so_that_no_curve_sweeps_itself() -> None:
-    swept = rule(80).swept
+    swept = rule(80).area_matrix
     assert (swept == -swept.T).all()
 
 

@@ -9,9 +9,9 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_parts import TangentGrowth
-from verify.studies.separation.growth import motion_of, power_law
+from verify.studies.separation.growth import classify_motion, fit_power_law
 from verify.studies.separation.separate import separate
-from verify.studies.separation.ways.matrices import of_product, size_of
+from verify.studies.separation.ways.matrices import compute_size, entries_of_defect
 
 MARKS = tuple(range(4, 2049, 4))
 HENON = systems.get("henon-heiles").hamiltonian({})
@@ -21,7 +21,7 @@ LINEAR = Hamiltonian.parse("(p1**2 + p2**2 + q1**2 + 2*q2**2)/2 + q1*q2/2", {})
 @pytest.mark.parametrize(("power", "name"), [(0, "bounded"), (1, "N"), (2, "N²")])
 def test_a_power_is_found_under_an_oscillation(power: int, name: str) -> None:
     sizes = [Fraction(n**power * (2 + math.sin(n))) for n in MARKS]
-    found = power_law(MARKS, sizes, Fraction(0), "polynomial")
+    found = fit_power_law(MARKS, sizes, Fraction(0), "polynomial")
     assert found.name == name
     assert found.exponent == pytest.approx(power, abs=0.2)
 
@@ -29,32 +29,32 @@ def test_a_power_is_found_under_an_oscillation(power: int, name: str) -> None:
 @pytest.mark.parametrize("power", [0.5, 1.5, 3])
 def test_what_is_near_no_whole_power_is_undecided(power: float) -> None:
     sizes = [Fraction(n**power) for n in MARKS]
-    assert power_law(MARKS, sizes, Fraction(0), "polynomial").name == "undecided"
+    assert fit_power_law(MARKS, sizes, Fraction(0), "polynomial").name == "undecided"
 
 
 def test_nothing_is_fitted_to_noise_to_little_or_to_what_grows_exponentially() -> None:
     sizes = [Fraction(n) for n in MARKS]
-    assert power_law(MARKS, sizes, Fraction(10**6), "polynomial").exponent is None
-    assert power_law(MARKS[:20], sizes[:20], Fraction(0), "polynomial").exponent is None
-    assert power_law(MARKS, sizes, Fraction(0), "exponential").name == "exponential"
-    assert power_law(MARKS, [Fraction(0)] * 512, Fraction(0), "exponential").name == "bounded"
+    assert fit_power_law(MARKS, sizes, Fraction(10**6), "polynomial").exponent is None
+    assert fit_power_law(MARKS[:20], sizes[:20], Fraction(0), "polynomial").exponent is None
+    assert fit_power_law(MARKS, sizes, Fraction(0), "exponential").name == "exponential"
+    assert fit_power_law(MARKS, [Fraction(0)] * 512, Fraction(0), "exponential").name == "bounded"
 
 
 def test_a_power_of_the_tangent_map_is_not_taken_for_an_exponential() -> None:
     linear = [Fraction(4 + n * n) for n in MARKS]
-    assert motion_of(MARKS, linear) == "polynomial"
-    assert motion_of(MARKS, [Fraction(4)] * len(MARKS)) == "undecided", "it has not grown"
+    assert classify_motion(MARKS, linear) == "polynomial"
+    assert classify_motion(MARKS, [Fraction(4)] * len(MARKS)) == "undecided", "it has not grown"
     squares = [Fraction(math.exp(n / 100)) for n in MARKS]
-    assert motion_of(MARKS, squares) == "exponential"
+    assert classify_motion(MARKS, squares) == "exponential"
 
 
 def test_areas_grow_by_the_minors() -> None:
     m = [[1, 2, 0, 3], [0, 1, 5, 0], [2, 0, 1, 1], [0, 7, 0, 1]]
     pairs = [(a, b) for a in range(4) for b in range(a + 1, 4)]
     minors = [m[i][a] * m[k][b] - m[i][b] * m[k][a] for i, k in pairs for a, b in pairs]
-    found = size_of([[8 * x for x in row] for row in m], 8)
+    found = compute_size([[8 * x for x in row] for row in m], 8)
     assert found == (sum(x * x for row in m for x in row), sum(x * x for x in minors))
-    identity = of_product(lambda a, b: Fraction(int(a == b)), 4)
+    identity = entries_of_defect(lambda a, b: Fraction(int(a == b)), 4)
     assert identity == (0,) * 6
 
 

@@ -14,9 +14,9 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.studies.separation.chain import Chain
-from verify.studies.separation.links import Chains, separated_chains
+from verify.studies.separation.links import Chains, separate_chains
 from verify.studies.separation.separate import separate
 from verify.studies.separation.stepper.run import MixedRun
 from verify.studies.separation.ways.matrices import Matrices
@@ -55,7 +55,7 @@ def made(name: str) -> tuple[Chains, dict[str, list[dict[tuple[int, int], Any]]]
     start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
     timed = exact.time_dependent
     start |= {"t": Fraction(T0)} if timed else {}
-    found = alone(separated_chains(exact, "lie2", start, steps, DIGITS))
+    found = run_alone(separate_chains(exact, "lie2", start, steps, DIGITS))
     rounded = [float(Fraction(x)) for x in z]
     step = Float64Step(exact, "lie2", float(h))
     run = step.run(rounded, float(Fraction(T0)), steps)
@@ -116,8 +116,8 @@ def test_a_planted_wrong_part_is_noticed() -> None:
 @pytest.mark.parametrize("scheme", ["lie2", "rk4", "stormer-verlet"])
 def test_parts_add_up_exactly_at_every_checkpoint(scheme: str) -> None:
     start = {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}
-    found = alone(
-        separated_chains(HENON, scheme, {n: Fraction(x) for n, x in start.items()}, 50, 17)
+    found = run_alone(
+        separate_chains(HENON, scheme, {n: Fraction(x) for n, x in start.items()}, 50, 17)
     )
     for chain in (*found.plain, *found.closed_form):
         trails = [chain.trail(name)[0] for name in ("truncation", *chain.parts)]
@@ -141,7 +141,7 @@ def test_what_is_symplectic_by_proof_has_no_truncation_and_is_not_run() -> None:
 def test_the_working_w_of_the_closed_form_is_that_of_a_float64_run_bit_for_bit() -> None:
     given = {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}
     start = {n: Fraction(x) for n, x in given.items()}
-    found = alone(separated_chains(HENON, "lie2", start, 300, 17))
+    found = run_alone(separate_chains(HENON, "lie2", start, 300, 17))
     run = KernelRun(HENON, "lie2", start, 300, frozenset({"symplectic_defect"}), 0)
     ran = run.run(number_systems.get("float64", 17)).values["symplectic_defect"]
     assert max(abs(chain.final("lambda_working")[0]) for chain in found.closed_form) == ran
@@ -217,7 +217,7 @@ def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
     run = KernelRun(exact, "lie2", start, 400, frozenset({"symplectic_defect"}), 0)
     beside = MixedRun(Matrices(4), run, follow=True)
     coarse, fine = (
-        alone(beside.step_through(number_systems.get("mpfr", digits), lambda _: None))
+        run_alone(beside.step_through(number_systems.get("mpfr", digits), lambda _: None))
         for digits in (20, 60)
     )
     for name in ("trajectory", "factors", "closed_factors"):
@@ -232,8 +232,8 @@ def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
 @pytest.mark.left_to_ci
 def test_where_w_is_large_nothing_is_counted_and_a_rerun_estimates() -> None:
     start = {"p1": "0.5277", "p2": "0", "q1": "0", "q2": "-0.15", "h": "0.2"}
-    found = alone(
-        separated_chains(HENON, "rk4", {n: Fraction(x) for n, x in start.items()}, 700, 8)
+    found = run_alone(
+        separate_chains(HENON, "rk4", {n: Fraction(x) for n, x in start.items()}, 700, 8)
     )
     assert found.closed_form[0].kind == "estimated"
     assert "rerun with 15 more digits" in found.closed_form[0].methods
@@ -247,11 +247,11 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:
     start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
     start |= {"t": Fraction(T0)} if exact.time_dependent else {}
     keeper = Remembering()
-    whole = alone(separated_chains(exact, "lie2", start, steps, 17, keeper=keeper))
+    whole = run_alone(separate_chains(exact, "lie2", start, steps, 17, keeper=keeper))
     beside = [label for label in keeper.kept if label.startswith("beside ")]
     assert beside
     for label in beside:
         keeper.kept[label] = {"found": keeper.kept[label]["found"][: steps // 2]}
-    again = alone(separated_chains(exact, "lie2", start, steps, 17, keeper=keeper))
+    again = run_alone(separate_chains(exact, "lie2", start, steps, 17, keeper=keeper))
     for a, b in zip(whole.plain + whole.closed_form, again.plain + again.closed_form, strict=True):
         assert [link.trail for link in a.links] == [link.trail for link in b.links]

@@ -24,8 +24,8 @@ from verify import arithmetic as number_systems
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
-from verify.studies.separation.links import separated_chains
+from verify.lockstep import run_alone
+from verify.studies.separation.links import separate_chains
 from verify.studies.separation.separate import separate
 from verify.studies.separation.stepper.run import MixedRun
 from verify.studies.separation.ways.matrices import Matrices
@@ -64,7 +64,7 @@ def run_of(start: dict[str, Fraction], scheme: str, steps: int) -> list[Any]:
     """What is carried after each step."""
     run = MixedRun(Matrices(4), KernelRun(HENON, scheme, start, steps, frozenset(), 0), False)
     arithmetic = number_systems.get("mpfr", 40)
-    return list(alone(run.stepped(arithmetic, lambda _: None)).states)
+    return list(run_alone(run.step_all(arithmetic, lambda _: None)).states)
 
 
 def states_and_jacobians(scheme: str) -> tuple[list[list[float]], list[Matrix]]:
@@ -100,7 +100,7 @@ def test_the_steps_and_jacobians_that_are_multiplied_are_those_of_mpmath(scheme:
 def test_derivatives_and_product_are_those_of_float64s_jacobians(scheme: str) -> None:
     """Multiplied as rationals, and in float64 from the left."""
     start = {name: Fraction(x) for name, x in START.items()}
-    chains = alone(separated_chains(HENON, scheme, start, STEPS, 30))
+    chains = run_alone(separate_chains(HENON, scheme, start, STEPS, 30))
     _, jacobians = states_and_jacobians(scheme)
     exact: Matrix = identity(4)
     for j in jacobians:

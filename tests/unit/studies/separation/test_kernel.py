@@ -14,7 +14,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.schemes import get
 from verify.studies.separation.stepper.kernel import mixed_kernel
 from verify.studies.separation.stepper.run import MixedRun, marks_of
@@ -56,7 +56,7 @@ def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
 
 def by_llvm(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
     """The float64 kernel of `verify run`, by the compiler that long runs have it from."""
-    made = replace(arithmetic.get("float64", 17), compile=float64._compiled)
+    made = replace(arithmetic.get("float64", 17), compile=float64._compile_now)
     step_map = get(scheme).step_map(hamiltonian.with_symbols())
     return Writer(step_map, made, WORKING, compensated=False).kernel()
 
@@ -74,7 +74,7 @@ def states(
     run = KernelRun(hamiltonian, scheme, start, steps, WORKING, 10)
     made = arithmetic.get(name, 50)
     working = MixedRun(Determinants(), run, follow=False)
-    found = alone(working.stepped(made, lambda _: None)).states
+    found = run_alone(working.step_all(made, lambda _: None)).states
     return dict(zip(marks_of(steps, POINTS), found, strict=True))
 
 

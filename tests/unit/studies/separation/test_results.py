@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
-from verify.studies.separation.separate import grid, separate, separate_grid
+from verify.studies.separation.separate import count_steps, separate, separate_grid
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
@@ -84,7 +84,7 @@ def test_a_bad_grid_is_named_before_anything_runs(changes: dict[str, Any], named
 
 def test_the_number_of_steps_is_exact_where_h_divides_the_time() -> None:
     sizes = [Fraction(1, 10), "0.001", "0.3"]
-    assert [count for _, count in grid(sizes, None, "0.7")] == [7, 700, 2]
+    assert [count for _, count in count_steps(sizes, None, "0.7")] == [7, 700, 2]
 
 
 @pytest.mark.left_to_ci

@@ -14,7 +14,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.lockstep import alone
+from verify.lockstep import run_alone
 from verify.runs.run import run
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
 from verify.studies.separation.links import LinksOnDemand
@@ -210,7 +210,7 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
     working = MixedRun(Determinants(), kernel_run, follow=True)
     coarse, fine = (
-        alone(working.step_through(x, lambda _: None)) for x in (made, mpfr.at_bits(300))
+        run_alone(working.step_through(x, lambda _: None)) for x in (made, mpfr.at_bits(300))
     )
     for name in ("trajectory", "factors", "closed_factors"):
         (x,), (y,) = getattr(coarse, name), getattr(fine, name)

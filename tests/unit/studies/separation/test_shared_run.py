@@ -12,17 +12,17 @@ from tests.helpers.constructed.scenes import HEAD, load
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
-from verify.execution.plan import Plan, given_by
+from verify.execution.plan import Plan, keys_supplied_by
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
-from verify.runs.digits_on_demand import Measured
-from verify.runs.run import AskedRun
+from verify.runs.digits_on_demand import Measurement
+from verify.runs.run import RequestedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.plan import plan_scenes
-from verify.studies.separation.task import SeparationTask, does_for_first_link
+from verify.studies.separation.task import SeparationTask, serves_first_link
 
 STEPS = 300
 
@@ -62,7 +62,7 @@ def test_both_have_one_run_in_exact_arithmetic(
     plan = planned(tmp_path)
     runs, separations = of_kind(plan, RunTask), of_kind(plan, SeparationTask)
     assert len(runs) == len(separations) == 2
-    assert given_by(plan.tasks.values()) == set(runs)
+    assert keys_supplied_by(plan.tasks.values()) == set(runs)
     results = execute(plan, Store(None), where=THIS_PROCESS)
     assert set(results) == set(plan.tasks)
     exact = {Fraction(1, 10), Fraction(1, 20)}
@@ -127,14 +127,18 @@ def test_runs_that_do_not_do_for_a_first_link_are_done_by_themselves(
     tmp_path: Path, arithmetic: str, digits: int, shared: bool
 ) -> None:
     plan = planned(tmp_path, digits, arithmetic)
-    assert bool(given_by(plan.tasks.values())) is shared is does_for_first_link(arithmetic, digits)
+    assert (
+        bool(keys_supplied_by(plan.tasks.values()))
+        is shared
+        is serves_first_link(arithmetic, digits)
+    )
     assert all((task.run is not None) is shared for task in of_kind(plan, SeparationTask).values())
 
 
 @pytest.mark.parametrize("observables", [[], ["mse"], ["lambda_max", "lambda_plain"]])
 def test_a_run_without_lambda_is_no_first_link(tmp_path: Path, observables: list[str]) -> None:
     plan = planned(tmp_path, more=f"observables = {observables}\n")
-    assert not given_by(plan.tasks.values())
+    assert not keys_supplied_by(plan.tasks.values())
     found = execute(plan, Store(None), where=THIS_PROCESS)
     assert set(found) == set(plan.tasks)
 
@@ -164,13 +168,13 @@ def test_a_shared_run_that_finds_no_digit_leaves_the_separation_its_own(
 ) -> None:
     plan = planned(tmp_path)
     expected = plain(execute(plan, Store(None), where=THIS_PROCESS))
-    whole = AskedRun.measured
+    whole = RequestedRun.take_measurement
 
-    def unknown(self: AskedRun, *given: Any) -> Course[Measured]:
+    def unknown(self: RequestedRun, *given: Any) -> Course[Measurement]:
         found = yield from whole(self, *given)
         return replace(found, bounds=replace(found.bounds, values={}, status="unresolved"))
 
-    monkeypatch.setattr(AskedRun, "measured", unknown)
+    monkeypatch.setattr(RequestedRun, "take_measurement", unknown)
     found = execute(plan, Store(None), where=THIS_PROCESS)
     separations = of_kind(plan, SeparationTask)
     assert {n: x for n, x in plain(found).items() if n in separations} == {

@@ -72,7 +72,7 @@ def test_powers_of_t_are_told_from_exponentials() -> None:
 def test_a_start_of_another_length_and_what_is_of_the_plane_are_refused() -> None:
     with pytest.raises(InputError, match=r"^q=0: has 1 of 2 numbers"):
         judged("henon-heiles", "rk4", "0.1", 1, q=[0], p=[0, 0])
-    from verify.calls.given import scene_of
+    from verify.calls.inputs import scene_of
 
     with pytest.raises(InputError, match="criteria takes p and q"):
         scene_of("henon-heiles", "rk4", None, criteria=[1])

@@ -16,7 +16,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.stability import linear
-from verify.studies.stability.linear import Y, of_map
+from verify.studies.stability.linear import Y, stability_of_map
 from verify.studies.stability.nearby_linear import linear_stability
 
 KNOWN = {
@@ -107,7 +107,7 @@ def test_schemes_of_high_order_end_at_the_same_root_by_bisection() -> None:
     ],
 )
 def test_maps_of_ones_own(p_next: str, q_next: str, end: object) -> None:
-    found = of_map("own", by_formulas(HARMONIC, p_next, q_next))
+    found = stability_of_map("own", by_formulas(HARMONIC, p_next, q_next))
     if end is None:
         assert 1.9 < float(found.decimal()) < 2
     else:
@@ -123,7 +123,7 @@ def test_a_shear_is_stable_for_no_step_as_its_powers_grow(name: str) -> None:
 
 def test_what_is_not_linear_is_refused() -> None:
     with pytest.raises(InputError, match="not linear"):
-        of_map("own", by_formulas(HARMONIC, "p - h*q**2", "q"))
+        stability_of_map("own", by_formulas(HARMONIC, "p - h*q**2", "q"))
 
 
 # -- by the product of the parts' matrices --------------------------------------------------------
@@ -141,7 +141,7 @@ def test_the_product_of_the_parts_gives_what_the_closed_form_does(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     by_product = linear_stability(name)
-    monkeypatch.setattr(linear, "_of_product", lambda *_: None)
+    monkeypatch.setattr(linear, "_stability_by_product", lambda *_: None)
     by_closed_form = linear_stability(name)
     assert by_product == by_closed_form
     assert by_product.exact == by_closed_form.exact
@@ -189,7 +189,7 @@ def test_a_splitting_of_many_parts_ends_where_powers_of_its_matrix_grow(parts: i
 
 def test_algebraic_coefficients_of_degree_fifteen_end_at_a_root_of_the_trace() -> None:
     found = linear_stability("triple-jump6")
-    made = linear.product(schemes.get("triple-jump6").step_map(HARMONIC))
+    made = linear.matrix_of_step(schemes.get("triple-jump6").step_map(HARMONIC))
     assert made is not None
     ring, (a, _, _, e) = made
     point = {"p": Fraction(0), "q": Fraction(0), "h": Fraction(found.decimal(60))}
@@ -202,7 +202,7 @@ def test_algebraic_coefficients_of_degree_fifteen_end_at_a_root_of_the_trace() -
 
 def test_a_number_that_is_not_algebraic_has_no_product() -> None:
     step = schemes.get("kick pi; drift 1").step_map(HARMONIC)
-    made = linear.product(step)
+    made = linear.matrix_of_step(step)
     assert made is not None
     ring, (a, _, _, e) = made
     assert linear.ring_polynomial(ring, a + e - 2) is None

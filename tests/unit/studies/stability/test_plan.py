@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.constructed.scenes import load
-from verify.commands.shared.input import target
+from verify.commands.shared.input import load_target
 from verify.errors import InputError
 from verify.execution.study import plan_of
 from verify.scenes.stability_sections import Stability, StabilityMap
@@ -134,7 +134,7 @@ def test_bad_maps_are_refused_in_one_line(tmp_path: Path, old: str, new: str, me
 
 @pytest.mark.parametrize("suite", ["extreme", "stiff"])
 def test_the_suites_are_scenes_that_ask_for_stability(suite: str) -> None:
-    scenes = target(suite)[1]
+    scenes = load_target(suite)[1]
     assert len(scenes) >= 5
     assert len({scene.name for scene in scenes}) == len(scenes)
     for scene in scenes:

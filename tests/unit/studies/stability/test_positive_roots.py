@@ -54,7 +54,7 @@ def test_digits_are_those_of_sympy() -> None:
                 for x in sympy.Poly(f, Z).real_roots() if x > 0]  # fmt: skip
     found = [root for root, _ in positive_roots(polynomials)]
     assert [root.decimal(40) for root in found] == [str(x.evalf(40)) for x in sorted(expected)]
-    assert found[-1].written("y") == "positive root 2 of y**5 - 7*y**3 + y + 1"
+    assert found[-1].describe("y") == "positive root 2 of y**5 - 7*y**3 + y + 1"
 
 
 def test_roots_that_hardly_differ_are_told_apart() -> None:

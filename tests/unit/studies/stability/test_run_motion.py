@@ -80,7 +80,7 @@ def test_one_point_with_too_much_energy_is_enough(motion: RunMotion) -> None:
     high = fraction(motion.precise.points[20].state[1]) + 9 * motion.orbit.reach[1]
     assert motion.stays(motion.precise)
     assert not motion.stays(changed(motion.precise, 20, 1, high))
-    assert not motion.outside(Point(0, (Fraction(0), high)))
+    assert not motion.is_outside(Point(0, (Fraction(0), high)))
 
 
 @pytest.mark.parametrize("k", [0, 1])
@@ -88,13 +88,13 @@ def test_runs_are_together_up_to_a_tenth_of_the_reach_at_every_point(
     motion: RunMotion, k: int
 ) -> None:
     own, other = motion.float64, motion.precise
-    assert motion.together(own, other)
+    assert motion.stay_together(own, other)
     for side in (-1, 1):
         on = states(other)[20][k] + side * motion.orbit.reach[k] / 10
-        assert motion.together(changed(own, 20, k, on), other)
-        assert not motion.together(changed(own, 20, k, on + side * EXACT), other)
-        assert not motion.together(other, changed(own, 20, k, on + side * EXACT))
-    assert not motion.together(replace(own, done=own.done - 1), other)
+        assert motion.stay_together(changed(own, 20, k, on), other)
+        assert not motion.stay_together(changed(own, 20, k, on + side * EXACT), other)
+        assert not motion.stay_together(other, changed(own, 20, k, on + side * EXACT))
+    assert not motion.stay_together(replace(own, done=own.done - 1), other)
 
 
 def test_where_h_has_no_value_at_a_point_the_run_does_not_stay() -> None:
@@ -102,7 +102,7 @@ def test_where_h_has_no_value_at_a_point_the_run_does_not_stay() -> None:
                          (Fraction(0), Fraction(3, 2)), 200))  # fmt: skip
     assert well.stays(well.precise)
     undefined = changed(well.precise, 20, 1, Fraction(0))
-    assert not well.outside(undefined.points[20])
+    assert not well.is_outside(undefined.points[20])
     assert not well.stays(undefined)
     assert well.energy_errors(undefined).count(None) == 1
     assert well.worst(undefined) is not None
@@ -123,5 +123,5 @@ def test_a_motion_that_rests_for_a_few_steps_only_has_not_died(
     )
     trail, period = motion.precise, motion.orbit.period
     assert period is not None
-    assert energy_drift._rests(motion, trail.onwards(trail.point(-1), energy_drift._FEW))
-    assert energy_drift._died(motion, trail, period) is died
+    assert energy_drift.is_at_rest(motion, trail.onwards(trail.point(-1), energy_drift._FEW))
+    assert energy_drift.has_died(motion, trail, period) is died

@@ -13,8 +13,8 @@ from verify.studies.stability import trail as trails
 from verify.studies.stability.trail import (
     Point,
     Run,
-    first_apart,
-    first_step,
+    find_first_apart,
+    find_first_step,
     follow,
     follow_precisely,
 )
@@ -35,7 +35,7 @@ def stepped(case: Run, steps: int) -> tuple[float, float]:
 
 def test_a_trail_has_the_states_of_a_plain_loop() -> None:
     trail = follow(GROWING, FLOAT)
-    assert trail.finished
+    assert trail.is_finished
     assert trail.points[0] == Point(0, (Fraction(0), Fraction(1)))
     assert trail.points[-1].step == GROWING.steps
     assert len(trail.points) > 100
@@ -68,19 +68,19 @@ def test_the_first_step_is_found_exactly(size: int) -> None:
     # The square of the radius grows by 1 + h² at each step.
     expected = next(n for n in range(1, 10**4) if Fraction(101, 100) ** n > size)
     trail = follow(GROWING, FLOAT)
-    assert first_step(trail, far) == expected
+    assert find_first_step(trail, far) == expected
 
 
 def test_what_does_not_happen_has_no_step() -> None:
     trail = follow(GROWING, FLOAT)
-    assert first_step(trail, lambda point: False) is None
+    assert find_first_step(trail, lambda point: False) is None
 
 
 def test_leaving_the_range_happens_at_the_step_after_the_last() -> None:
     case = replace(GROWING, step_size=Fraction(10**30), steps=200)
     trail = follow(case, FLOAT)
-    assert not trail.finished
-    found = first_step(trail, lambda point: False)
+    assert not trail.is_finished
+    found = find_first_step(trail, lambda point: False)
     assert found == trail.done + 1
     assert max(abs(x) for x in stepped(case, trail.done)) < float("inf")
 
@@ -89,7 +89,7 @@ def test_something_within_the_last_unfinished_stretch_is_found() -> None:
     case = replace(GROWING, step_size=Fraction(10**30), steps=200_000)
     trail = follow(case, FLOAT)
     assert len(trail.points) == 1  # the first stretch is not finished
-    assert first_step(trail, lambda point: abs(point.state[1]) > 10**59) == 2
+    assert find_first_step(trail, lambda point: abs(point.state[1]) > 10**59) == 2
 
 
 def test_two_runs_part_where_a_plain_comparison_says() -> None:
@@ -100,7 +100,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
     def apart(x: Point, y: Point) -> bool:
         return abs(x.state[0] - y.state[0]) > Fraction(1, 10)
 
-    found = first_apart(one, other, apart)
+    found = find_first_apart(one, other, apart)
     assert found is not None
     for steps, expected in ((found - 1, False), (found, True)):
         pair = (follow(replace(case, steps=steps), a).points[-1] for a in (coarse, fine))
@@ -110,7 +110,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
 def test_two_runs_that_stay_together_part_nowhere() -> None:
     fine = mpfr.at_bits(80)
     trail = follow(GROWING, fine)
-    assert first_apart(trail, trail, lambda x, y: abs(x.state[0] - y.state[0]) > 0) is None
+    assert find_first_apart(trail, trail, lambda x, y: abs(x.state[0] - y.state[0]) > 0) is None
 
 
 def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so(
@@ -121,7 +121,7 @@ def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so(
     case = Run(hamiltonian, "lie1", Fraction(1, 10**6), (Fraction(0), Fraction(1)), 400_000)
     trail = follow_precisely(case, 30)
     assert trail.arithmetic.name == "mpfr"
-    assert trail.finished
+    assert trail.is_finished
     assert trail.steps == 3000
 
 

@@ -101,13 +101,13 @@ def test_it_is_compiling_that_is_timed_and_not_loading_what_is_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     task = work_task()
-    found, right, asked = task.prepare(), Source.compiled, []
+    found, right, asked = task.prepare(), Source.compile, []
 
     def compiled(self: Source, *, anew: bool = False) -> Any:
         asked.append(anew)
         return right(self, anew=anew)
 
-    monkeypatch.setattr(Source, "compiled", compiled)
+    monkeypatch.setattr(Source, "compile", compiled)
     with_prepared(task, found)
     assert asked == [True] * 3  # a first one that wakes the compiler, and two schemes'
 

@@ -7,8 +7,8 @@ import pytest
 
 from tests.helpers.constructed.work import line, point
 from verify.scenes.results.work_precision import ComparisonResult, WorkLine
-from verify.studies.work_precision.lines import compare as compare_within
-from verify.studies.work_precision.lines import comparisons
+from verify.studies.work_precision.lines import compare_all
+from verify.studies.work_precision.lines import compare_lines as compare_within
 
 ALL = "1e40"  # an orbit so large that no error is left out
 
@@ -98,7 +98,7 @@ def test_schemes_of_one_order_are_compared_and_peers_never(
 ) -> None:
     lines = [power(f"s{k}", k + 1, order=-2, claimed=n) for k, n in enumerate(orders)]
     peer = power("peer", 1, claimed=None, peer=True)
-    found = comparisons([*lines, peer, peer], ALL)
+    found = compare_all([*lines, peer, peer], ALL)
     assert len(found) == count
     assert "peer" not in {name for each in found for name in (each.one, each.other)}
 

@@ -17,7 +17,7 @@ from verify.execution.execute import compute_task
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.scenes.results.work_precision import WorkPoint, WorkPrecisionResult
-from verify.studies.work_precision.lines import error_slope, lambda_slope, lg
+from verify.studies.work_precision.lines import error_slope, lambda_slope, log10_of
 from verify.studies.work_precision.measure import _digits_of_state
 from verify.studies.work_precision.runs import ROUNDING_SHARE, Ladder, Problem, reference
 
@@ -145,7 +145,7 @@ def test_points_limited_by_rounding_are_recognised_and_kept_out_of_the_slope() -
     value = error_slope(found).value
     assert value is not None
     assert abs(float(value) - 4) < 0.1
-    every = [(lg(p.step_size or ""), lg(p.error.value)) for p in found if p.error]
+    every = [(log10_of(p.step_size or ""), log10_of(p.error.value)) for p in found if p.error]
     assert slope(every)[0] < 3.5, "without the exclusion the order is wrong"
 
 

@@ -6,7 +6,12 @@ from collections.abc import Callable
 import pytest
 
 from verify.studies.work_precision import timing
-from verify.studies.work_precision.timing import Timed, above, interleaved, less
+from verify.studies.work_precision.timing import (
+    RunTime,
+    subtract_blank,
+    subtract_or_none,
+    time_interleaved,
+)
 
 
 class Clock:
@@ -15,7 +20,7 @@ class Clock:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 0
         self.seen: list[str] = []
-        monkeypatch.setattr(timing, "clock", lambda: (lambda: self.now, "by hand"))
+        monkeypatch.setattr(timing, "choose_clock", lambda: (lambda: self.now, "by hand"))
 
     def call(self, name: str, *takes: int) -> Callable[[], None]:
         """Takes so many nanoseconds, the last of them again and again."""
@@ -35,8 +40,8 @@ def test_every_call_is_timed_in_each_round_before_any_is_timed_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     clock = Clock(monkeypatch)
-    found = interleaved([clock.call("a", LONG), clock.call("b", 2 * LONG)], 3)
-    assert found == [Timed(0.05, 0.05), Timed(0.1, 0.1)]
+    found = time_interleaved([clock.call("a", LONG), clock.call("b", 2 * LONG)], 3)
+    assert found == [RunTime(0.05, 0.05), RunTime(0.1, 0.1)]
     assert "".join(clock.seen) == "aabb" + "ba" + "ab", "each begins with a warm-up"
 
 
@@ -46,38 +51,38 @@ def test_a_slow_first_call_is_the_warm_up_and_a_slow_round_moves_no_median(
     clock = Clock(monkeypatch)
     # The warm-up, and five rounds of which one is slow.
     call = clock.call("a", 100 * LONG, LONG, LONG, 9 * LONG, LONG, LONG)
-    assert interleaved([call], 5) == [Timed(0.05, 0.05)]
+    assert time_interleaved([call], 5) == [RunTime(0.05, 0.05)]
 
 
 def test_a_short_call_is_repeated_until_its_timing_is_long_enough(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     clock = Clock(monkeypatch)
-    (found,) = interleaved([clock.call("a", 1000)], 1)
-    assert found == Timed(1e-6, 1e-6)
+    (found,) = time_interleaved([clock.call("a", 1000)], 1)
+    assert found == RunTime(1e-6, 1e-6)
     shorter = timing._LEAST / 4  # those before, which were too short
     assert 1e-6 * len(clock.seen) >= timing._LEAST + shorter
     assert timing._LEAST >= 1000 * timing._RESOLVED, "well above the timer's resolution"
 
 
 def test_what_a_blank_call_takes_is_subtracted_and_nothing_becomes_negative() -> None:
-    assert less(Timed(5e-6, 6e-6), Timed(1e-6, 2e-6)) == Timed(
+    assert subtract_blank(RunTime(5e-6, 6e-6), RunTime(1e-6, 2e-6)) == RunTime(
         pytest.approx(4e-6), pytest.approx(5e-6)
     )
-    gone = less(Timed(1e-6, 1e-6), Timed(2e-6, 2e-6))
+    gone = subtract_blank(RunTime(1e-6, 1e-6), RunTime(2e-6, 2e-6))
     assert 0 < gone.least <= gone.median
 
 
 def test_the_collector_is_as_it_was_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = Clock(monkeypatch)
     collecting = []
-    interleaved([clock.call("a", LONG), lambda: collecting.append(gc.isenabled())], 1)
+    time_interleaved([clock.call("a", LONG), lambda: collecting.append(gc.isenabled())], 1)
     assert gc.isenabled()
     assert not collecting[-1]
 
 
 def test_the_real_clock_moves() -> None:
-    now, name = timing.clock()
+    now, name = timing.choose_clock()
     begun = now()
     sum(range(200_000))
     assert now() > begun
@@ -85,6 +90,8 @@ def test_the_real_clock_moves() -> None:
 
 
 def test_a_run_that_is_shorter_than_its_call_has_no_time() -> None:
-    blank = Timed(100e-9, 110e-9)
-    assert above(Timed(150e-9, 190e-9), blank) is None
-    assert above(Timed(150e-9, 250e-9), blank) == less(Timed(150e-9, 250e-9), blank)
+    blank = RunTime(100e-9, 110e-9)
+    assert subtract_or_none(RunTime(150e-9, 190e-9), blank) is None
+    assert subtract_or_none(RunTime(150e-9, 250e-9), blank) == subtract_blank(
+        RunTime(150e-9, 250e-9), blank
+    )

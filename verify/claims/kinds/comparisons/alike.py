@@ -1,4 +1,4 @@
-"""As the step size increases the quantity goes the same way from every initial value."""
+"""The quantity rises or falls with the step size in the same way from every initial value."""
 
 from itertools import pairwise
 from typing import Literal
@@ -6,7 +6,7 @@ from typing import Literal
 from verify.claims.findings import Findings
 from verify.claims.on_runs import QuantityClaim
 from verify.claims.runs import QUANTITIES, all_hold, sign, table_of
-from verify.prose import Number, joined, prose
+from verify.prose import Number, join_prose, prose
 from verify.scenes.results.claim import ClaimResult
 
 _WAYS = {True: "rises", False: "falls"}
@@ -21,17 +21,20 @@ class AlikeClaim(QuantityClaim):
     def compare(self, findings: Findings) -> ClaimResult:
         rows, quantity = self.run_rows(findings), QUANTITIES[self.quantity]
         verdicts: list[bool | None] = []
-        said = []
+        parts = []
         for column in zip(*(list(pairwise(row)) for row in rows), strict=True):
             ways = [sign(quantity(two) - quantity(one)) for one, two in column]
+            # If one of the changes is undecided, so is the pattern between these step sizes.
             same = None if None in ways else len(set(ways)) == 1
             verdicts.append(same)
             one, two = column[0]
             way = "is not told apart" if same is None else _way(ways)
-            said.append(prose("from h = ", Number(one.step_size), " to ", Number(two.step_size),
+            parts.append(prose("from h = ", Number(one.step_size), " to ", Number(two.step_size),
                               f" it {way}"))  # fmt: skip
-        found = prose(f"{quantity.label} from {len(rows)} initial values: ", joined(", ", said))
-        return self.result(all_hold(verdicts), found, table_of(rows, self.quantity))
+        evidence = prose(
+            f"{quantity.label} from {len(rows)} initial values: ", join_prose(", ", parts)
+        )
+        return self.result(all_hold(verdicts), evidence, table_of(rows, self.quantity))
 
 
 def _way(ways: list[bool | None]) -> str:

@@ -1,6 +1,6 @@
 """The quantities depend on the step size, on the initial values, or on both.
 
-Shown by two runs that differ in nothing else and whose values are apart by more than their bounds.
+Two runs that differ in nothing else and whose enclosures are disjoint show it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,11 +10,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.arithmetic.arb import shown
+from verify.arithmetic.arb import format_ball
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign
-from verify.prose import Prose, joined, number, prose
+from verify.prose import Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 
@@ -23,14 +23,14 @@ On = Literal["step_size", "initial_value"]
 
 
 class DependsClaim(RunClaim):
-    """That values are not all the same."""
+    """The claim that values are not all the same."""
 
     only_here = "on what values depend is seen on the grid of its own scene"
     kind: Literal["depends"]
     of: Annotated[tuple[Quantity, ...], Field(min_length=1)]
-    """What is said to vary."""
+    """The quantities that vary."""
     on: Annotated[tuple[On, ...], Field(min_length=1)]
-    """With what it varies."""
+    """The data on which they depend."""
 
     def quantities(self) -> tuple[str, ...]:
         return self.of
@@ -41,29 +41,35 @@ class DependsClaim(RunClaim):
             "step_size": rows,
             "initial_value": list(zip(*rows, strict=True)),
         }
-        found = [(name, on, _apart(name, groups[on])) for name in self.of for on in self.on]
-        verdicts = [told for _, _, (told, _) in found]
-        said = (
+        comparisons = [
+            (name, on, _find_different(name, groups[on])) for name in self.of for on in self.on
+        ]
+        verdicts = [verdict for _, _, (verdict, _) in comparisons]
+        parts = (
             prose(f"{QUANTITIES[name].label} over the {_NAMES[on]}: ", values)
-            for name, on, (_, values) in found
+            for name, on, (_, values) in comparisons
         )
-        return self.result(all_hold(verdicts), joined("; ", said))
+        return self.result(all_hold(verdicts), join_prose("; ", parts))
 
 
-def _apart(name: str, groups: Sequence[Sequence[RunResult]]) -> tuple[bool | None, Prose]:
-    """Whether two runs of a group have different values, and the two that show it."""
+def _find_different(name: str, groups: Sequence[Sequence[RunResult]]) -> tuple[bool | None, Prose]:
+    """Return True if two runs of a group have different values, and both values.
+
+    Returns False if all values are the same, and None if neither is decided.
+    """
     quantity, same = QUANTITIES[name], True
     for one, two in _pairs(groups):
         first, second = quantity(one), quantity(two)
         if sign(second - first, zero=None) is not None:
-            values = (number(shown(first, 3)), " and ", number(shown(second, 3)))
+            values = (number(format_ball(first, 3)), " and ", number(format_ball(second, 3)))
             return True, prose(*values)
+        # Exact values with equal decimals are the same; enclosures that overlap decide nothing.
         same = same and _equal(one, two, quantity.needs)
     return (False, prose("all the same")) if same else (None, prose("not told apart"))
 
 
 def _equal(one: RunResult, two: RunResult, names: Sequence[str]) -> bool:
-    """Whether the values are known to be the same: exact ones, by equal decimals."""
+    """Return True if the values are exact, and their decimals equal."""
     both = [(one.values[name], two.values[name]) for name in names]
     exact = all(Fraction(each.bound) == 0 for pair in both for each in pair)
     return exact and all(Fraction(a.value) == Fraction(b.value) for a, b in both)

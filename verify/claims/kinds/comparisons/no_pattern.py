@@ -1,8 +1,8 @@
-"""Over the initial values the quantity goes up and down without any pattern.
+"""The quantity goes up and down over the initial values without any pattern.
 
-The pattern that is looked for is plain to see in a plot: one order of the initial values by |Λ|
-that is the same at every step size. Where there is one, the claim is refuted; where two step sizes
-have different orders, there is none. Any computed number has a law: that one is known (see
+The pattern in question is visible in a plot: the same order of the initial values by |Λ| at every
+step size. If there is one, the claim is refuted; two step sizes with different orders show that
+there is none. Every computed number obeys some law: a growth law (see
 `verify.proof.plane.growth_law`) is no pattern of this kind.
 """
 
@@ -18,7 +18,7 @@ from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, middle, start_of, table_of
 from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.prose import Number, Prose, joined, prose
+from verify.prose import Number, Prose, join_prose, prose
 from verify.runs.start import Start
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
@@ -42,13 +42,13 @@ class NoPatternClaim(RunClaim):
         certain = [(c, order) for c, order in zip(columns, orders, strict=True) if order]
         for (column, one), (other, two) in pairwise(certain):
             if one != two:
-                told = prose(
-                    "by |Λ| the initial values stand in the order ", _told(one), " with h = ",
-                    Number(column[0].step_size), " and ", _told(two), " with h = ",
-                    Number(other[0].step_size), ", as they are counted in the table: none is that "
-                    "of every step size",
+                disagreement = prose(
+                    "by |Λ| the initial values stand in the order ", _format_order(one),
+                    " with h = ", Number(column[0].step_size), " and ", _format_order(two),
+                    " with h = ", Number(other[0].step_size),
+                    ", as they are counted in the table: none is that of every step size",
                 )  # fmt: skip
-                return self.result(Verdict.MEASURED, told, details)
+                return self.result(Verdict.MEASURED, disagreement, details)
         if len(rows) < 2 or len(certain) < len(columns):
             evidence = f"the order is known at {len(certain)} of {len(columns)} step sizes alone"
             return self.result(Verdict.UNDECIDED, evidence, details)
@@ -56,7 +56,7 @@ class NoPatternClaim(RunClaim):
         exact = findings.scene(self.scene).exact_hamiltonian()
         energies = [_energy(exact, row[0]) for row in rows]
         of_h = ", which is that of H" if order == _order(energies) else ""
-        first = joined(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
+        first = join_prose(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
         evidence = prose(
             f"at all {len(columns)} step sizes the initial values stand in one order by |Λ|: ",
             first, of_h,
@@ -65,22 +65,23 @@ class NoPatternClaim(RunClaim):
 
 
 def _order(values: Sequence[Ball]) -> tuple[int, ...]:
-    """The places of the values by their size; none where two of them are not told apart."""
+    """Return the indices of the values by size; empty if two enclosures overlap."""
     if any(not value.is_finite() for value in values):
         return ()
+    # Midpoints order the values; the order counts only if neighbouring balls are disjoint.
     places = sorted(range(len(values)), key=lambda k: middle(values[k]))
-    apart = all(bool(values[j] < values[k]) for j, k in pairwise(places))
-    return tuple(places) if apart else ()
+    are_disjoint = all(bool(values[j] < values[k]) for j, k in pairwise(places))
+    return tuple(places) if are_disjoint else ()
 
 
-def _told(order: Sequence[int]) -> Prose:
+def _format_order(order: Sequence[int]) -> Prose:
     return prose(", ".join(str(k + 1) for k in order))
 
 
 def _energy(hamiltonian: Hamiltonian, run: RunResult) -> Ball:
     ring, element = energy_of(hamiltonian)
-    at = {**Start.of(run).point, "t": Fraction(run.t0)}
-    value = enclose_over(ring, element, {name: rational_ball(x) for name, x in at.items()})
+    point = {**Start.from_result(run).point, "t": Fraction(run.t0)}
+    value = enclose_over(ring, element, {name: rational_ball(x) for name, x in point.items()})
     return Ball("nan") if value is None else value
 
 

@@ -1,8 +1,8 @@
 """The printed values are a higher-order infinitesimal than a power of the step size: o(h^power).
 
-Of the printed numbers alone, without a run. Refuted where each of them, divided by h^power, is one
-and the same constant to all printed digits; where the quotients differ, so few of them decide
-nothing.
+The printed numbers alone decide, without a run. The claim is refuted if each of them, divided by
+h^power, is one and the same constant to all printed digits; if the quotients differ, so few of them
+decide nothing.
 """
 
 from fractions import Fraction
@@ -10,7 +10,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from verify.arithmetic.arb import Ball, bounds, fixed, lg, precision, rational_ball
+from verify.arithmetic.arb import Ball, bounds, format_fixed, lg, precision, rational_ball
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.printed import Row, places
@@ -49,11 +49,12 @@ class PrintedPowerClaim(Claim):
                 (Fraction(cell), Fraction(10) ** -places(cell) / 2, self._lg_power(h))
                 for cell, h in zip(self.lg_printed, self.step_sizes, strict=True)
             ]
-            # lg of the quotient lies between these, by the rounding of what is printed
+            # lg of the quotient lies between these bounds: the printed logarithm is rounded, and
+            # may be off by half a unit of its last digit.
             lows = [bounds(rational_ball(x - half) - lg_h)[1] for x, half, lg_h in quotients]
             highs = [bounds(rational_ball(x + half) - lg_h)[0] for x, half, lg_h in quotients]
             x, _, lg_h = quotients[0]
-            constant = fixed(rational_ball(x) - lg_h, places(self.lg_printed[0]))
+            constant = format_fixed(rational_ball(x) - lg_h, places(self.lg_printed[0]))
         power = "h" if self.beyond_power == 1 else f"h^{self.beyond_power}"
         if max(lows) <= min(highs):
             evidence = prose(

@@ -1,7 +1,7 @@
 """Claims that hold with another number in place of the MSE, such as 1/N.
 
-What a printed number is, where it is not the MSE, is shown so: with it, what the paper says of the
-MSE is so.
+This identifies a printed number that is not the MSE: with it in place of the MSE, the paper's
+statements on the MSE hold.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose_over
 from verify.algebra.formula import parse
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import ball, middle_and_radius, rational_ball
+from verify.arithmetic.arb import ball, midpoint_and_radius, rational_ball
 from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
 from verify.claims.runs import NoValueError, all_hold
@@ -33,7 +33,7 @@ class ReplacedClaim(AgainClaim):
 
     kind: Literal["replaced"]
     mse: str
-    """What stands in place of MSE: a formula in N, h and mse."""
+    """The number in place of MSE: a formula in N, h and mse."""
 
     @model_validator(mode="after")
     def _check_formula(self) -> Self:
@@ -50,29 +50,31 @@ class ReplacedClaim(AgainClaim):
         tasks = grid_tasks(findings.scene_of(self), self.scheme)
         runs = ((task.key, findings.results[task.key]) for task in tasks)
         formula = embed([parse(self.mse, _NAMES, source="mse")], _NAMES)
-        changed = {k: _with_mse(run, *formula) for k, run in runs if isinstance(run, RunResult)}
-        both = self.twice(findings, changed)
-        said = prose("with ", Formula(self.mse), " in place of MSE: ")
+        changed_runs = {
+            k: _with_mse(run, *formula) for k, run in runs if isinstance(run, RunResult)
+        }
+        both = self.compare_twice(findings, changed_runs)
+        introduction = prose("with ", Formula(self.mse), " in place of MSE: ")
         if len(both) == 1:
             ((_, after),) = both
-            return self.result(after.verdict, said + after.evidence, after.details)
+            return self.result(after.verdict, introduction + after.evidence, after.details)
         details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(both)]
         verdicts = [after.verdict for _, after in both]
         holds = [None if v is Verdict.UNDECIDED else v.holds for v in verdicts]
-        evidence = said + f"{holds.count(True)} of {len(both)} of these claims hold"
+        evidence = introduction + f"{holds.count(True)} of {len(both)} of these claims hold"
         return self.result(all_hold(holds), evidence, details)
 
 
 def _with_mse(run: RunResult, ring: Ring, elements: Sequence[Poly]) -> RunResult:
-    """The run with the value of the one element, a formula in N, h and mse, as its MSE."""
+    """Return the run with the formula's value, in N, h and mse, in place of its MSE."""
     if run.status != "finished":
         raise NoValueError(run)
     numbers = {"N": Fraction(run.steps), "h": Fraction(run.step_size)}
-    at = {name: rational_ball(x) for name, x in numbers.items()}
-    value = enclose_over(ring, elements[0], {**at, "mse": ball(run.values["mse"])})
+    enclosures = {name: rational_ball(x) for name, x in numbers.items()}
+    value = enclose_over(ring, elements[0], {**enclosures, "mse": ball(run.values["mse"])})
     if value is None or not value.is_finite():
         raise NoValueError(run)
-    mse = Value.of(*middle_and_radius(value), run.digits)
+    mse = Value.from_bound(*midpoint_and_radius(value), run.digits)
     return run.model_copy(update={"values": {**run.values, "mse": mse}})
 
 

@@ -1,4 +1,4 @@
-"""Other claims get the same verdicts where J is taken at z_1 … z_N, and not at z_0 … z_{N−1}.
+"""Other claims get the same verdicts if J is taken at z_1 … z_N instead of z_0 … z_{N−1}.
 
 A sum over k = 1 … N of what a run has for k = 0 … N − 1 lacks the first term and has one at the
 end of the run instead: Λ' = (1 + Λ)(1 + ΔJ_N)/(1 + ΔJ_0) − 1 and MSE' = MSE + (ΔJ_N² − ΔJ_0²)/N.
@@ -9,7 +9,14 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from verify.algebra.enclosure import enclose_over
-from verify.arithmetic.arb import Ball, ball, in_reach, middle_and_radius, rational_ball, shown
+from verify.arithmetic.arb import (
+    Ball,
+    ball,
+    format_ball,
+    is_representable,
+    midpoint_and_radius,
+    rational_ball,
+)
 from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of
@@ -43,24 +50,25 @@ class ShiftedClaim(AgainClaim):
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene_of(self)
         tasks = grid_tasks(scene, self.scheme)
-        changed, changes = _shifted(findings, tasks, scene.exact_hamiltonian(), self.scheme)
-        both = self.twice(findings, changed)
+        changed_runs, changes = _shift_runs(findings, tasks, scene.exact_hamiltonian(), self.scheme)
+        both = self.compare_twice(findings, changed_runs)
         details = [["claim", "k = 0 … N − 1", "k = 1 … N"], *self.rows(both)]
         verdicts: list[bool | None] = [x.verdict is y.verdict for x, y in both]
         evidence = prose(
             f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count "
-            "Λ changes by ", number(shown(changes["lambda"], 2)), " of itself at most, MSE by ",
-            number(shown(changes["mse"], 2)), f" of itself, in {len(tasks)} runs",
+            "Λ changes by ", number(format_ball(changes["lambda"], 2)),
+            " of itself at most, MSE by ", number(format_ball(changes["mse"], 2)),
+            f" of itself, in {len(tasks)} runs",
         )  # fmt: skip
         return self.result(all_hold(verdicts), evidence, details)
 
 
-def _shifted(
+def _shift_runs(
     findings: Findings, tasks: list[Any], exact: Hamiltonian, scheme: str
 ) -> tuple[dict[str, RunResult], dict[str, Ball]]:
-    """The runs by the other count, by the tasks' keys, and the greatest relative changes."""
-    delta_j, changed = _delta_j(exact, scheme), {}
-    most: dict[str, Ball] = {name: rational_ball(Fraction(0)) for name in _SHIFTED}
+    """Return the runs counted from z_1, by task key, and the greatest relative changes."""
+    delta_j, changed_runs = _delta_j(exact, scheme), {}
+    largest: dict[str, Ball] = {name: rational_ball(Fraction(0)) for name in _SHIFTED}
     for task in tasks:
         run = findings.results[task.key]
         if not isinstance(run, RunResult) or run.status != "finished":
@@ -69,13 +77,16 @@ def _shifted(
         for name, value in values.items():
             before = ball(run.values[name])
             change = abs(value / before - 1)
-            if not in_reach(change):
+            # The changes are relative, and must be enclosed: an unbounded one decides nothing.
+            if not is_representable(change):
                 raise NoValueError(run)
-            most[name] = max(most[name], change, key=middle)
-        told = {n: Value.of(*middle_and_radius(x), run.digits) for n, x in values.items()}
-        kept = {n: v for n, v in run.values.items() if n in ("p", "q")}
-        changed[task.key] = run.model_copy(update={"values": {**kept, **told}})
-    return changed, most
+            largest[name] = max(largest[name], change, key=middle)
+        shifted = {
+            n: Value.from_bound(*midpoint_and_radius(x), run.digits) for n, x in values.items()
+        }
+        state = {n: v for n, v in run.values.items() if n in ("p", "q")}
+        changed_runs[task.key] = run.model_copy(update={"values": {**state, **shifted}})
+    return changed_runs, largest
 
 
 def _values(run: RunResult, delta_j: DeltaJ) -> dict[str, Ball]:
@@ -94,11 +105,11 @@ def _delta_j(exact: Hamiltonian, scheme: str) -> DeltaJ:
     step_map = step_map_of(exact, scheme)
     field, (element,) = canonical_field(step_map.hamiltonian, step_map.delta_j)
 
-    def at(p: Ball, q: Ball, h: Ball) -> Ball:
-        found = enclose_over(field.ring, element, {"p": p, "q": q, "h": h})
-        return Ball("nan") if found is None else found
+    def evaluate(p: Ball, q: Ball, h: Ball) -> Ball:
+        value = enclose_over(field.ring, element, {"p": p, "q": q, "h": h})
+        return Ball("nan") if value is None else value
 
-    return at
+    return evaluate
 
 
 CLAIM = ShiftedClaim

@@ -1,12 +1,12 @@
-"""Over the last period of a run p and q are so close to the exact solution, or so far from it.
+"""The error of p and q over the last period of a run is within a bound, or beyond it.
 
-The error is measured by the orbit's own reach, half of how far p and q go along it, in whichever of
-the two it is greater. At one time it depends on where the solutions happen to be; so it is the
-largest over a period: the run's last state and the exact one, both carried back through the orbit's
-last period by the exact flow. Errors grow with t, or with t² at most: what the run's own last
-period has is that up to 2/n of it, n the number of periods, and is known no better. In a run of
-fewer than ten periods, and where the orbit does not close, it is that at the end. The exact
-solution is in closed form where one is known.
+The error is relative to the reach of the orbit, half the range of p or q along it, and the greater
+one of both coordinates counts. At a single time it depends on where the solutions happen to be; so
+the largest error over a period is taken: the run's last state and the exact one are both carried
+back through the orbit's last period by the exact flow. Errors grow at most like t², so that the
+error over the run's own last period differs from this one by at most a part 2/n, n the number of
+periods. In a run of fewer than ten periods, and if the orbit does not close, the error at the end
+is taken. The exact solution is in closed form where one is known.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import all_hold, some_hold, start_of
 from verify.errors import NOT_GIVEN, InputError
-from verify.execution.study import known_results
+from verify.execution.study import results_of_tasks
 from verify.execution.task import Task
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit import exact_orbit
@@ -46,7 +46,7 @@ State = tuple[Fraction, Fraction]  # p, q
 
 
 class _Error(NamedTuple):
-    """The greatest relative error of a run, between two numbers; None where it is not known."""
+    """Bounds of the greatest relative error of a run; None where it is unknown."""
 
     run: RunResult
     low: Fraction | None
@@ -54,17 +54,17 @@ class _Error(NamedTuple):
 
 
 class SolutionErrorClaim(RunClaim):
-    """`within` or `beyond` so much of the reach, for every run of the grid or for some run.
+    """The error is `within` or `beyond` a part of the reach, for every run of the grid or some run.
 
-    `step_size` of the grid alone, where it is given. MEASURED at best: the reach is an estimate. It
-    takes p and q at the end, which every run has that is done and not proved.
+    Only runs of `step_size` count, where it is given. The verdict is MEASURED at best, as the reach
+    is an estimate. The claim needs p and q at the end, which every computed run has.
     """
 
     planar = True
     only_here = "an error at one time is that of its own runs"
     kind: Literal["solution_error"]
     step_size: StepSize | None = None
-    """That of the grid's runs which is spoken of; all, where it is left out."""
+    """The step size of the grid's runs that the claim is about; by default all."""
     series: Annotated[str, Field(max_length=80)] = ""
     """The `source` of the scene's `[[series]]` that is spoken of, the longest, not its grid."""
     within: Annotated[ExactNumber, Field(gt=0)] | None = None
@@ -72,7 +72,7 @@ class SolutionErrorClaim(RunClaim):
     beyond: Annotated[ExactNumber, Field(gt=0)] | None = None
     """The error is at least this part of the orbit's reach; or `within`."""
     quantifier: Literal["every", "some"] = "every"
-    """Of how many of the runs."""
+    """The number of runs for which it holds: every run, or some run."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -87,16 +87,16 @@ class SolutionErrorClaim(RunClaim):
         if self.step_size is not None and sizes and self.step_size not in sizes:
             raise InputError("step_size", text(self.step_size), "is not in the scene's grid")
         if self.series and not self._series_tasks(scene):
-            known = ", ".join(dict.fromkeys(each.source for each in scene.series if each.source))
-            problem = f"the scene has no such [[series]]; it has {known or 'none'}"
+            sources = ", ".join(dict.fromkeys(each.source for each in scene.series if each.source))
+            problem = f"the scene has no such [[series]]; it has {sources or 'none'}"
             raise InputError("series", self.series, problem)
 
     def _series_tasks(self, scene: Scene) -> list[RunTask]:
-        named = [each for each in scene.series if each.source == self.series]
-        longest = max((each.step_size * each.count for each in named), default=Fraction(0))
+        sections = [each for each in scene.series if each.source == self.series]
+        longest = max((each.step_size * each.count for each in sections), default=Fraction(0))
         return [
             series_task(scene, self.scheme, each)
-            for each in named
+            for each in sections
             if each.step_size * each.count == longest
         ]
 
@@ -105,33 +105,34 @@ class SolutionErrorClaim(RunClaim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         """MEASURED at best, however rigorous the bounds of the runs are."""
-        return self.compared(findings)
+        return self.compare_or_undecided(findings)
 
     def compare(self, findings: Findings) -> ClaimResult:
         exact = findings.scene(self.scene).exact_hamiltonian()
         errors = [_error_of(exact, run) for run in self._runs(findings)]
         holds = [self._holds(error) for error in errors]
-        known = [e for e in errors if e.high is not None and e.low is not None]
+        bounded_errors = [e for e in errors if e.high is not None and e.low is not None]
         head = ["initial value", "h", "t", "largest error over the last period, of the reach"]
         details = [head, *map(_row, errors)]
-        if not known:
+        if not bounded_errors:
             return self.result(
                 Verdict.UNDECIDED, "no exact solution, or no state at the end, is known", details
             )
-        least, most = (pick(known, key=lambda e: e.high or 0) for pick in (min, max))
-        allowed = f"{'within' if self.within else 'beyond'} "
+        least, greatest = (pick(bounded_errors, key=lambda e: e.high or 0) for pick in (min, max))
+        relation = f"{'within' if self.within else 'beyond'} "
         if len(errors) == 1:
             evidence = prose(
-                "the largest error over the last period is ", Number(_shown(most)),
-                " of the orbit’s reach, half of how far p and q go along it (", _place(most), ")",
+                "the largest error over the last period is ", Number(_format_error(greatest)),
+                " of the orbit’s reach, half of how far p and q go along it (", _place(greatest),
+                ")",
             )  # fmt: skip
             return self.result(all_hold(holds), evidence, details)
         evidence = prose(
             f"{holds.count(True)} of {len(holds)} errors, each the largest over the last period, "
-            f"lie {allowed}", Number(text(self.within or self.beyond or Fraction(0))),
+            f"lie {relation}", Number(text(self.within or self.beyond or Fraction(0))),
             " of the orbit’s reach, half of how far p and q go along it: from ",
-            Number(_shown(least)), " (", _place(least), ") to ", Number(_shown(most)), " (",
-            _place(most), ")",
+            Number(_format_error(least)), " (", _place(least), ") to ",
+            Number(_format_error(greatest)), " (", _place(greatest), ")",
         )  # fmt: skip
         every = self.quantifier == "every"
         decided = all_hold(holds) if every else some_hold(holds)
@@ -140,7 +141,7 @@ class SolutionErrorClaim(RunClaim):
     def _runs(self, findings: Findings) -> list[RunResult]:
         if self.series:
             tasks = self._series_tasks(findings.scene(self.scene))
-            return list(known_results(RunResult, tasks, findings.results))
+            return list(results_of_tasks(RunResult, tasks, findings.results))
         rows = self.run_rows(findings)
         if self.step_size is not None:
             return [self.run_at(row, self.step_size) for row in rows]
@@ -162,12 +163,12 @@ def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
     end = (Fraction(run.values["p"].value), Fraction(run.values["q"].value))
     unsure = max(Fraction(run.values[name].bound) for name in ("p", "q"))
     try:
-        found = _largest(exact, (p, q), end, time, Fraction(run.t0))
+        bounds = _largest(exact, (p, q), end, time, Fraction(run.t0))
     except (NoFlowError, InputError):
-        found = None
-    if found is None:
+        bounds = None
+    if bounds is None:
         return _Error(run, None, None)
-    low, high, scale = found
+    low, high, scale = bounds
     return _Error(run, max(low - unsure / scale, Fraction(0)), high + unsure / scale)
 
 
@@ -175,54 +176,62 @@ def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
 def _largest(
     exact: Hamiltonian, start: State, end: State, time: Fraction, t0: Fraction
 ) -> tuple[Fraction, Fraction, Fraction] | None:
-    """Between what the largest error lies, and the smaller reach; None where p or q rests."""
+    """Return bounds of the largest error, and the smaller reach; None if p or q is constant."""
     p, q = start
     last = exact_solution(exact, p=p, q=q, time=time, digits=_DIGITS, t0=t0)
     orbit = exact_orbit(exact, p, q, time, t0)
     if not all(orbit.reach):
         return None
     period = Fraction(0) if exact.time_dependent else orbit.period or Fraction(0)
+    # In a few periods alone the error changes too much within one: 2/n would be no small part.
     back = period if time >= _PERIODS * period else Fraction(0)
-    states = list(_carried(exact, end, (last.p, last.q), back))
+    states = list(_carry_back(exact, end, (last.p, last.q), back))
+    # 2/n bounds by how much errors over the run's own last period may differ from these.
     low, high, drift = Fraction(0), Fraction(0), 2 * back / time
     for k, rough in enumerate(orbit.reach):
-        apart = [abs(one[k] - other[k]) for one, other in states]
-        along = [other[k] for _, other in states]
-        reach, more = rough, _COARSE * rough
+        distances = [abs(one[k] - other[k]) for one, other in states]
+        exact_values = [other[k] for _, other in states]
+        # The search sees p and q at its own steps alone, so that the reach may be larger by `more`.
+        reach, margin = rough, _COARSE * rough
         if back:
-            reach = (max(along) - min(along)) / 2
-            more = (_crest(along) + _crest([-x for x in along])) / 2
-        at_end, most = apart[0] - last.bound, max(apart)
-        low = max(low, at_end / (reach + more), (most - last.bound) * (1 - drift) / (reach + more))
-        high = max(high, (most + _crest(apart) + last.bound) * (1 + drift) / reach)
+            reach = (max(exact_values) - min(exact_values)) / 2
+            margin = (_crest(exact_values) + _crest([-x for x in exact_values])) / 2
+        at_end, greatest = distances[0] - last.bound, max(distances)
+        low = max(
+            low, at_end / (reach + margin), (greatest - last.bound) * (1 - drift) / (reach + margin)
+        )
+        high = max(high, (greatest + _crest(distances) + last.bound) * (1 + drift) / reach)
     return low, high, min(orbit.reach) * (1 - _COARSE)
 
 
 def _crest(samples: Sequence[Fraction]) -> Fraction:
-    """How far a smooth curve through the samples rises above them at most, about.
+    """Estimate how far a smooth curve through the samples rises above them.
 
-    A crest between two of them is an eighth of the second difference; twice that is taken.
+    Between two samples of a parabola its crest is an eighth of the second difference higher; twice
+    that is taken, for the curve is no parabola.
     """
     bends = (2 * b - a - c for a, b, c in zip(samples, samples[1:], samples[2:], strict=False))
     return max((*bends, Fraction(0))) / 4
 
 
-def _carried(
+def _carry_back(
     exact: Hamiltonian, one: State, other: State, back: Fraction
 ) -> Iterable[tuple[State, State]]:
-    """Both states at the end, and at times before it."""
+    """Yield both states at the end, and at earlier times, by the exact flow."""
     yield one, other
     for k in range(1, _SAMPLES + 1 if back else 1):
         s = -back * k / _SAMPLES
-        found = (exact_solution(exact, p=p, q=q, time=s, digits=_DIGITS) for p, q in (one, other))
-        first, second = ((each.p, each.q) for each in found)
+        solutions = (
+            exact_solution(exact, p=p, q=q, time=s, digits=_DIGITS) for p, q in (one, other)
+        )
+        first, second = ((each.p, each.q) for each in solutions)
         yield first, second
 
 
-def _shown(error: _Error) -> str:
+def _format_error(error: _Error) -> str:
     low, high = error.low or Fraction(0), error.high or Fraction(0)
-    known = known_text((low + high) / 2, (high - low) / 2, _SHOWN)
-    return upper(high) if known == "0" else known
+    error_text = known_text((low + high) / 2, (high - low) / 2, _SHOWN)
+    return upper(high) if error_text == "0" else error_text
 
 
 def _place(error: _Error) -> str:
@@ -232,7 +241,12 @@ def _place(error: _Error) -> str:
 def _row(error: _Error) -> list[str]:
     run = error.run
     time = text(Fraction(run.step_size) * run.steps)
-    return [start_of(run), run.step_size, time, "unknown" if error.high is None else _shown(error)]
+    return [
+        start_of(run),
+        run.step_size,
+        time,
+        "unknown" if error.high is None else _format_error(error),
+    ]
 
 
 CLAIM = SolutionErrorClaim

@@ -10,9 +10,9 @@ from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.kinds.table import TableClaim
 from verify.claims.runs import NoValueError, all_hold
-from verify.errors import InputError, unknown
+from verify.errors import InputError, unknown_name
 from verify.execution.task import Task
-from verify.prose import Number, joined, prose
+from verify.prose import Number, join_prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -22,7 +22,7 @@ from verify.verdict import Verdict
 
 
 class TableForSomeClaim(TableClaim):
-    """REFUTED where the table is refuted for each of the values; of others it says nothing."""
+    """A table with an unnamed parameter, REFUTED if it is refuted for each of the given values."""
 
     only_here = "a printed table is that of its own runs"
     kind: Literal["table_for_some"]  # type: ignore[assignment]
@@ -34,7 +34,7 @@ class TableForSomeClaim(TableClaim):
     def check_scene(self, scene: Scene) -> None:
         super().check_scene(scene)
         if self.parameter not in scene.parameters:
-            raise unknown("parameter", self.parameter, scene.parameters)
+            raise unknown_name("parameter", self.parameter, scene.parameters)
         if scene.grid is None:
             raise InputError("values", self.parameter, "are of runs; give step_sizes and time")
 
@@ -50,22 +50,23 @@ class TableForSomeClaim(TableClaim):
     def compare(self, findings: Findings) -> ClaimResult:
         verdicts: list[Verdict] = []
         details: list[list[str]] = []
-        said = []
+        parts = []
         for value, scene in zip(self.values, self._scenes(findings.scene(self.scene)), strict=True):
-            named = prose(f"{self.parameter} = ", Number(text(Fraction(value))))
+            setting = prose(f"{self.parameter} = ", Number(text(Fraction(value))))
             try:
-                found = self.entries(self.run_rows(findings, scene))
+                entries = self.entries(self.run_rows(findings, scene))
             except NoValueError as error:
                 verdicts.append(Verdict.UNDECIDED)
-                said.append(prose(named, ": ", error.reason))
+                parts.append(prose(setting, ": ", error.reason))
                 continue
-            verdicts.append(all_hold([each for row in found.verdicts for each in row]))
-            said.append(prose(named, ": ", self.seen(found.values)))
-            head, *rows = found.details
+            verdicts.append(all_hold([each for row in entries.verdicts for each in row]))
+            parts.append(prose(setting, ": ", self.describe_range(entries.values)))
+            head, *rows = entries.details
             printed = [rows.pop(0)] if self.printed else []
             details += [] if details else [head, *printed]
-            details += [[prose(row[0], ", ", named), *row[1:]] for row in rows]
-        evidence = joined("; ", said)
+            details += [[prose(row[0], ", ", setting), *row[1:]] for row in rows]
+        evidence = join_prose("; ", parts)
+        # One value for which the table is right, or may be, keeps the claim from being refuted.
         for best in (Verdict.MEASURED, Verdict.UNDECIDED):
             if best in verdicts:
                 return self.result(best, evidence, details)

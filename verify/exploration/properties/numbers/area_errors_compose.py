@@ -15,11 +15,12 @@ _KNOWN = Fraction(1, 10**30)
 def holds(sample: Sample) -> None:
     only_if(sample.steps > 1 and sample.short and not sample.step_map.preserves_area)
     middle = sample.steps // 2
-    begun = replace(sample, steps=middle)
-    whole, first = _run(sample), _run(begun)
+    first_part = replace(sample, steps=middle)
+    whole, first = _run(sample), _run(first_part)
+    # The second run starts where and when the first one ends.
     second = _run(
         replace(
-            begun.at(first[name] for name in sample.point),
+            first_part.with_place(first[name] for name in sample.point),
             t0=sample.t0 + middle * sample.step_size,
             steps=sample.steps - middle,
         )
@@ -27,12 +28,12 @@ def holds(sample: Sample) -> None:
     product = (1 + first["lambda"]) * (1 + second["lambda"])
     size = 1 + abs(first["lambda"]) + abs(second["lambda"])
     if abs(1 + whole["lambda"] - product) > _KNOWN * size**2:
-        found, wanted = decimal(whole["lambda"], 12), decimal(product - 1, 12)
-        raise Violation(f"Λ over {sample.steps} steps is {found}, and composed {wanted}")
+        computed, expected = decimal(whole["lambda"], 12), decimal(product - 1, 12)
+        raise Violation(f"Λ over {sample.steps} steps is {computed}, and composed {expected}")
 
 
 def _run(sample: Sample) -> Mapping[str, Fraction]:
-    """The state and Λ after the steps; Silent where they leave the range of the digits."""
-    found = sample.run("mpfr", _DIGITS, "lambda")
-    only_if(found.done == sample.steps and max(map(abs, found.values.values())) <= 10**6)
-    return found.values
+    """Return the state and Λ after the steps; Silent if they leave the range of the digits."""
+    outcome = sample.run("mpfr", _DIGITS, "lambda")
+    only_if(outcome.done == sample.steps and max(map(abs, outcome.values.values())) <= 10**6)
+    return outcome.values

@@ -1,7 +1,7 @@
 """Every number system's values lie within their bounds of what balls enclose, or reach there.
 
-One number system a sample, by its numbers, so that all of them get their turn. Where the step
-solves equations, which balls do not do here, float64 is held against 40 digits.
+Each sample tests one number system, selected by its numbers, so that all of them get their turn. If
+the step is implicit, which balls do not cover here, the reference is a run in 40 digits.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from functools import reduce
 import flint
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.arb import Ball, around, rational_ball, shown
+from verify.arithmetic.arb import Ball, format_ball, make_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, largest
 from verify.exploration.property import Violation, only_if
@@ -27,38 +27,38 @@ _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
 def holds(sample: Sample) -> None:
-    """W from the Jacobian of the run, not its sum."""
+    """Check one number system; W is computed from the tangent map of the run, not summed."""
     only_if(sample.is_turn(_IN, after=1) and sample.short)
     name = _turn(sample)
-    wanted = _enclosed(sample)
-    found = _run(sample, name, number_systems.about(name).digits or _DIGITS)
-    for quantity, value in found.values.items():
-        if not _ball(value).overlaps(wanted[quantity]):
-            within = f"{value.value} ± {value.bound}"
-            true = shown(wanted[quantity], 20)
-            raise Violation(f"{quantity} is {within} in {name}, and truly {true}")
+    expected = _enclose_values(sample)
+    outcome = _run(sample, name, number_systems.about(name).digits or _DIGITS)
+    for quantity, value in outcome.values.items():
+        if not _ball(value).overlaps(expected[quantity]):
+            printed = f"{value.value} ± {value.bound}"
+            true = format_ball(expected[quantity], 20)
+            raise Violation(f"{quantity} is {printed} in {name}, and truly {true}")
 
 
 def _turn(sample: Sample) -> str:
-    """The number system that is looked at: one that compiles each kernel, in few samples."""
+    """Select the number system to test; those that compile each kernel get few samples."""
     seldom = sample.turn % _COMPILED == 0
     names = [n for n in number_systems.names() if number_systems.about(n).compiles == seldom]
     return names[sample.turn // (_COMPILED if seldom else _IN) % len(names)]
 
 
-def _enclosed(sample: Sample) -> dict[str, Ball]:
+def _enclose_values(sample: Sample) -> dict[str, Ball]:
     if sample.step_map.implicit:
         return {n: _ball(v) for n, v in _run(sample, "mpfr", 40).values.items()}
     steps = ball_steps(sample.step_map, sample.start, sample.steps)
     states = [state.sharp() for state in steps]
     with working_precision(BITS):
-        return _of_states(states)
+        return _values_of_states(states)
 
 
-def _of_states(states: Sequence[BallState]) -> dict[str, Ball]:
-    """The values of a run, from balls of its states."""
+def _values_of_states(states: Sequence[BallState]) -> dict[str, Ball]:
+    """Compute the observables of a run from the balls of its states."""
     last, after = states[-1], states[1:]
-    changes = [abs(state.own.det() - 1) for state in after]
+    changes = [abs(state.step_jacobian.det() - 1) for state in after]
     return {
         **last.point,
         "lambda": last.product - 1,
@@ -66,18 +66,20 @@ def _of_states(states: Sequence[BallState]) -> dict[str, Ball]:
         "delta_j_max": reduce(flint.arb.max, changes),
         "mse": sum((x * x for x in changes), rational_ball(Fraction())) / len(changes),
         "symplectic_defect": largest(defect(last.matrix)),
-        "symplectic_defect_max": reduce(flint.arb.max, [largest(defect(s.own)) for s in after]),
+        "symplectic_defect_max": reduce(
+            flint.arb.max, [largest(defect(s.step_jacobian)) for s in after]
+        ),
     }
 
 
 def _ball(value: Value) -> Ball:
     with working_precision(BITS):
-        return around(Fraction(value.value), Fraction(value.bound))
+        return make_ball(Fraction(value.value), Fraction(value.bound))
 
 
 def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
     of_structure = sample.hamiltonian.structure.of_step, sample.hamiltonian.structure.of_run
-    found = run(
+    result = run(
         sample.hamiltonian,
         sample.scheme.name,
         **sample.run_arguments,
@@ -85,5 +87,5 @@ def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
         digits=digits,
         observables=tuple(dict.fromkeys((*_OBSERVABLES, *of_structure))),
     )
-    only_if(found.status == "finished")
-    return found
+    only_if(result.status == "finished")
+    return result

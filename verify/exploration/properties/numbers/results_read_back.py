@@ -2,7 +2,7 @@
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
-from verify.arithmetic.arb import shown
+from verify.arithmetic.arb import format_ball
 from verify.exploration.oracles.ball_steps import BITS
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
@@ -11,7 +11,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_file import toml_data
 from verify.scenes.toml_text import scene_text
-from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.by_formulas import step_map_from_formulas
 from verify.schemes.maps.parts import parts_of
 
 _LONGEST = 15  # terms of a map
@@ -32,15 +32,15 @@ def _must_be_same_scene(scene: Scene) -> None:
 
 
 def _must_be_same(sample: Sample) -> None:
-    given, values = sample.hamiltonian, []
-    read = Hamiltonian.parse(given.formula, dict(given.values))
-    for hamiltonian in (given, read):
+    original, values = sample.hamiltonian, []
+    read = Hamiltonian.parse(original.formula, dict(original.values))
+    for hamiltonian in (original, read):
         field, _ = canonical_field(hamiltonian)
         elements = (field.energy, *field.slopes)
         values.append([enclose(field.ring, x, sample.start, BITS) for x in elements])
     for x, y in zip(*values, strict=True):
         if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
-            raise Violation(f"H reads back as another: {given.formula}")
+            raise Violation(f"H reads back as another: {original.formula}")
 
 
 def _must_be_same_map(sample: Sample) -> None:
@@ -50,9 +50,11 @@ def _must_be_same_map(sample: Sample) -> None:
     closed, names = parts[-1], [f"{name}_next" for name in sample.point]
     texts = [to_text(closed.ring.expression(x)) for x in closed.elements]
     formulas = dict(zip(names, texts, strict=True))
-    read = map_by_formulas(sample.hamiltonian, formulas).flat
+    read = step_map_from_formulas(sample.hamiltonian, formulas).flat
     for name, x, y in zip(names, closed.elements, read.elements, strict=True):
         ours = enclose(closed.ring, x, sample.start, BITS)
         theirs = enclose(read.ring, y, sample.start, BITS)
         if ours is not None and theirs is not None and not ours.overlaps(theirs):
-            raise Violation(f"{name} reads back as {shown(theirs)}, and is {shown(ours)}")
+            raise Violation(
+                f"{name} reads back as {format_ball(theirs)}, and is {format_ball(ours)}"
+            )

@@ -11,9 +11,9 @@ from operator import attrgetter
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import Ball, rational_ball, shown
+from verify.arithmetic.arb import Ball, format_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.property import Silent, Violation, known, only_if, silent_at
+from verify.exploration.property import Silent, Violation, only_if, require_value, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.structures import AREA, SYMPLECTIC
@@ -30,7 +30,7 @@ Element = tuple[Ring, Poly]
 
 
 def holds(sample: Sample) -> None:
-    """The potential is one of the plane."""
+    """Check that the flow is reversible and conserves H, and how it moves the potential G."""
     only_if(sample.is_turn(one_in=3))
     only_if(_LOOKED_AT[sample.hamiltonian.structure](sample))
     flow = sample.flow(_DIGITS)
@@ -50,45 +50,55 @@ def holds(sample: Sample) -> None:
 def _energy_must_be_kept(sample: Sample, after: Point) -> None:
     field = sample.field
     ring, energy = field.ring, field.energy
-    if sample.timed:
+    if sample.depends_on_time:
         _must_grow(sample, "H", (ring, energy), "∂H/∂t", (ring, ring.diff(energy, "t")))
         return
     before, then = (_value((ring, energy), point) for point in (sample.start, after))
     with working_precision(_BITS):
+        # The energy may be steep, so that its change is allowed a million times the state's error.
         if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
-            raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
+            raise Violation(
+                f"H is {format_ball(before, 12)}, and after {_TIME} {format_ball(then, 12)}"
+            )
 
 
 def _potential_must_move(sample: Sample) -> None:
-    """Holds the change of G over an instant against L, where there is a G."""
+    """Compare the change of G over an instant with L, where there is a G."""
     only_if(sample.polynomial)
-    found = known(sample.potential)
-    only_if(bool(found.holds))
-    _must_grow(sample, "G", known(found.element), "L", known(sample.proof.first.element))
+    potential = require_value(sample.potential)
+    only_if(bool(potential.holds))
+    _must_grow(
+        sample,
+        "G",
+        require_value(potential.element),
+        "L",
+        require_value(sample.proof.first.element),
+    )
 
 
-def _must_grow(sample: Sample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
-    """Violation where an element does not grow, over an instant, by another one a time."""
+def _must_grow(sample: Sample, name: str, x: Element, rate: str, expected_rate: Element) -> None:
+    """Raise Violation unless the rate of change of an element is the other element."""
     start = sample.start
     end = _flow_to(sample.flow(2 * _DIGITS), start, _INSTANT)
     ends = [_value(x, point) for point in (start, end)]
-    wanted = _value(wanted_rate, start)
+    expected = _value(expected_rate, start)
     with working_precision(_BITS):
-        grown = (ends[1] - ends[0]) / rational_ball(_INSTANT)
-        wrong = abs(grown - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
+        # An instant is so short that the change divided by it is the derivative, to 20 bits.
+        rate_of_change = (ends[1] - ends[0]) / rational_ball(_INSTANT)
+        wrong = abs(rate_of_change - expected) > (1 + abs(expected)) * rational_ball(_WITHIN)
     if wrong:
-        told = f"{name} grows by {shown(grown, 12)} a time"
-        raise Violation(f"{told}, and {rate} is {shown(wanted, 12)}")
+        message = f"{name} grows by {format_ball(rate_of_change, 12)} a time"
+        raise Violation(f"{message}, and {rate} is {format_ball(expected, 12)}")
 
 
 def _flow_to(flow: Flow, start: Point, time: Fraction) -> dict[str, Fraction]:
-    """Where the flow is after the time, and when where H depends on it."""
+    """Return the state of the flow after the time, with t if H depends on it."""
     with silent_at(NoFlowError):
         z = flow.follow(flow.state(start), time, _MOST_STEPS)
-    found = dict(zip(flow.names, map(flow.arithmetic.exact, z), strict=False))
-    return found | {"t": start["t"] + time} if flow.timed else found
+    end = dict(zip(flow.names, map(flow.arithmetic.exact, z), strict=False))
+    return end | {"t": start["t"] + time} if flow.timed else end
 
 
 def _value(element: Element, point: Point) -> Ball:
     ring, x = element
-    return known(enclose(ring, x, point, _BITS))
+    return require_value(enclose(ring, x, point, _BITS))

@@ -13,7 +13,7 @@ from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.one import of_one
+from verify.proof.certificates.one import certify_one
 
 _LONGEST = 20_000  # characters of a certificate that is checked here
 
@@ -21,7 +21,7 @@ _LONGEST = 20_000  # characters of a certificate that is checked here
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=10) and sample.in_closed_form)
     with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = of_one(sample.proof, sample.potential)
+        data = certify_one(sample.proof, sample.potential)
     only_if(len(json.dumps(data)) <= _LONGEST)
     if sample.hamiltonian.planar:  # whose certificates have a form of their own
         _must_be_checked(data, data["leading"], {n: data[n] for n in ("p_next", "q_next")})
@@ -33,27 +33,28 @@ def holds(sample: Sample) -> None:
 def _must_be_checked(
     data: dict[str, Any], leading: list[Any], after: Mapping[str, list[list[Any]]]
 ) -> None:
-    """Violation where the certificate is refused, or is not with a zero added to a number.
+    """Raise Violation if the certificate is refused, or if it is accepted with a changed number.
 
-    The number is one of these terms of the leading coefficient, or one of h¹ in a coordinate's new
-    value, by which the map agrees with the flow: with one of a higher power the certificate might
-    be that of another map, of which it says the truth.
+    The number is the first term of the leading coefficient, or of h¹ in a coordinate's new value,
+    by which the map agrees with the flow. After a change of a higher power the certificate might
+    still be true, for another map.
     """
-    if refused := _refused(data):
+    if refused := _refusal(data):
         raise Violation(f"the certificate is refused: {refused}")
     first = {name: [*coefficients, [], []][1] for name, coefficients in after.items()}
     for name, terms in {"leading": leading, **first}.items():
         if not terms:
             continue
+        # A zero appended to the number's text changes it by a factor of ten.
         terms[0][0], true = f"{terms[0][0]}0", terms[0][0]
-        accepted = not _refused(data)
+        accepted = not _refusal(data)
         terms[0][0] = true
         if accepted:
             raise Violation(f"with a number of {name} changed the certificate is accepted")
 
 
-def _refused(data: dict[str, Any]) -> str:
-    """Why it is; empty where it is accepted."""
+def _refusal(data: dict[str, Any]) -> str:
+    """Return why the checker refuses the certificate; empty if it accepts it."""
     try:
         check(data)
     except ValueError as error:

@@ -9,7 +9,7 @@ from verify.verdict import Verdict
 
 
 def holds(sample: Sample) -> None:
-    """Of S, which in the plane is ΔJ."""
+    """Check the orders of the map and of S, which in the plane is ΔJ·Ω."""
     only_if(sample.ordinary)
     proof, scheme = sample.proof, sample.scheme
     if proof.verdict is Verdict.REFUTED:

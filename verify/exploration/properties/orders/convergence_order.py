@@ -8,10 +8,10 @@ order is higher; where it is so at the initial value, it is not at one beside it
 from collections.abc import Mapping
 from fractions import Fraction
 
-from verify.arithmetic.arb import Ball, around, rational_ball
+from verify.arithmetic.arb import Ball, make_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import ball_steps
-from verify.exploration.property import Violation, known, only_if, silent_at
+from verify.exploration.property import Violation, only_if, require_value, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 
@@ -25,32 +25,33 @@ Point = Mapping[str, Fraction]
 
 def holds(sample: Sample) -> None:
     only_if(sample.in_closed_form)
-    order = known(sample.proof.convergence_order)
-    beside = {name: x + _ASIDE / k for k, (name, x) in enumerate(sample.start.items(), start=2)}
-    for point in (sample.start, beside):
-        found = _orders(sample, point, order)
-        _must_reach(found, order + 1)
-        if not _passes(found, order + 1):
+    order = require_value(sample.proof.convergence_order)
+    neighbour = {name: x + _ASIDE / k for k, (name, x) in enumerate(sample.start.items(), start=2)}
+    for point in (sample.start, neighbour):
+        orders = _orders(sample, point, order)
+        _must_reach(orders, order + 1)
+        if not _passes(orders, order + 1):
             return
     raise Violation(f"the step's error has a higher order than {order + 1}, that proved")
 
 
-def _must_reach(found: Mapping[str, Ball | None], order: int) -> None:
-    """Violation where an error's order is lower."""
-    for name, ball in found.items():
+def _must_reach(orders: Mapping[str, Ball | None], order: int) -> None:
+    """Raise Violation if the order of an error is lower."""
+    for name, ball in orders.items():
         if ball is not None and ball < rational_ball(order - _WITHIN):
-            told = f"the step's error in {name} has order {float(ball.mid()):.2f}"
-            raise Violation(f"{told}, and should have {order} at least")
+            message = f"the step's error in {name} has order {float(ball.mid()):.2f}"
+            raise Violation(f"{message}, and should have {order} at least")
 
 
-def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
-    """Whether the errors' orders in all coordinates are higher."""
-    most = rational_ball(order + _WITHIN)
-    return all(ball is None or ball > most for ball in found.values())
+def _passes(orders: Mapping[str, Ball | None], order: int) -> bool:
+    """Return True if the orders of the errors in all coordinates are higher."""
+    limit = rational_ball(order + _WITHIN)
+    return all(ball is None or ball > limit for ball in orders.values())
 
 
 def _orders(sample: Sample, point: Point, order: int) -> dict[str, Ball | None]:
-    """By which power of h the errors shrink, None for one that may be 0."""
+    """Return the power of h with which each error shrinks; None for one that may be 0."""
+    # Halving h divides the error by 2^order, so that the order is a binary logarithm.
     whole, half = (_error(sample, {**point, "h": h}, order) for h in (_STEP, _STEP / 2))
     with working_precision(64):
         return {
@@ -64,7 +65,7 @@ def _power(large: Ball, small: Ball) -> Ball:
 
 
 def _error(sample: Sample, start: Point, order: int) -> dict[str, Ball]:
-    """Step minus flow in each coordinate, as balls; Silent where one of them is not known."""
+    """Return step minus flow in each coordinate, as balls; Silent if one of them is unknown."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
     after = ball_steps(sample.step_map, start, 1, bits)[-1]
     flow = sample.flow(int(bits * _DIGITS_A_BIT))
@@ -79,5 +80,5 @@ def _error(sample: Sample, start: Point, order: int) -> dict[str, Ball]:
 
 
 def _with_error(x: Fraction, bits: int) -> Ball:
-    """A value that the flow gives to so many bits."""
-    return around(x, (1 + abs(x)) / 2**bits)
+    """Enclose a value that the flow gives to so many bits."""
+    return make_ball(x, (1 + abs(x)) / 2**bits)

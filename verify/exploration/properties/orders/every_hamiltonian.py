@@ -16,15 +16,15 @@ _MOST_ORDER = {AREA: 4, SYMPLECTIC: 3}
 
 
 @lru_cache(maxsize=128)
-def _proved(scheme: str, timed: bool, degrees: int) -> EveryProof:
+def _prove_every(scheme: str, timed: bool, degrees: int) -> EveryProof:
     return prove_every(scheme, timed=timed, degrees=degrees)
 
 
 def holds(sample: Sample) -> None:
-    scheme, most = sample.scheme, _MOST_ORDER[sample.hamiltonian.structure]
-    only_if(scheme.every_h is not None and scheme.order <= most and sample.ordinary)
+    scheme, limit = sample.scheme, _MOST_ORDER[sample.hamiltonian.structure]
+    only_if(scheme.every_h is not None and scheme.order <= limit and sample.ordinary)
     with silent_at(LimitError):
-        every = _proved(scheme.name, sample.timed, sample.hamiltonian.degrees)
+        every = _prove_every(scheme.name, sample.depends_on_time, sample.hamiltonian.degrees)
     only_if(every.verdict is Verdict.PROVED)
     wrong = _contradiction(every, sample.proof)
     # Where the leading coefficient for every H vanishes for this one, another one leads.
@@ -35,20 +35,25 @@ def holds(sample: Sample) -> None:
 
 
 def _telescopes(sample: Sample) -> bool | None:
-    """Whether the leading coefficient is a Lie derivative: in the plane X·G, which takes long."""
+    """Return True if the leading coefficient is a Lie derivative, in the plane X·G.
+
+    Finding G takes long, so that only some samples are tested by it.
+    """
     if sample.is_turn(one_in=3) and sample.polynomial and sample.potential:
         return sample.potential.holds
     return sample.proof.telescopes
 
 
 def _contradiction(every: EveryProof, proof: Proof) -> str:
-    """In words, of S, which in the plane is ΔJ; empty where there is none. None, as an order, is
-    beyond all that are looked at."""
+    """Describe how the proof for one H contradicts that for every H; empty if it does not.
+
+    Both are about S, which in the plane is ΔJ·Ω. An order None is beyond all examined ones.
+    """
     if every.symplectic and proof.symplectic is False:
         return f"S has order {proof.order}"
     if every.order is not None and proof.order is not None and proof.order < every.order:
         return f"S has order {proof.order}, not {every.order}"
-    own, agreed = proof.convergence_order, every.convergence_order
-    if own is not None and agreed is not None and own < agreed:
-        return f"the map agrees with the flow up to h^{own}, not h^{agreed}"
+    order, common_order = proof.convergence_order, every.convergence_order
+    if order is not None and common_order is not None and order < common_order:
+        return f"the map agrees with the flow up to h^{order}, not h^{common_order}"
     return ""

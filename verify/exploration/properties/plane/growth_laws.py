@@ -11,7 +11,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.exploration.oracles.ball_steps import BallState, ball_steps, sharp, unlike
-from verify.exploration.property import Violation, known, only_if, silent_at
+from verify.exploration.property import Violation, only_if, require_value, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.plane.growth_law import Element, GrowthLaw, NoLawError, growth_law
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
@@ -33,26 +33,27 @@ def holds(sample: Sample) -> None:
     start = sample.start | {"h": _STEP}
     states = ball_steps(sample.step_map, start, _STEPS, bits)
     with working_precision(bits):
-        _by_law(law, states[0], states[-1])
+        _must_obey_law(law, states[0], states[-1])
 
 
-def _by_law(law: GrowthLaw, *ends: BallState) -> None:
+def _must_obey_law(law: GrowthLaw, *ends: BallState) -> None:
     h = rational_ball(_STEP)
-    found, rate = ends[-1].product.log(), _at(law.g, ends[0])
+    measured_rate, rate = ends[-1].product.log(), _evaluate(law.g, ends[0])
     if law.potential and law.leading:
         potential, leading = _change(law.potential, *ends), _change(law.leading, *ends)
-        found -= h ** (law.power - 1) * potential - h**law.power * leading / 2
-    found /= h ** (law.power + 1) * _STEPS
-    only_if(sharp(found) and sharp(rate))
-    if abs(found - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
-        raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(found, rate)}, by the law")
+        # The two known terms are subtracted; what is left is g, up to terms of higher order in h.
+        measured_rate -= h ** (law.power - 1) * potential - h**law.power * leading / 2
+    measured_rate /= h ** (law.power + 1) * _STEPS
+    only_if(sharp(measured_rate) and sharp(rate))
+    if abs(measured_rate - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
+        raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(measured_rate, rate)}, by the law")
 
 
 def _change(element: Element, first: BallState, last: BallState) -> Ball:
-    """[F], from the first state to the last."""
-    return _at(element, last) - _at(element, first)
+    """Return [F], the change of F from the first state to the last."""
+    return _evaluate(element, last) - _evaluate(element, first)
 
 
-def _at(element: Element, state: BallState) -> Ball:
+def _evaluate(element: Element, state: BallState) -> Ball:
     ring, x = element
-    return known(enclose_over(ring, x, state.point))
+    return require_value(enclose_over(ring, x, state.point))

@@ -16,7 +16,7 @@ from verify.algebra.series.jets import Jets, Poly, Series
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, must_overlap, sharp
-from verify.exploration.property import known, only_if
+from verify.exploration.property import only_if, require_value
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import (
     BySeries,
@@ -35,52 +35,57 @@ def holds(sample: Sample) -> None:
     only_if(scheme.order <= _MOST_ORDER and sample.ordinary)
     proof = sample.proof
     only_if(proof.area_preserving is not None)
-    jets, coefficients = _of_every(scheme, scheme.order + 2, sample.timed)
+    jets, coefficients = _coefficients_for_every_hamiltonian(
+        scheme, scheme.order + 2, sample.depends_on_time
+    )
     derivatives = _derivatives(sample, jets)
     for n, x in enumerate(coefficients, start=1):
-        wanted = _value(x, derivatives)
-        found = _leading(sample) if n == proof.order else flint.arb(0)
-        only_if(sharp(found) and sharp(wanted))
+        expected = _value(x, derivatives)
+        coefficient = _leading(sample) if n == proof.order else flint.arb(0)
+        only_if(sharp(coefficient) and sharp(expected))
         what = f"the coefficient of h^{n} in ΔJ is at the initial value"
-        must_overlap(what, found, wanted, ", by jets")
+        must_overlap(what, coefficient, expected, ", by jets")
         if n == proof.order:
             return
 
 
 def _has_series_in_jets(sample: Sample) -> bool:
-    """Whether the scheme is a pair of series in the jets, and not only conditions on numbers."""
-    kinds = TaylorSeries if sample.timed else TaylorSeries | RungeKutta | StageEquations
+    """Return True if the scheme is a pair of series in the jets, not only order conditions."""
+    kinds = TaylorSeries if sample.depends_on_time else TaylorSeries | RungeKutta | StageEquations
     return isinstance(sample.scheme.every_h, kinds)
 
 
 @lru_cache(maxsize=64)
-def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets, tuple[Poly, ...]]:
-    """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
+def _coefficients_for_every_hamiltonian(
+    scheme: Scheme, highest: int, timed: bool
+) -> tuple[Jets, tuple[Poly, ...]]:
+    """Return the coefficients of h¹ … h^highest in ΔJ of the scheme for every H."""
     generic = scheme.every_h
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
-    size = most + 2
+    size = highest + 2
     jets = Jets(size, separable=generic.separable and not timed, timed=timed)
-    p_next, q_next = generic.taylor(jets, most)
+    p_next, q_next = generic.taylor(jets, highest)
     return jets, tuple(delta_j(jets, p_next, q_next))
 
 
 def delta_j(jets: Jets, p_next: Series, q_next: Series) -> Iterator[Poly]:
-    """The coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""
+    """Yield the coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""
     gradients = [[(jets.diff(x, "p"), jets.diff(x, "q")) for x in s] for s in (p_next, q_next)]
     for n in range(1, len(p_next)):
+        # The Cauchy product of the determinant ∂p'/∂p ∂q'/∂q − ∂p'/∂q ∂q'/∂p, power by power of h.
         pairs = [(gradients[0][k], gradients[1][n - k]) for k in range(n + 1)]
         yield sum((a * d - b * c for (a, b), (c, d) in pairs), jets.zero)
 
 
 def _leading(sample: Sample) -> Ball:
-    """The leading coefficient of this H's own ΔJ, at the initial value."""
+    """Return the leading coefficient of ΔJ for this H, at the initial value."""
     element = sample.proof.first.element
     assert element is not None  # noqa: S101 - ΔJ has an order
-    return known(enclose(*element, sample.start, BITS))
+    return require_value(enclose(*element, sample.start, BITS))
 
 
 def _derivatives(sample: Sample, jets: Jets) -> list[Ball]:
-    """H_ij, or H_ijk, at the initial value; Silent where one of them is not defined there."""
+    """Return the derivatives H_ij, or H_ijk, at the initial value; Silent if one is undefined."""
     field = sample.field
     ring, start = field.ring, sample.start
 
@@ -88,11 +93,11 @@ def _derivatives(sample: Sample, jets: Jets) -> list[Ball]:
     def derivative(index: tuple[int, ...]) -> Poly:
         if sum(index) == 1:
             return field.slopes[1] if index[0] else -field.slopes[0]
-        at = max(k for k, n in enumerate(index) if n)
-        lower = tuple(n - (k == at) for k, n in enumerate(index))
-        return ring.diff(derivative(lower), "pqt"[at])
+        place = max(k for k, n in enumerate(index) if n)
+        lower = tuple(n - (k == place) for k, n in enumerate(index))
+        return ring.diff(derivative(lower), "pqt"[place])
 
-    return [known(enclose(ring, derivative(index), start, BITS)) for index in jets.indices]
+    return [require_value(enclose(ring, derivative(index), start, BITS)) for index in jets.indices]
 
 
 def _value(x: Poly, derivatives: Sequence[Ball]) -> Ball:

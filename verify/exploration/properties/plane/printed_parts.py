@@ -15,9 +15,11 @@ _DIGITS = 6
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=8) and sample.short)
-    found = separate(sample.hamiltonian, sample.scheme.name, **sample.run_arguments, digits=_DIGITS)
-    only_if(found.status == "finished")
-    for evaluation in (found.plain, found.closed_form):
+    separation = separate(
+        sample.hamiltonian, sample.scheme.name, **sample.run_arguments, digits=_DIGITS
+    )
+    only_if(separation.status == "finished")
+    for evaluation in (separation.plain, separation.closed_form):
         if evaluation is not None:
             rounding = evaluation.parts.of_rounding
             _must_add_up(evaluation.parts, ("truncation", *rounding), "lambda_working")
@@ -27,7 +29,7 @@ def holds(sample: Sample) -> None:
 def _must_add_up(parts: PartsOfRun, names: tuple[str, ...], whole: str) -> None:
     values = [getattr(parts, name) for name in (*names, whole)]
     numbers, bounds = ([Fraction(getattr(v, key)) for v in values] for key in ("value", "bound"))
-    apart = abs(sum(numbers[:-1]) - numbers[-1])
-    if apart > sum(bounds):
-        told = f"{float(apart):.3e} apart, with bounds of {float(sum(bounds)):.3e}"
-        raise Violation(f"{' + '.join(names)} and {whole} are {told}")
+    gap = abs(sum(numbers[:-1]) - numbers[-1])
+    if gap > sum(bounds):
+        message = f"{float(gap):.3e} apart, with bounds of {float(sum(bounds)):.3e}"
+        raise Violation(f"{' + '.join(names)} and {whole} are {message}")

@@ -1,24 +1,24 @@
-"""With the degrees of freedom put in another order, the run is the same run in that order.
+"""The run with the degrees of freedom in another order is the same run in that order.
 
-By balls, with S and the Jacobian; of a step that solves equations by two runs.
+Balls decide, with S and the Jacobian, or two runs if the step is implicit.
 """
 
 from dataclasses import replace
 
 from verify.exploration.oracles.equivariance import (
     Change,
-    moved,
     must_be_same_steps,
+    transform_point,
     transformed_hamiltonian,
 )
 from verify.exploration.oracles.mpfr_runs import end_of, must_agree
-from verify.exploration.oracles.symplectic_matrices import cycled
+from verify.exploration.oracles.symplectic_matrices import cyclic_shift
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
 
 def holds(sample: Sample) -> None:
-    change = Change(cycled(sample.hamiltonian.degrees))
+    change = Change(cyclic_shift(sample.hamiltonian.degrees))
     if sample.scheme.explicit:
         only_if(sample.is_turn(one_in=2))
         must_be_same_steps(sample, change)
@@ -26,6 +26,6 @@ def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=4) and sample.short)
     other = replace(sample, hamiltonian=transformed_hamiltonian(sample, change))
     only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
-    wanted = moved(change, end_of(sample))
-    found = end_of(other.at(moved(change, sample.point)))
-    must_agree(found, dict(zip(found, wanted, strict=True)))
+    expected = transform_point(change, end_of(sample))
+    computed = end_of(other.with_place(transform_point(change, sample.point)))
+    must_agree(computed, dict(zip(computed, expected, strict=True)))

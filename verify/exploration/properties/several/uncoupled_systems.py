@@ -1,8 +1,8 @@
-"""Of H = H1(p1, q1) + H2(p2, q2) + … the run is that of each plane by itself, and so is S.
+"""The run of H = H1(p1, q1) + H2(p2, q2) + … is that of each plane by itself, and so is S.
 
-Asked of H without its couplings. J has the blocks that the plane's own maps have: S has ΔJ of each
-plane on its diagonal and nothing else, det J is their product, and W_N is Λ of each. By balls; of a
-step that solves equations by runs.
+H is taken without its couplings. J consists of the blocks of the planes' maps: S has ΔJ of each
+plane on its diagonal and nothing else, det J is their product, and W_N is Λ of each. Balls decide,
+or runs if the step is implicit.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ _MOST_STEPS = 3
 
 
 def holds(sample: Sample) -> None:
-    parts = [_of_degree(sample, k) for k in range(sample.hamiltonian.degrees)]
+    parts = [_terms_of_degree(sample, k) for k in range(sample.hamiltonian.degrees)]
     together = Hamiltonian(sympy.Add(*parts))
     only_if(together.coordinates == sample.hamiltonian.coordinates and sample.brief)
     only_if(sample.is_turn(one_in=2 if sample.scheme.explicit else 4))
@@ -43,27 +43,28 @@ def holds(sample: Sample) -> None:
         return
     last, *others = (_last_state(each) for each in (whole, *planes))
     with working_precision(BITS):
+        # Without couplings each slope depends on its own plane alone, so that J consists of blocks.
         _must_be_product(last, others)
 
 
-def _of_degree(sample: Sample, k: int) -> sympy.Expr:
-    """The terms of H that have coordinates of degree k and of no other; Silent without any."""
+def _terms_of_degree(sample: Sample, k: int) -> sympy.Expr:
+    """Return the terms of H in the coordinates of degree k alone; Silent if there are none."""
     every = list(map(symbol, sample.hamiltonian.coordinates))
-    own = {every[k], every[sample.hamiltonian.degrees + k]}
-    others = set(every) - own
+    coordinates = {every[k], every[sample.hamiltonian.degrees + k]}
+    others = set(every) - coordinates
     terms = sympy.Add.make_args(sample.hamiltonian.exact)
-    kept = [x for x in terms if x.free_symbols & own and not x.free_symbols & others]
-    only_if(bool(kept))
-    return sympy.Add(*kept)
+    own_terms = [x for x in terms if x.free_symbols & coordinates and not x.free_symbols & others]
+    only_if(bool(own_terms))
+    return sympy.Add(*own_terms)
 
 
 def _plane(sample: Sample, k: int, part: sympy.Expr) -> Sample:
-    """That of degree k, by itself."""
+    """Return the sample of degree of freedom k alone, in the plane."""
     places = k, sample.hamiltonian.degrees + k
-    names = [symbol(sample.hamiltonian.coordinates[at]) for at in places]
-    put = dict(zip(names, map(symbol, PLANE), strict=True))
-    plane = replace(sample, hamiltonian=Hamiltonian(part.xreplace(put)))
-    return plane.at(sample.place[at] for at in places)
+    names = [symbol(sample.hamiltonian.coordinates[place]) for place in places]
+    substitution = dict(zip(names, map(symbol, PLANE), strict=True))
+    plane = replace(sample, hamiltonian=Hamiltonian(part.xreplace(substitution)))
+    return plane.with_place(sample.place[place] for place in places)
 
 
 def _last_state(sample: Sample) -> BallState:
@@ -86,6 +87,6 @@ def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
 
 
 def _must_end_alike(whole: Sample, planes: Sequence[Sample]) -> None:
-    found = end_of(whole)
+    end = end_of(whole)
     for k, plane in enumerate(planes, start=1):
-        must_agree({letter: found[f"{letter}{k}"] for letter in "pq"}, end_of(plane))
+        must_agree({letter: end[f"{letter}{k}"] for letter in "pq"}, end_of(plane))

@@ -4,14 +4,16 @@ Schemes that step p and q by turns are asked for M that scales p and q only.
 """
 
 from verify.exploration.oracles.equivariance import Change, knows_no_coordinates, must_be_same_steps
-from verify.exploration.oracles.symplectic_matrices import of_places, symplectic
+from verify.exploration.oracles.symplectic_matrices import coordinate_change, symplectic
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
 
 def holds(sample: Sample) -> None:
-    """For S as a form: AᵀSA, A = M⁻¹; of schemes that step p and q by turns for an M that moves q
-    by q, and p by p."""
+    """Compare the steps in both coordinate systems; the form S becomes AᵀSA, A = M⁻¹.
+
+    For schemes that advance q and p in turn, M must not mix q and p.
+    """
     only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
-    matrix = symplectic if knows_no_coordinates(sample) else of_places
+    matrix = symplectic if knows_no_coordinates(sample) else coordinate_change
     must_be_same_steps(sample, Change(matrix(sample.turn, sample.hamiltonian.degrees)))

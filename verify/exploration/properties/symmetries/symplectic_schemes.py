@@ -1,9 +1,9 @@
 """A scheme that claims det J ≡ 1 has it: by the proof, and by J's four entries at a point.
 
-In n degrees of freedom S ≡ 0, and its entries. Where the step solves equations J is that of two
-steps, by differences of runs; in the plane the determinants that a kernel multiplies are looked at,
-too. Digits may not do to solve the equations: what twice as many find elsewhere, or not at all, is
-not held against the scheme.
+In n degrees of freedom it has S ≡ 0, and the entries of S are checked. If the step is implicit, J
+is that of two steps, by differences of runs; in the plane the product of the determinants in a
+kernel is checked, too. The digits may not suffice to solve the equations: a result that changes
+with twice as many digits, or has none, does not count against the scheme.
 """
 
 from fractions import Fraction
@@ -29,27 +29,28 @@ def holds(sample: Sample) -> None:
     if sample.ordinary and sample.proof.symplectic is False:
         raise Violation(f"the proof says that S has order {sample.proof.order}")
     if sample.step_map.implicit:
-        _by_runs(sample)
+        _check_by_runs(sample)
         return
     after = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
     with working_precision(BITS):
-        form = defect(after.own)
+        form = defect(after.step_jacobian)
     if not all(x.contains(0) for x in entries(form)):
         raise Violation(f"S is not 0; its greatest |entry| is {largest(form).str(6)}")
 
 
-def _by_runs(sample: Sample) -> None:
+def _check_by_runs(sample: Sample) -> None:
     only_if(sample.hamiltonian.planar or (sample.is_turn(one_in=8) and sample.short))
     jacobian, error = jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
-        seen = largest(defect(jacobian))
-        wrong = seen > error
+        greatest = largest(defect(jacobian))
+        wrong = greatest > error
     if wrong:
-        raise Violation(f"W is {seen.str(6)} after two steps, by differences of runs")
+        raise Violation(f"W is {greatest.str(6)} after two steps, by differences of runs")
     if carries(sample.hamiltonian, "lambda_plain"):
         end = end_of(sample, "lambda_plain")
         change, small = end["lambda_plain"], _SMALL * (1 + sum(abs(end[n]) for n in sample.point))
         if abs(change) > small:
+            # Twice as many digits decide if the equations were solved, or if the map is at fault.
             again = end_of(sample, times=2)
             only_if(all(abs(x - end[name]) <= small for name, x in again.items()))
             raise Violation(f"Π det J − 1 is {decimal(change, 6)} after two steps")

@@ -1,7 +1,7 @@
 """The step of size h/c for c·H is the step of size h for H, for every c ≠ 0, negative ones too.
 
-Looked at for one c, that is negative and no power of two. Where H depends on time, what it is at t
-c·H is at t/c.
+One c is tested, which is negative and no power of two. If H depends on time, the scaled H at t/c is
+c times H at t.
 """
 
 from fractions import Fraction

@@ -1,7 +1,7 @@
 """For an H that is periodic in t, a step from a period later is the same step, whatever its size.
 
-Of the sample's own step size, and of a whole period, after which the clock stands where it stood.
-Asked where t is in sin and cos of ω t + φ alone, of one ω or of multiples of one.
+The sample's own step size is tested, and a whole period, after which H is as before. The property
+applies where t occurs in sin and cos of ω t + φ alone, with a single ω.
 """
 
 from collections.abc import Sequence
@@ -21,23 +21,23 @@ from verify.exploration.oracles.ball_steps import (
     must_overlap,
     overlap,
     sharp,
-    stepped,
+    take_step,
 )
-from verify.exploration.property import Violation, known, only_if
+from verify.exploration.property import Violation, only_if, require_value
 from verify.exploration.sample import Sample
 from verify.functions.function import CIRCLE
 
 
 def holds(sample: Sample) -> None:
-    """The same of the Jacobian."""
+    """Compare the steps one period apart, with their Jacobians."""
     only_if(sample.brief)
-    frequency = known(_frequency(*sample.slopes))
+    frequency = require_value(_frequency(*sample.slopes))
     start = ball_steps(sample.step_map, sample.start, 0)[0]
     with working_precision(BITS):
         period = 2 * flint.arb.pi() / rational_ball(abs(frequency))
         later = replace(start, point=start.point | {"t": start.point["t"] + period})
         for size in (rational_ball(sample.step_size), period):
-            _must_be_alike(*(stepped(sample.step_map, x, size) for x in (start, later)))
+            _must_be_alike(*(take_step(sample.step_map, x, size) for x in (start, later)))
 
 
 def _must_be_alike(one: BallState, other: BallState) -> None:
@@ -46,12 +46,13 @@ def _must_be_alike(one: BallState, other: BallState) -> None:
         only_if(sharp(x) and sharp(y))
         if name != "t":
             must_overlap(f"a period later {name}' is", y, x)
-    if not overlap(one.own, other.own):
+    if not overlap(one.step_jacobian, other.step_jacobian):
         raise Violation("a period later J is another")
 
 
 def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
-    """ω, where t is in sin and cos of ω t + φ alone; None elsewhere."""
+    """Return ω if t occurs in sin and cos of ω t + φ alone; None otherwise."""
+    # t itself outside of sin and cos is not periodic.
     if any(x.degrees()[ring.places["t"]] > 0 for x in slopes):
         return None
     functions = [g for g in ring.generators_in(*slopes) if g.argument is not None]
@@ -60,7 +61,7 @@ def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
 
 
 def _rate(ring: Ring, g: Generator) -> Fraction | None:
-    """ω of sin or cos of ω t + φ; None of anything else."""
+    """Return ω of sin or cos of ω t + φ; None for any other function."""
     rate = ring.diff(g.inner, "t")
     if g.kind not in (CIRCLE.odd, CIRCLE.even) or not rate.is_constant():
         return None

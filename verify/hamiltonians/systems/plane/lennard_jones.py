@@ -7,7 +7,8 @@ from verify.hamiltonians.named_system import System
 
 
 def _goes(values: Values, p: Fraction, q: Fraction) -> str | None:
-    """Where E ≥ 0: the well ends at 0 from below, so that E = 0 is enough."""
+    """Return how the orbit escapes, where E ≥ 0: the well ends at 0 from below, so that E = 0 is
+    enough."""
     epsilon, sigma = values["epsilon"], values["sigma"]
     if epsilon <= 0 or sigma == 0:
         return "not known"

@@ -45,7 +45,9 @@ def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
         return start**2 / 2 + well * g * (g - 2)
 
     def goes() -> str | None:
-        """Whether it dissociates: E − D = p²/2 + D (g² − 2g) ≥ 0."""
+        """Return how the molecule dissociates: E − D = p²/2 + D (g² − 2g) ≥ 0."""
+        # At q = 0 the sign is decided exactly; elsewhere E = D is impossible for rational p and q ≠
+        # 0.
         if (p**2 / 2 < depth) if q == 0 else (sign_of(above) < 0):
             return None
         return f"q goes to {'+' if a > 0 else '−'}∞ as t grows: the energy is not below D"

@@ -32,7 +32,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
 
     def state(t: arb) -> State:
         turns, s, c, m, functions = begun()
-        s1, c1, d1 = _added(s, c, d, functions(t))
+        s1, c1, d1 = _addition_theorem(s, c, d, functions(t))
         if separatrix or m < 1:
             # s and c tell the angle between −π and π, where it stays; c > 0 tells that it is there.
             return 2 * d1, 2 * ((s1 / c1).atan() + turns * arb.pi() if c > 0 else NOT_KNOWN)
@@ -53,7 +53,10 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     return Motion(state, "closed form: Jacobi's elliptic functions", goes=lambda: _goes(p, q))
 
 
-def _added(s: arb, c: arb, d: Real, functions: tuple[arb, arb, arb]) -> tuple[arb, arb, arb]:
+def _addition_theorem(
+    s: arb, c: arb, d: Real, functions: tuple[arb, arb, arb]
+) -> tuple[arb, arb, arb]:
+    """Return s, c and d at time t by the addition theorem in the module's text."""
     sn, cn, dn = functions
     n = 1 - (s * sn) ** 2
     return (
@@ -64,7 +67,7 @@ def _added(s: arb, c: arb, d: Real, functions: tuple[arb, arb, arb]) -> tuple[ar
 
 
 def _goes(p: Fraction, q: Fraction) -> str | None:
-    """Whether it goes round: p²/2 − cos q > 1, where it is not 1."""
+    """Return how the pendulum goes round: p²/2 − cos q > 1, where it is not 1."""
     height, angle = exactly(p**2 / 2 - 1), exactly(q)
     if sign_of(lambda: height - arb(angle).cos()) < 0:
         return None

@@ -20,12 +20,15 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     v, start = exactly(p), exactly(q)
 
     def state(t: arb) -> State:
+        # E − 2 is computed without cancellation near the equilibrium, as a sum of squares.
         above = v**2 / 2 + 4 * (arb(start) / 2).sinh() ** 2
         energy, g = 2 + above, arb(start).exp()
         part = (above * (energy + 2)).sqrt() / 4
-        found = Weierstrass(energy / 6, (part - energy / 12, -part - energy / 12)).values(t)
+        function_values = Weierstrass(energy / 6, (part - energy / 12, -part - energy / 12)).values(
+            t
+        )
         b = (v**2, 2 * v**2 - 2 * g + 2 / g, v**2 - 4 * g + 2 / g, -2 * g, arb(0))
-        y, slope = biermann(v, b, energy**2 / 3 - 1, found)
+        y, slope = biermann(v, b, energy**2 / 3 - 1, function_values)
         return slope / (1 + y), start + (1 + y).log()
 
     if p == q == 0:

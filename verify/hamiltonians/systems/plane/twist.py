@@ -12,6 +12,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     x, y = exactly(p), exactly(q)
 
     def state(t: arb) -> State:
+        # The action is constant, so the motion is a rotation with the constant rate p² + q².
         s, c = ((x**2 + y**2) * t).sin_cos()
         return x * c - y * s, y * c + x * s
 

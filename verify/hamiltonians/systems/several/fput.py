@@ -7,12 +7,12 @@ Of one mass the cubic parts of its two springs cancel, so that n begins with 2.
 
 from itertools import pairwise
 
-from verify.hamiltonians.coordinates import numbered
+from verify.hamiltonians.coordinates import numbered_names
 from verify.hamiltonians.named_system import System
 
 
 def _chain(n: int) -> str:
-    names = numbered(n)
+    names = numbered_names(n)
     momenta, places = names[:n], names[n:]
     inner = [f"({after} - {before})" for before, after in pairwise(places)]
     first, last = places[0], places[-1]  # the last spring is longer by -last
@@ -20,6 +20,7 @@ def _chain(n: int) -> str:
     square, fourth = (
         " + ".join(f"{s}**{power}" for s in (first, *inner, last)) for power in (2, 4)
     )
+    # The last spring is longer by −q_n, whose cube has the other sign.
     cubic = " + ".join(f"{s}**3" for s in (first, *inner))
     return f"({kinetic})/2 + ({square})/2 + alpha*({cubic} - {last}**3)/3 + beta*({fourth})/4"
 

@@ -1,7 +1,7 @@
 """Kinds of tables, one a file, found by itself: what is written of one, and what it claims.
 
 A file has `Entry`, a model of the keys, and `claims(entry)`, which yields a
-`verify.integrators.tables.told.TableClaim` for each.
+`verify.integrators.tables.table_claim.TableClaim` for each.
 """
 
 from types import ModuleType
@@ -12,11 +12,11 @@ CATALOGUE = Catalogue(__name__, __path__)
 
 
 def names() -> tuple[str, ...]:
-    """All kinds."""
+    """Return the names of all kinds."""
     return CATALOGUE.names
 
 
 def get(name: str) -> ModuleType:
-    """The module of a kind. Raises KeyError where there is none."""
+    """Return the module of a kind. Raises KeyError where there is none."""
     module: ModuleType = CATALOGUE.module(name)
     return module

@@ -6,9 +6,9 @@ from typing import Annotated
 from pydantic import Field
 
 from verify.integrators.tables.entry import Block
-from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
-from verify.integrators.tables.told import TableClaim
-from verify.schemes.conditions.coloured_trees import of_all
+from verify.integrators.tables.table_claim import TableClaim
+from verify.integrators.tables.tableaux.claims import BlocksEntry, judge_blocks
+from verify.schemes.conditions.coloured_trees import unrestricted_grammar
 
 
 class Entry(BlocksEntry):
@@ -22,6 +22,8 @@ class Entry(BlocksEntry):
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
-    """As of a Runge–Kutta method, with the conditions that couple the parts."""
+    """Yield the claims of a Runge–Kutta method, with the conditions that couple the parts."""
     count = len(entry.parts)
-    yield from of_blocks(entry, tuple(f"_{k + 1}" for k in range(count)), of_all(count))
+    yield from judge_blocks(
+        entry, tuple(f"_{k + 1}" for k in range(count)), unrestricted_grammar(count)
+    )

@@ -11,12 +11,12 @@ from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
-    mended,
-    mirrored,
-    of_table,
+    judge_table,
+    judge_with_numbers,
+    mirror,
     sizes_of,
 )
-from verify.integrators.tables.told import Hints, TableClaim
+from verify.integrators.tables.table_claim import Hints, TableClaim
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.splitting_table import PrintedTable
 
@@ -29,22 +29,24 @@ class Entry(SizesEntry):
 
 
 def weights_of(entry: Entry, naming: Naming) -> tuple[str, ...]:
-    """The w of all steps, in names for their decimals."""
+    """Return the w of all steps, in names for their decimals."""
     if entry.csv is not None:
         if entry.sizes is not None or entry.half is not None:
             raise InputError("csv", entry.csv, "stands alone: leave out sizes and half")
         sizes, half = tuple(named_columns(entry.folder, entry.csv, ("size",))["size"]), False
     else:
         sizes, half = sizes_of(entry)
-    named = naming.entries(sizes, "w")
-    return mirrored(named) if half else named
+    names = naming.entries(sizes, "w")
+    return mirror(names) if half else names
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
-    """Of the order, of digits, symplectic, symmetric."""
+    """Yield the claims of the order, of digits, of being symplectic and of being symmetric."""
     naming = Naming(entry.numbers)
     parts = tuple(("step", size) for size in weights_of(entry, naming))
-    table = PrintedTable(entry.kind, parts, naming.printed)
-    for claim in of_table(entry, table, hints=Hints(partial(mended, entry, table, None))):
+    table = PrintedTable(entry.kind, parts, naming.printed_numbers)
+    for claim in judge_table(
+        entry, table, hints=Hints(partial(judge_with_numbers, entry, table, None))
+    ):
         of_weights = entry.of_parts and claim.severity == Severity.WRONG_ORDER
         yield replace(claim, severity=Severity.WRONG_WEIGHTS) if of_weights else claim

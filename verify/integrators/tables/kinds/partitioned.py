@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pydantic import StrictBool
 
 from verify.integrators.tables.entry import Block
-from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
-from verify.integrators.tables.told import TableClaim
-from verify.schemes.conditions.coloured_trees import alternating, of_all
+from verify.integrators.tables.table_claim import TableClaim
+from verify.integrators.tables.tableaux.claims import BlocksEntry, judge_blocks
+from verify.schemes.conditions.coloured_trees import alternating, unrestricted_grammar
 
 
 class Entry(BlocksEntry):
@@ -24,6 +24,6 @@ class Entry(BlocksEntry):
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
-    """As of a Runge–Kutta method, with the conditions that couple p and q."""
-    grammar = alternating() if entry.separable else of_all(2)
-    yield from of_blocks(entry, ("_p", "_q"), grammar, entry.separable)
+    """Yield the claims of a Runge–Kutta method, with the conditions that couple p and q."""
+    grammar = alternating() if entry.separable else unrestricted_grammar(2)
+    yield from judge_blocks(entry, ("_p", "_q"), grammar, entry.separable)

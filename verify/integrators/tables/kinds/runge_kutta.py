@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from verify.integrators.tables.entry import Block
-from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
-from verify.integrators.tables.told import TableClaim
-from verify.schemes.conditions.coloured_trees import of_all
+from verify.integrators.tables.table_claim import TableClaim
+from verify.integrators.tables.tableaux.claims import BlocksEntry, judge_blocks
+from verify.schemes.conditions.coloured_trees import unrestricted_grammar
 
 
 class Entry(Block, BlocksEntry):
@@ -19,5 +19,6 @@ class Entry(Block, BlocksEntry):
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
-    """Of the order, in time, of embedded weights, symplectic, symmetric, of stages."""
-    yield from of_blocks(entry, ("",), of_all(1))
+    """Yield the claims of the order, in time, of embedded weights, symplectic, symmetric, of
+    stages."""
+    yield from judge_blocks(entry, ("",), unrestricted_grammar(1))

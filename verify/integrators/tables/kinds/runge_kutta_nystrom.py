@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Row
-from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
+from verify.integrators.tables.table_claim import TableClaim
+from verify.integrators.tables.tableaux.claims import TableauEntry, judge_tableau
 from verify.integrators.tables.tableaux.table import TableauTable, square
-from verify.integrators.tables.told import TableClaim
 from verify.schemes.conditions.coloured_trees import NYSTROM
 from verify.schemes.conditions.tree_weights import Tableau
 from verify.schemes.printed.naming import Naming
@@ -29,7 +29,7 @@ class Entry(TableauEntry):
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
-    """Of the order, of embedded weights, symplectic, symmetric, of stages."""
+    """Yield the claims of the order, of embedded weights, symplectic, symmetric, of stages."""
     naming, stages = Naming(entry.numbers), len(entry.b)
     rows = tuple(naming.entries(row, f"a{k + 1}_") for k, row in enumerate(square(entry.a, stages)))
     b, bar = naming.entries(entry.b, "b"), naming.entries(entry.b_bar, "b_bar")
@@ -42,5 +42,5 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     if entry.embedded is not None and entry.embedded_bar is not None:
         one, other = entry.embedded, entry.embedded_bar
         embedded = naming.entries(one, "embedded"), naming.entries(other, "embedded_bar")
-    table = TableauTable(blocks, NYSTROM, naming.printed, ("", ""), nystrom=True)
-    yield from of_tableau(entry, table, embedded)
+    table = TableauTable(blocks, NYSTROM, naming.printed_numbers, ("", ""), nystrom=True)
+    yield from judge_tableau(entry, table, embedded)

@@ -25,7 +25,12 @@ from verify.schemes.conditions.coloured_trees import (
     vertices,
 )
 from verify.schemes.conditions.tree_weights import Block, dot
-from verify.schemes.printed.asked import Asked, Named, Residues, both
+from verify.schemes.printed.condition_set import (
+    ConditionSet,
+    NamedEquation,
+    Residues,
+    join_conditions,
+)
 from verify.schemes.printed.judged import Judged, Misprint, judge
 from verify.verdict import Verdict
 
@@ -39,17 +44,19 @@ MANY = 60  # conditions: of fewer a solution is looked for together with that of
 
 @cache
 def most_order(grammar: Grammar) -> int:
-    """The highest order whose trees are looked at."""
+    """Return the highest order whose trees are looked at."""
     trees = [len(all_trees(grammar, 1))]
     while len(trees) < _HIGHEST and sum(trees) <= _MOST_TREES:
         trees.append(len(all_trees(grammar, len(trees) + 1)))
     return len(trees) if sum(trees) <= _MOST_TREES else len(trees) - 1
 
 
-def order_asked(table: TableauTable, order: int, timed: bool = False, first: int = 1) -> Asked:
-    """The conditions of orders `first` … `order`; `timed`: with leaves of time.
+def order_conditions(
+    table: TableauTable, order: int, timed: bool = False, first: int = 1
+) -> ConditionSet:
+    """Return the conditions of orders `first` … `order`; `timed`: with leaves of time.
 
-    InputError beyond what is looked at.
+    Raises InputError beyond what is looked at.
     """
     grammar = replace(table.grammar, timed=timed)
     if not 1 <= order <= most_order(grammar):
@@ -62,27 +69,30 @@ def order_asked(table: TableauTable, order: int, timed: bool = False, first: int
         for tree in all_trees(grammar, n)
         if not _holds_by_form(table, tree)
     ]
+    # The work is estimated before it is begun: each condition has a derivative by each rounded
+    # number.
     work = len(trees) * len(table.entries) * (1 + len(table.printed.units))
     if work > _MOST_WORK:
         size = f"{len(trees)} conditions and {len(table.entries)} entries"
         raise InputError("order", order, f"is too much to look at, of {size}")
-    equations = tuple(Named(condition_text(table, tree), vertices(tree)) for tree in trees)
+    equations = tuple(NamedEquation(condition_text(table, tree), vertices(tree)) for tree in trees)
     shares = tuple(Fraction(1, symmetry(tree)) for tree in trees)
 
     def some(rows: Sequence[int]) -> Residues:
         return partial(_of_trees, table, [trees[k] for k in rows])
 
     every = some(range(len(trees)))
-    return Asked(table.entries, equations, every, 0, shares, table.labels, some)
+    return ConditionSet(table.entries, equations, every, 0, shares, table.labels, some)
 
 
 def condition_text(table: TableauTable, tree: Tree) -> str:
-    """The tree's condition in the table's own letters."""
+    """Format the tree's condition in the table's own letters."""
     return nystrom_text(tree) if table.nystrom else equation_text(tree, table.names)
 
 
 def _holds_by_form(table: TableauTable, tree: Tree) -> bool:
-    """q' = q + h p + … of Nyström's kind has its first term."""
+    """Return True for the first term of q' = q + h p + … of Nyström's kind, which no entry can
+    change."""
     return table.nystrom and tree == (1, ())
 
 
@@ -96,52 +106,54 @@ def _of_trees(
 # -- row sums -------------------------------------------------------------------------------------
 
 
-def row_sums_asked(table: TableauTable, crossed: tuple[bool, ...] = ()) -> Asked:
-    """c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij. `crossed`: of which parts of two the
-    other one's sums are meant."""
-    return table.asked(lambda blocks, one: _sums(table, blocks, one, crossed))
+def row_sum_conditions(table: TableauTable, crossed: tuple[bool, ...] = ()) -> ConditionSet:
+    """Return the conditions c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij. `crossed`: of
+    which parts of two the other one's sums are meant."""
+    return table.build_conditions(lambda blocks, one: _sums(table, blocks, one, crossed))
 
 
 def judge_row_sums(table: TableauTable) -> Judged:
-    """Whether the times are row sums: where there are two parts, of p' and of q', those of either
+    """Decide if the times are row sums: where there are two parts, of p' and of q', those of either
     one, since time may go with each (`verify.schemes.conditions.implicit_tableau`)."""
     either = list(product((False, True), repeat=2)) if "_p" in table.names else [()]
-    found = [judge(table.printed, row_sums_asked(table, crossed), 1) for crossed in either]
-    return next((x for x in found if x.holds), found[0])
+    judgements = [judge(table.printed, row_sum_conditions(table, crossed), 1) for crossed in either]
+    return next((x for x in judgements if x.holds), judgements[0])
 
 
 def wrong_time(table: TableauTable) -> Misprint | None:
-    """The one time that is no row sum, and the sum; None where none is, or several are. Of a and b
-    that are right."""
-    found, at_print = [], table.printed.at_print
+    """Find the one time that is no row sum, and the sum; None where none is, or several are. The
+    entries of a and b must be right."""
+    mistakes, at_print = [], table.printed.at_print
     for name, *sides in _sums(table, table.exprs, sympy.S.One):
         sizes = list(map(at_print, sides))
         if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG:
             label = name.partition(" = ")[2].replace("_", "", 1) if len(table.names) == 1 else name
-            found.append(Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q))))
-    return found[0] if len(found) == 1 else None
+            mistakes.append(
+                Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q)))
+            )
+    return mistakes[0] if len(mistakes) == 1 else None
 
 
 def _sums(
     table: TableauTable, blocks: Sequence[Block[E]], one: E, crossed: tuple[bool, ...] = ()
 ) -> Iterator[tuple[str, E, E]]:
-    """Each row's name, its sum, and what that is to be."""
+    """Yield each row's name, its sum, and the value that it must have."""
     for colour, (block, name) in enumerate(zip(blocks, table.names, strict=True)):
         if block.times is None or (table.nystrom and colour == 0):
             continue
-        of = 1 - colour if crossed and crossed[colour] else colour
-        for i, (row, time) in enumerate(zip(blocks[of].matrix, block.times, strict=True)):
+        summed = 1 - colour if crossed and crossed[colour] else colour
+        for i, (row, time) in enumerate(zip(blocks[summed].matrix, block.times, strict=True)):
             present = [x for x in row if x is not None]
             total = sum(present[1:], present[0]) if present else one * 0
             c = zero_or(time, one)
             if table.nystrom:
                 yield f"Σ a_{i + 1}j = c_{i + 1}^2/2", total, c * c / 2
             else:
-                yield f"Σ a{table.names[of]}_{i + 1}j = c{name}_{i + 1}", total, c
+                yield f"Σ a{table.names[summed]}_{i + 1}j = c{name}_{i + 1}", total, c
 
 
 def zero_or(x: E | None, one: E) -> E:
-    """An entry, 0 where it is that by its form."""
+    """Return the entry, or 0 where it is that by its form."""
     return one * 0 if x is None else x
 
 
@@ -149,19 +161,19 @@ def zero_or(x: E | None, one: E) -> E:
 
 
 def judge_in_time(table: TableauTable, order: int) -> Judged:
-    """Whether it can have the order for z' = f(z, t), with its times as they are printed, which are
-    not the row sums; or with both."""
-    plain = order_asked(table, order)
+    """Decide if the table can have the order for z' = f(z, t), with its times as they are printed,
+    which are not the row sums; or with both."""
+    plain = order_conditions(table, order)
     if len(plain.equations) <= MANY:
-        found = judge(table.printed, both(plain, row_sums_asked(table)), order)
-        if found.verdict is not Verdict.REFUTED:
-            return found
-    most = most_order(replace(table.grammar, timed=True))
-    for n in range(1, min(order, most) + 1):  # of a wrong time it is mostly a low order that fails
-        asked = order_asked(table, n, timed=True)
-        if table.printed.units and len(asked.equations) > _MANY_IN_TIME:
+        judgement = judge(table.printed, join_conditions(plain, row_sum_conditions(table)), order)
+        if judgement.verdict is not Verdict.REFUTED:
+            return judgement
+    limit = most_order(replace(table.grammar, timed=True))
+    for n in range(1, min(order, limit) + 1):  # of a wrong time it is mostly a low order that fails
+        conditions = order_conditions(table, n, timed=True)
+        if table.printed.units and len(conditions.equations) > _MANY_IN_TIME:
             break
-        timed = judge(table.printed, asked, n)
+        timed = judge(table.printed, conditions, n)
         if timed.verdict is Verdict.REFUTED or n == order:
             return timed
     return replace(timed, verdict=Verdict.UNDECIDED)
@@ -170,35 +182,35 @@ def judge_in_time(table: TableauTable, order: int) -> Judged:
 # -- stage order ----------------------------------------------------------------------------------
 
 
-def stage_order_asked(table: TableauTable, order: int) -> Asked:
-    """B and C of Butcher's up to that order: b·c^(k−1) = 1/k and A(c^(k−1)) = c^k/k; of Nyström's
-    kind ā(c^(k−2)) = c^k/(k (k−1)). Without printed times c is that of the row sums.
+def stage_order_conditions(table: TableauTable, order: int) -> ConditionSet:
+    """Return B and C of Butcher's up to that order: b·c^(k−1) = 1/k and A(c^(k−1)) = c^k/k; of
+    Nyström's kind ā(c^(k−2)) = c^k/(k (k−1)). Without printed times c is that of the row sums.
 
     (Hairer, Wanner, Solving Ordinary Differential Equations II, IV.15.)
     """
-    return table.asked(lambda blocks, one: _stages(table, blocks, order, one))
+    return table.build_conditions(lambda blocks, one: _stages(table, blocks, order, one))
 
 
 def _stages(
     table: TableauTable, blocks: Sequence[Block[E]], order: int, one: E
 ) -> Iterator[tuple[str, E, E]]:
-    """Each condition's name and its sides."""
-    own = list(zip(blocks, table.names, strict=True))
-    least = 2 if table.nystrom else 1
-    for block, name in own[1:] if table.nystrom else own:
+    """Yield each condition's name and its sides."""
+    parts = list(zip(blocks, table.names, strict=True))
+    lowest = 2 if table.nystrom else 1
+    for block, name in parts[1:] if table.nystrom else parts:
         powers = _powers(block, order, one)
-        for k in range(least, order + 1):
-            before, share = tuple(powers[k - least]), k * (k - 1) if table.nystrom else k
+        for k in range(lowest, order + 1):
+            lower_powers, share = tuple(powers[k - lowest]), k * (k - 1) if table.nystrom else k
             for i, row in enumerate(block.matrix):
-                label = f"stage {i + 1}{name}: A(c^{k - least}) = c^{k}/{share}"
-                yield label, zero_or(dot(row, before), one), powers[k][i] / share
+                label = f"stage {i + 1}{name}: A(c^{k - lowest}) = c^{k}/{share}"
+                yield label, zero_or(dot(row, lower_powers), one), powers[k][i] / share
             if not table.nystrom:
-                left = zero_or(dot(block.weights, before), one)
+                left = zero_or(dot(block.weights, lower_powers), one)
                 yield f"b{name}·c^{k - 1} = 1/{k}", left, one / k
 
 
 def _powers(block: Block[E], most: int, one: E) -> list[list[E]]:
-    """c^0 … c^most, by component."""
+    """Return c^0 … c^most, by component."""
     times = block.times
     if times is None:
         times = tuple(dot(row, (one,) * len(row)) for row in block.matrix)

@@ -30,7 +30,7 @@ from verify.schemes.conditions.coloured_trees import (
     vertices,
 )
 from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights, Vector
-from verify.schemes.printed.asked import Asked, of_pairs
+from verify.schemes.printed.condition_set import ConditionSet, conditions_of_pairs
 from verify.schemes.printed.judged import Judged, judge
 from verify.verdict import Verdict
 
@@ -39,39 +39,40 @@ _MOST = 200  # pairs, or trees, of those
 
 
 def judge_symplectic(table: TableauTable, separable: bool = False) -> Judged:
-    """`separable`: claimed for H = T(p) + V(q) alone."""
-    enough = _suris(table) if table.nystrom else _symplectic(table, separable)
-    return _by_two(table, enough, _of_pairs(table, separable))
+    """Decide if the table is symplectic. `separable`: claimed for H = T(p) + V(q) alone."""
+    enough = _nystrom_conditions(table) if table.nystrom else _symplectic(table, separable)
+    return _by_two(table, enough, _pair_conditions(table, separable))
 
 
 def judge_symmetric(table: TableauTable) -> Judged:
-    """Whether a step of −h undoes one of h."""
-    return _by_two(table, _reversed(table), _doubled(table))
+    """Decide if a step of −h undoes one of h."""
+    return _by_two(table, _reversal_conditions(table), _doubled_conditions(table))
 
 
-def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
-    """REFUTED only where what is needed fails; where only what suffices does, not decided."""
-    found = judge(table.printed, enough, 1)
-    if found.verdict is not Verdict.REFUTED:
-        return found
+def _by_two(table: TableauTable, enough: ConditionSet, needed: ConditionSet) -> Judged:
+    """Refute only where a necessary condition fails; where only a sufficient one does, do not
+    decide."""
+    sufficient = judge(table.printed, enough, 1)
+    if sufficient.verdict is not Verdict.REFUTED:
+        return sufficient
     against = judge(table.printed, needed, 1)
     if against.verdict is Verdict.REFUTED:
-        return replace(against, misprints=found.misprints)
-    return replace(found, verdict=Verdict.UNDECIDED)
+        return replace(against, misprints=sufficient.misprints)
+    return replace(sufficient, verdict=Verdict.UNDECIDED)
 
 
 def _dense(
     block: Block[E], one: E
 ) -> tuple[tuple[tuple[E, ...], ...], tuple[E, ...], tuple[E, ...]]:
-    """a, b and c with all their zeros; of c none where there are no times."""
-    full = block.mapped(lambda x, _: zero_or(x, one))
+    """Return a, b and c with all their zeros; an empty c where there are no times."""
+    full = block.map_entries(lambda x, _: zero_or(x, one))
     return full.matrix, full.weights, full.times or ()
 
 
 # -- symplectic -----------------------------------------------------------------------------------
 
 
-def _symplectic(table: TableauTable, separable: bool) -> Asked:
+def _symplectic(table: TableauTable, separable: bool) -> ConditionSet:
     stages, n = range(table.stages), table.names
     partitioned = len(table.blocks) == 2 and "_p" in n
     pairs = [(0, 1)] if partitioned else combinations_with_replacement(range(len(n)), 2)
@@ -90,10 +91,10 @@ def _symplectic(table: TableauTable, separable: bool) -> Asked:
         for i in stages if partitioned and not separable else ():
             yield f"b_p{i + 1} = b_q{i + 1}", b[0][i], b[1][i]
 
-    return table.asked(conditions)
+    return table.build_conditions(conditions)
 
 
-def _suris(table: TableauTable) -> Asked:
+def _nystrom_conditions(table: TableauTable) -> ConditionSet:
     stages = range(table.stages)
 
     def conditions(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
@@ -106,55 +107,61 @@ def _suris(table: TableauTable) -> Asked:
             name = f"b_{k} (b_bar_{m} - a_{k}{m}) = b_{m} (b_bar_{k} - a_{m}{k})"
             yield name, b[i] * bar[j] + b[j] * a[j][i], b[j] * bar[i] + b[i] * a[i][j]
 
-    return table.asked(conditions)
+    return table.build_conditions(conditions)
 
 
-def _of_pairs(table: TableauTable, separable: bool) -> Asked:
-    """b(u∘v) + b(v∘u) = b(u) b(v)."""
+def _pair_conditions(table: TableauTable, separable: bool) -> ConditionSet:
+    """Return the necessary conditions b(u∘v) + b(v∘u) = b(u) b(v)."""
     pairs = list(_pairs(table.grammar, table.nystrom, "_p" in table.names))
-    told = [_pair_text(u, v, table.names) for u, v in pairs]
+    texts = [_pair_text(u, v, table.names) for u, v in pairs]
     swapped = [] if table.nystrom or separable or "_p" not in table.names else [
         tree for n in (1, 2, 3) for tree in trees(table.grammar, n, 0)
     ]  # fmt: skip
-    told += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
+    texts += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
 
     def sides(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
         weights = table.weights(entries, one)
-        of = weights.weight
+        weight_of = weights.weight
         for u, v in pairs:
             if not table.nystrom:
-                yield of(_joined(u, v)) + of(_joined(v, u)), of(u) * of(v)
+                yield weight_of(_graft(u, v)) + weight_of(_graft(v, u)), weight_of(u) * weight_of(v)
             elif v == (1, ()):
-                yield of(_joined(u, v)) + of((1, (u,))), of(u)
+                yield weight_of(_graft(u, v)) + weight_of((1, (u,))), weight_of(u)
             else:
                 w = v[1][0]
-                left, right = of(_joined(u, v)), of(_joined(w, (1, (u,))))
-                yield left + of(w) * of((1, (u,))), right + of(u) * of(v)
+                left, right = weight_of(_graft(u, v)), weight_of(_graft(w, (1, (u,))))
+                yield (
+                    left + weight_of(w) * weight_of((1, (u,))),
+                    right + weight_of(u) * weight_of(v),
+                )
         for _, branches in swapped:
-            yield of((0, branches)), of((1, branches))
+            yield weight_of((0, branches)), weight_of((1, branches))
 
-    return of_pairs(table.entries, told, sides)
+    return conditions_of_pairs(table.entries, texts, sides)
 
 
 @cache
 def _pairs(grammar: Grammar, nystrom: bool, partitioned: bool) -> tuple[tuple[Tree, Tree], ...]:
-    """Of Nyström's kind u is of p' and v of q'; of p' and q' too; else of any two colours."""
+    """List the pairs of trees: of Nyström's kind u is of p' and v of q', and so of a partitioned
+    method; else they are of any two colours."""
     crossed = nystrom or partitioned
-    found: list[tuple[Tree, Tree]] = []
+    pairs: list[tuple[Tree, Tree]] = []
     for n in range(2, _VERTICES + 1):
         of_n = []
         for k in range(1, n):
             firsts = trees(grammar, k, 0) if crossed else all_trees(grammar, k)
             seconds = trees(grammar, n - k, 1) if crossed else all_trees(grammar, n - k)
+            # The condition is symmetric in u and v, so that each pair of the same forest is taken
+            # once.
             of_n += [(u, v) for u in firsts for v in seconds if crossed or u <= v]
-        if len(found) + len(of_n) > _MOST:
+        if len(pairs) + len(of_n) > _MOST:
             break
-        found += of_n
-    return tuple(found)
+        pairs += of_n
+    return tuple(pairs)
 
 
-def _joined(u: Tree, v: Tree) -> Tree:
-    """u with v as one more branch of its root."""
+def _graft(u: Tree, v: Tree) -> Tree:
+    """Return u∘v: u with v as one more branch of its root."""
     root, branches = u
     return root, tuple(sorted((*branches, v), key=lambda t: (-vertices(t), t)))
 
@@ -167,7 +174,7 @@ def _pair_text(u: Tree, v: Tree, names: tuple[str, ...]) -> str:
 # -- symmetric ------------------------------------------------------------------------------------
 
 
-def _reversed(table: TableauTable) -> Asked:
+def _reversal_conditions(table: TableauTable) -> ConditionSet:
     last, stages = table.stages - 1, range(table.stages)
 
     def conditions(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
@@ -177,10 +184,10 @@ def _reversed(table: TableauTable) -> Asked:
         for block, name in zip(blocks, table.names, strict=True):
             a, b, _ = _dense(block, one)
             for i, j in product(stages, stages):
-                called = f"{_reversed_entry(name, last, i, j)} = b{name}_{j + 1}"
-                yield called, a[i][j] + a[last - i][last - j], b[j]
+                name_of_condition = f"{_reversed_entry(name, last, i, j)} = b{name}_{j + 1}"
+                yield name_of_condition, a[i][j] + a[last - i][last - j], b[j]
 
-    return table.asked(conditions)
+    return table.build_conditions(conditions)
 
 
 def _reversed_entry(name: str, last: int, i: int, j: int) -> str:
@@ -188,7 +195,8 @@ def _reversed_entry(name: str, last: int, i: int, j: int) -> str:
 
 
 def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
-    """ā_(s+1−i, s+1−j) = b_j (1 − c_i) − b̄_j + ā_ij, and the weights of the step backwards."""
+    """Yield ā_(s+1−i, s+1−j) = b_j (1 − c_i) − b̄_j + ā_ij, and the weights of the step
+    backwards."""
     (_, b, _), (a, bar, c) = (_dense(block, one) for block in blocks)
     last, stages = len(b) - 1, range(len(b))
     for i, j in product(stages, stages):
@@ -203,8 +211,8 @@ def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str,
         yield name, bar[i] + bar[last - i], b[i]
 
 
-def _doubled(table: TableauTable) -> Asked:
-    """The weights of trees of Φ_(−h) after Φ_h, all of which are to be 0."""
+def _doubled_conditions(table: TableauTable) -> ConditionSet:
+    """Require that the weights of all trees of Φ_(−h) after Φ_h are 0."""
     stages = 2 * table.stages
     some = list[Tree]()
     for n in range(1, _VERTICES + 1):
@@ -213,26 +221,26 @@ def _doubled(table: TableauTable) -> Asked:
     some = [tree for tree in some if not (table.nystrom and tree == (1, ()))]
     tall = [tree for root in table.grammar.colours for tree in _tall(table.grammar, root, stages)]
     every = list(dict.fromkeys((*some, *tall)))
-    told = [
+    texts = [
         f"b{table.names[root]}·({product_text(branches, table.names)}) = 0 of the step of -h "
         "after that of h"
         for root, branches in every
     ]
 
     def sides(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
-        blocks = table.filled(entries)
-        made = [_twice(block, minus) for block in blocks]
+        blocks = table.fill_blocks(entries)
+        doubled = [_tableau_of_double_step(block, minus) for block in blocks]
         if table.nystrom:
-            made = _twice_nystrom(blocks, one, minus)
-        weights, zero = TreeWeights(made, one, table.nystrom), one * 0
+            doubled = _twice_nystrom(blocks, one, minus)
+        weights, zero = TreeWeights(doubled, one, table.nystrom), one * 0
         for tree in every:
             yield weights.weight(tree), zero
 
-    return of_pairs(table.entries, told, sides)
+    return conditions_of_pairs(table.entries, texts, sides)
 
 
 def _tall(grammar: Grammar, root: int, most: int) -> Iterator[Tree]:
-    """Trees without branching, of up to so many vertices and two more."""
+    """Yield trees without branching, of up to so many vertices and two more."""
     for n in range(3, most + 3):
         colours = [root]
         while len(colours) < n:
@@ -243,8 +251,8 @@ def _tall(grammar: Grammar, root: int, most: int) -> Iterator[Tree]:
         yield tree
 
 
-def _twice(block: Block[E], minus: int) -> Block[E]:
-    """Φ_(−h) after Φ_h: [[A, 0], [1 bᵀ, −A]] and [b, −b]."""
+def _tableau_of_double_step(block: Block[E], minus: int) -> Block[E]:
+    """Return the tableau of Φ_(−h) after Φ_h: [[A, 0], [1 bᵀ, −A]] and [b, −b]."""
     b, none = block.weights, (None,) * len(block.weights)
     upper = [(*row, *none) for row in block.matrix]
     lower = [(*b, *_times(minus, row)) for row in block.matrix]
@@ -252,7 +260,7 @@ def _twice(block: Block[E], minus: int) -> Block[E]:
 
 
 def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block[E]]:
-    """The same; at its end q has no h p left, and b̄ is [b̄ − b, b̄]."""
+    """Return the same of Nyström's kind; at its end q has no h p left, and b̄ is [b̄ − b, b̄]."""
     (_, b, _), (_, bar, c) = (_dense(block, one) for block in blocks)
     of_q, none = blocks[1], (None,) * len(b)
     upper = [(*row, *none) for row in of_q.matrix]
@@ -261,9 +269,9 @@ def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block
         for t, row in zip(c, of_q.matrix, strict=True)
     ]
     clock = (*c, *(one + t * minus for t in c))
-    moved = tuple(x + y * minus for x, y in zip(bar, b, strict=True))
-    own = Tableau((*upper, *lower), (*moved, *bar), clock)
-    return [Tableau(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
+    end_weights = tuple(x + y * minus for x, y in zip(bar, b, strict=True))
+    position = Tableau((*upper, *lower), (*end_weights, *bar), clock)
+    return [Tableau(position.matrix, (*b, *_times(minus, tuple(b))), clock), position]
 
 
 def _times(sign: int, x: Vector[E]) -> Vector[E]:

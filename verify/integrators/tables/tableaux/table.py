@@ -14,7 +14,7 @@ from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.schemes.conditions.coloured_trees import Grammar
 from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights
-from verify.schemes.printed.asked import Asked, of_pairs
+from verify.schemes.printed.condition_set import ConditionSet, conditions_of_pairs
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 MOST_STAGES = 40
@@ -44,84 +44,94 @@ class TableauTable:
         count = self.stages
         for block, name in zip(self.blocks, self.names, strict=True):
             _check(block, count, name)
+        # The entries are parsed at once, so that one that cannot be read is an error of the table
+        # and not of a later judgement.
         _ = self.entries
 
     @property
     def stages(self) -> int:
-        """How many stages there are."""
+        """The number of stages."""
         return len(self.blocks[0].weights)
 
     @property
-    def timed(self) -> bool:
-        """Whether every part has its stages' times."""
+    def has_times(self) -> bool:
+        """True if every part has its stages' times."""
         return all(block.times is not None for block in self.blocks)
 
     @cached_property
     def exprs(self) -> tuple[Block[sympy.Expr], ...]:
         """The entries in the symbols of the rounded numbers; None where one is 0 by its form."""
-        return tuple(block.mapped(self._expression) for block in self.blocks)
+        return tuple(block.map_entries(self._expression) for block in self.blocks)
 
     def _expression(self, text: str, what: str) -> sympy.Expr | None:
-        made = self.printed.entry(text, what)
-        return None if made == 0 else made
+        expression = self.printed.entry(text, what)
+        return None if expression == 0 else expression
 
     @cached_property
     def entries(self) -> Entries:
-        """Those that are not 0, one after the other."""
+        """The entries that are not 0, one after the other."""
         return tuple(x for block in self.exprs for x in block.entries if x is not None)
 
     @cached_property
     def labels(self) -> Texts:
-        """What the entries are called."""
+        """The names of the entries."""
         pairs = zip(self._every_label(), self.exprs, strict=True)
-        named = ((a, x) for told, own in pairs for a, x in zip(told, own.entries, strict=False))
+        named = (
+            (a, x)
+            for labels_of_block, block in pairs
+            for a, x in zip(labels_of_block, block.entries, strict=False)
+        )
         return tuple(label for label, x in named if x is not None)
 
     def _every_label(self) -> Iterator[list[str]]:
-        """Those of each block, of entries that are 0, too, and of times that may not be there."""
+        """Yield the labels of each block, also of entries that are 0, and of times that may be
+        missing."""
         bars, stages = (
             ("", "_bar") if self.nystrom else ("",) * len(self.blocks),
             range(self.stages),
         )
         for name, bar in zip(self.names, bars, strict=True):
-            told = [f"a{name}{_place(i)}{_place(j)}" for i in stages for j in stages]
-            told += [f"{self.weighing}{bar}{name}{_place(i)}" for i in stages]
-            yield [*told, *(f"c{name}{_place(i)}" for i in stages)]
+            labels = [f"a{name}{_place(i)}{_place(j)}" for i in stages for j in stages]
+            labels += [f"{self.weighing}{bar}{name}{_place(i)}" for i in stages]
+            yield [*labels, *(f"c{name}{_place(i)}" for i in stages)]
 
-    def mended(self, name: str, text: str) -> "TableauTable":
-        """The same with this number, or else entry, written so; as it is where it has none."""
+    def with_text(self, name: str, text: str) -> "TableauTable":
+        """Return the table with this number, or else entry, written so; unchanged where it has none
+        of that name."""
         if name in self.printed.numbers:
             return replace(self, printed=self.printed.with_number(name, text))
         pairs = zip(self._every_label(), self.blocks, strict=True)
-        blocks = tuple(_put(x, told, name, text) for told, x in pairs)
+        blocks = tuple(_put_text(x, labels, name, text) for labels, x in pairs)
         return replace(self, blocks=blocks, printed=replace(self.printed, tentative=True))
 
-    def filled(self, entries: Sequence[E]) -> list[Block[E]]:
-        """The blocks with these numbers for the entries."""
+    def fill_blocks(self, entries: Sequence[E]) -> list[Block[E]]:
+        """Return the blocks with these numbers for the entries."""
         numbers = iter(entries)
-        return [x.mapped(lambda y, _: None if y is None else next(numbers)) for x in self.exprs]
+        return [
+            x.map_entries(lambda y, _: None if y is None else next(numbers)) for x in self.exprs
+        ]
 
     def weights(self, entries: Sequence[E], one: E) -> TreeWeights[E]:
-        """What these entries put into trees."""
-        return TreeWeights(self.filled(entries), one, self.nystrom)
+        """Return the weights of trees with these entries."""
+        return TreeWeights(self.fill_blocks(entries), one, self.nystrom)
 
-    def asked(self, conditions: Conditions) -> Asked:
-        """That the sides of each are equal."""
+    def build_conditions(self, conditions: Conditions) -> ConditionSet:
+        """Build the conditions that the two sides of each are equal."""
 
         def pairs(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
-            return ((x, y) for _, x, y in conditions(self.filled(entries), one))
+            return ((x, y) for _, x, y in conditions(self.fill_blocks(entries), one))
 
         names = (name for name, *_ in conditions(self.exprs, sympy.S.One))
-        return of_pairs(self.entries, names, pairs, self.labels)
+        return conditions_of_pairs(self.entries, names, pairs, self.labels)
 
     def read(self, numbers: PrintedNumbers) -> "TableauTable":
-        """The same with its numbers read so."""
+        """Return the table with its numbers read so."""
         return replace(self, printed=numbers)
 
     def with_weights(self, weights: Sequence[Texts]) -> "TableauTable":
-        """The same with other weights in each block, as embedded ones."""
+        """Return the table with other weights in each block, as embedded ones."""
         pairs = zip(self.blocks, weights, strict=True)
-        blocks = tuple(replace(block, weights=own) for block, own in pairs)
+        blocks = tuple(replace(block, weights=texts) for block, texts in pairs)
         return replace(self, blocks=blocks, weighing="embedded")
 
 
@@ -129,10 +139,10 @@ def _place(i: int) -> str:
     return str(i + 1) if i < 9 else f"_{i + 1}"
 
 
-def _put(block: Tableau[str], labels: Sequence[str], name: str, text: str) -> Tableau[str]:
-    """The block with that text for the entry of that name."""
+def _put_text(block: Tableau[str], labels: Sequence[str], name: str, text: str) -> Tableau[str]:
+    """Return the block with that text for the entry of that name."""
     each = iter(labels)
-    return block.mapped(lambda x, _: text if next(each) == name else x)
+    return block.map_entries(lambda x, _: text if next(each) == name else x)
 
 
 def _check(block: Tableau[str], count: int, name: str) -> None:
@@ -150,8 +160,8 @@ def _check(block: Tableau[str], count: int, name: str) -> None:
 
 
 def square(rows: Sequence[Sequence[str]], stages: int, name: str = "a") -> tuple[Texts, ...]:
-    """Rows of a full matrix, from full rows or from those of an explicit one, whose rows end before
-    or at the diagonal. InputError where they are neither."""
+    """Return the rows of a full matrix, from full rows or from those of an explicit one, whose rows
+    end before or at the diagonal. Raises InputError where they are neither."""
     if len(rows) == stages - 1 and all(len(row) == k + 1 for k, row in enumerate(rows)):
         rows = [[], *rows]  # the first stage's row, which is empty, is not printed
     if len(rows) != stages:

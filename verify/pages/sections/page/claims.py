@@ -6,6 +6,6 @@ SECTION = Section(
     order=10,
     title="Claims",
     anchor="claims",
-    view=lambda given: given.groups,
+    view=lambda contents: contents.groups,
     entries=lambda view: (Entry(g.anchor, g.title, g.counts) for g in view if g.title),
 )

@@ -1,4 +1,4 @@
-"""The worst scenes of a hunt as the page shows them: what was hunted, and a card for each scene."""
+"""The worst scenes of a hunt: what was searched for, and a card for each scene."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -6,25 +6,32 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import Plot, captioned_plot
 from verify.pages.figures.logarithm import lg
-from verify.pages.sections.gallery_finding import findings, in_short, lambda_of, run_beyond
-from verify.pages.sections.given import Given
+from verify.pages.sections.gallery_finding import (
+    describe_lambda,
+    describe_longer_run,
+    findings,
+    short_value,
+)
+from verify.pages.sections.page_contents import PageContents
 from verify.pages.sections.section import Entry, Picture, Place, Section, Tile
 from verify.pages.text import mathml, words
 from verify.pages.text.signs import SIGNS
-from verify.pages.text.typography import NBSP, counted, start, step, whole
+from verify.pages.text.typography import NBSP, count_noun, start, step, whole
 from verify.scenes.results.exploration import Gallery, GalleryScene
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
-_TILES = 4  # scenes that are told one by one
-_SHORT = 80  # characters of a formula that stands in a caption
+# The number of worst scenes that have a tile on the first screen.
+_TILES = 4
+# Characters of a formula that fits in a caption.
+_SHORT = 80
 
 
 @dataclass(frozen=True)
 class CardView:
-    """One scene: `title` says how bad it is."""
+    """One scene; `title` says how bad it is."""
 
     result: GalleryScene
     anchor: str
@@ -35,22 +42,22 @@ class CardView:
 
 @dataclass(frozen=True)
 class GalleryView:
-    """`hunted`: of which scenes they are the worst."""
+    """The gallery; `search_sentences` say among which scenes these are the worst."""
 
-    hunted: tuple[str, ...]
+    search_sentences: tuple[str, ...]
     cards: tuple[CardView, ...]
 
 
-def _view(given: Given) -> GalleryView | None:
-    gallery = given.report.gallery
+def _view(contents: PageContents) -> GalleryView | None:
+    gallery = contents.report.gallery
     if gallery is None or not gallery.scenes:
         return None
     cards = tuple(_card(each, n, gallery) for n, each in enumerate(gallery.scenes, start=1))
-    return GalleryView(tuple(_hunted(gallery)), cards)
+    return GalleryView(tuple(_describe_hunt(gallery)), cards)
 
 
-def _speaks(report: Report) -> tuple[str, Sequence[Tile]] | None:
-    """The worst scene in a sentence, and a few of them as tiles."""
+def _lead_sentence_and_tiles(report: Report) -> tuple[str, Sequence[Tile]] | None:
+    """Return the worst scene in a sentence, and a few of the worst as tiles."""
     if report.gallery is None:
         return None
     return _finding(report.gallery), _tiles(report.gallery)
@@ -61,7 +68,7 @@ def _tiles(gallery: Gallery) -> list[Tile]:
         Tile(
             Verdict.MEASURED,
             SIGNS[Verdict.MEASURED][0],
-            *in_short(gallery.measure, each.value),
+            *short_value(gallery.measure, each.value),
             meaning=f"{each.separation.scheme}, h = {each.separation.step_size}",
         )
         for each in gallery.scenes[:_TILES]
@@ -72,8 +79,8 @@ def _tiles(gallery: Gallery) -> list[Tile]:
 
 
 def _finding(gallery: Gallery) -> str:
-    count = f"{counted(gallery.examples, 'scene')} of seed {gallery.seed}"
-    where = f"{_within(gallery)}, {whole(gallery.steps)} steps each"
+    count = f"{count_noun(gallery.examples, 'scene')} of seed {gallery.seed}"
+    where = f"{_describe_ranges(gallery)}, {whole(gallery.steps)} steps each"
     if not gallery.scenes:
         return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
     worst = gallery.scenes[0].separation
@@ -84,19 +91,19 @@ def _finding(gallery: Gallery) -> str:
     )
 
 
-def _within(gallery: Gallery) -> str:
+def _describe_ranges(gallery: Gallery) -> str:
     least, most = map(step, gallery.step_sizes)
     reach = f"|q|, |p|{NBSP}≤{NBSP}{gallery.reach}"
     return f"{reach}, h from {least} to {most}"
 
 
-def _hunted(gallery: Gallery) -> Iterator[str]:
+def _describe_hunt(gallery: Gallery) -> Iterator[str]:
     low, high = gallery.coefficients
     yield f"Hunted for: the {gallery.sentence}."
     yield (
         "Scenes were drawn at random, those near bad ones more often, and then moved a little as "
-        f"long as that made them worse: initial values with {_within(gallery)}, coefficients of H "
-        f"as drawn, of size {low} to {high} where they were moved, N{NBSP}={NBSP}"
+        f"long as that made them worse: initial values with {_describe_ranges(gallery)}, "
+        f"coefficients of H as drawn, of size {low} to {high} where they were moved, N{NBSP}={NBSP}"
         f"{whole(gallery.steps)} steps."
     )
     yield (
@@ -109,17 +116,17 @@ def _hunted(gallery: Gallery) -> Iterator[str]:
 
 def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
     anchor = f"worst-{place}"
-    said = findings(gallery.measure, gallery.sentence, each.value)
+    finding = findings(gallery.measure, gallery.sentence, each.value)
     return CardView(
         result=each,
         anchor=anchor,
-        title=f"Scene {place}: {said}",
-        finding=(*lambda_of(each), *run_beyond(each), *_at_rest(each)),
+        title=f"Scene {place}: {finding}",
+        finding=(*describe_lambda(each), *describe_longer_run(each), *_describe_rest(each)),
         plots=tuple(_plots(each, place, gallery.steps, anchor)),
     )
 
 
-def _at_rest(each: GalleryScene) -> Iterator[str]:
+def _describe_rest(each: GalleryScene) -> Iterator[str]:
     if len(each.orbit) > 1 and len(set(each.orbit)) == 1:
         yield "The orbit stays where it starts."
 
@@ -128,16 +135,16 @@ def _at_rest(each: GalleryScene) -> Iterator[str]:
 
 
 def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[Plot]:
-    """Truncation against rounding, which the first screen shows of the worst, and the orbit."""
-    of = each.separation
-    series = of.plain.series if of.plain else ()
-    drawable = [at for at in series if _is_known(at.truncation) or _is_known(at.total)]
+    """Yield the plots of truncation against rounding and of the orbit."""
+    separation = each.separation
+    series = separation.plain.series if separation.plain else ()
+    drawable = [point for point in series if _is_known(point.truncation) or _is_known(point.total)]
     if len(drawable) > 1:
         from verify.pages.figures import gallery_figure
 
         # That of the worst scene stands on the first screen, far from its card.
-        formula = [_formula(of.hamiltonian)] if place == 1 else []
-        yield plotted(
+        formula = [_formula(separation.hamiltonian)] if place == 1 else []
+        yield captioned_plot(
             lambda: gallery_figure.draw_parts(each),
             name=f"parts-of-{anchor}",
             lead=f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps",
@@ -146,7 +153,7 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
     if len(set(each.orbit)) > 1:
         from verify.pages.figures import gallery_figure
 
-        yield plotted(
+        yield captioned_plot(
             lambda: gallery_figure.draw_orbit(each.orbit, steps),
             name=f"orbit-of-{anchor}",
             lead=f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps",
@@ -155,28 +162,30 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
 
 
 def _formula(text: str) -> Markup:
-    """H in a caption, where it is short enough for one."""
+    """Return H for a caption, or "" where it is too long."""
     if len(text) > _SHORT:
         return Markup("")
     return Markup("H{0}={0}{1}.").format(NBSP, mathml.formula(text))
 
 
 def _parts_sentence(each: GalleryScene) -> str:
-    of = each.separation
-    series = of.plain.series if of.plain else ()
-    said = [
-        f"Λ in float64, evaluated the plain way, split after up to {whole(of.steps)} steps: what "
-        "the scheme does to area, and what rounding adds."
+    separation = each.separation
+    series = separation.plain.series if separation.plain else ()
+    sentences = [
+        f"Λ in float64, evaluated the plain way, split after up to {whole(separation.steps)} "
+        "steps: what the scheme does to area, and what rounding adds."
     ]
-    if any(not _is_known(size) for at in series for size in (at.truncation, at.total)):
-        said.append("What is 0, or of what no digit is known, has no place on these axes.")
-    said.append(f"In place of exact arithmetic: {of.arithmetic}; {of.error_method}.")
-    return " ".join(said)
+    if any(not _is_known(size) for point in series for size in (point.truncation, point.total)):
+        sentences.append("What is 0, or of what no digit is known, has no place on these axes.")
+    sentences.append(
+        f"In place of exact arithmetic: {separation.arithmetic}; {separation.error_method}."
+    )
+    return " ".join(sentences)
 
 
 def _orbit_sentence(each: GalleryScene, steps: int) -> str:
-    shown = len(each.orbit) - 1
-    every = -(-steps // shown)
+    intervals = len(each.orbit) - 1
+    every = -(-steps // intervals)
     points = "each step" if every == 1 else f"every {whole(every)} steps"
     return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits."
 
@@ -198,5 +207,5 @@ SECTION = Section(
     entries=lambda view: (Entry(card.anchor, card.title) for card in view.cards),
     pictures=_pictures,
     terms=lambda _: words.SEPARATED | words.RAN,
-    speaks=_speaks,
+    speaks=_lead_sentence_and_tiles,
 )

@@ -1,4 +1,4 @@
-"""What was asked for and not computed, and why."""
+"""The requests that were not computed, and why."""
 
 from verify.pages.sections.section import Section
 
@@ -6,5 +6,5 @@ SECTION = Section(
     order=50,
     title="What was left out, and why",
     anchor="left-out",
-    view=lambda given: given.report.left_out,
+    view=lambda contents: contents.report.left_out,
 )

@@ -1,4 +1,4 @@
-"""The paper's figures, made again: which of our pictures show them, and what the paper draws."""
+"""The paper's figures, made again from our runs, with the claims that the paper draws from them."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.claim_view import Anchors, ClaimView
-from verify.pages.sections.given import Given, SceneView
+from verify.pages.sections.page_contents import PageContents, SceneView
 from verify.pages.sections.section import Entry, Place, Section, walk
 from verify.scenes.paper_figures import PaperFigure
 
-_NAMED = re.compile(r"^fig(ure|\.)?\s+", re.IGNORECASE)
+_FIGURE_PREFIX = re.compile(r"^fig(ure|\.)?\s+", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
 class PaperFigureView:
-    """`finding`: what was measured of what is drawn, where it is a flow; `claims`: in its order."""
+    """A figure of the paper; `finding`: the measurements of a flow; `claims`: in its order."""
 
     figure: PaperFigure
     anchor: str
@@ -26,24 +26,24 @@ class PaperFigureView:
     scene: SceneView | None
 
     @property
-    def is_over(self) -> bool:
-        """Whether it takes the whole width of the page."""
+    def is_full_width(self) -> bool:
+        """True if the figure takes the whole width of the page."""
         return any(plot.span == "full" for plot in self.plots)
 
     @property
-    def drawn_from(self) -> list[tuple[str, list[ClaimView]]]:
-        """What the paper draws from it: each statement once, with its readings."""
+    def claims_by_statement(self) -> list[tuple[str, list[ClaimView]]]:
+        """The statements that the paper draws from the figure, each with its readings."""
         return list(by_key(self.claims, lambda c: c.result.statement or c.result.id).items())
 
 
-def _views(given: Given) -> tuple[PaperFigureView, ...]:
-    """In the order in which they are given; what is not in the report is left out of each."""
-    # Of those with one name the first counts.
-    by_name = {scene.result.name: scene for scene in reversed(given.scenes)}
-    by_id = {claim.result.id: claim for claim in reversed(given.claims)}
-    drawn: set[int] = set()
-    figures = given.report.figures
-    return tuple(_view(f, by_name, by_id, given.anchors, drawn) for f in figures)
+def _views(contents: PageContents) -> tuple[PaperFigureView, ...]:
+    """Return the figures in their order, without what is not in the report."""
+    # Where several have one name, the first counts; hence the reversed order.
+    by_name = {scene.result.name: scene for scene in reversed(contents.scenes)}
+    by_id = {claim.result.id: claim for claim in reversed(contents.claims)}
+    drawn_ids: set[int] = set()
+    figures = contents.report.figures
+    return tuple(_view(f, by_name, by_id, contents.anchors, drawn_ids) for f in figures)
 
 
 def _view(
@@ -51,28 +51,28 @@ def _view(
     scenes: Mapping[str, SceneView],
     claims: Mapping[str, ClaimView],
     anchors: Anchors,
-    drawn: set[int],
+    drawn_ids: set[int],
 ) -> PaperFigureView:
-    """`drawn` are the plots that earlier figures show; no picture stands twice."""
+    """Return the view of a figure without the plots in `drawn_ids`, which earlier figures show."""
     scene = scenes.get(figure.scene)
-    found = list(_drawn(figure, scene)) if scene else []
-    own = [plot for plot, _ in found if plot is not None and id(plot) not in drawn]
-    drawn.update(map(id, own))
+    candidates = list(_candidate_plots(figure, scene)) if scene else []
+    new_plots = [plot for plot, _ in candidates if plot is not None and id(plot) not in drawn_ids]
+    drawn_ids.update(map(id, new_plots))
     return PaperFigureView(
         figure=figure,
-        anchor=anchors.take("figure", _NAMED.sub("", figure.label)),
-        plots=tuple(own),
-        finding=" ".join(said for _, said in found if said),
+        anchor=anchors.take("figure", _FIGURE_PREFIX.sub("", figure.label)),
+        plots=tuple(new_plots),
+        finding=" ".join(finding for _, finding in candidates if finding),
         claims=tuple(claims[name] for name in figure.claims if name in claims),
         scene=scene,
     )
 
 
-def _drawn(figure: PaperFigure, scene: SceneView) -> Iterator[tuple[Plot | None, str]]:
-    """The plots that show it, each with what is said of it."""
+def _candidate_plots(figure: PaperFigure, scene: SceneView) -> Iterator[tuple[Plot | None, str]]:
+    """Yield the plots that show the figure, each with its finding."""
     for each in walk(scene.sections):
         if each.section.shows == figure.shows:
-            yield from each.section.drawn(each.view, figure.label)
+            yield from each.section.matching_plots(each.view, figure.label)
 
 
 def _keeps(views: Sequence[PaperFigureView]) -> Iterator[tuple[Plot, Place]]:
@@ -85,7 +85,7 @@ SECTION = Section(
     title="The paper’s figures, made again",
     anchor="figures",
     view=_views,
-    entries=lambda views: (Entry(v.anchor, _NAMED.sub("", v.figure.label)) for v in views),
+    entries=lambda views: (Entry(v.anchor, _FIGURE_PREFIX.sub("", v.figure.label)) for v in views),
     is_numbered=True,
     keeps=_keeps,
 )

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator
 
-from verify.pages.sections.given import SceneView
+from verify.pages.sections.page_contents import SceneView
 from verify.pages.sections.section import Entry, Section
 
-_FEW = 3  # scenes whose sections stand in the contents
+# The contents list the sections of scenes only for at most so many scenes.
+_FEW = 3
 
 
 def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
@@ -18,7 +19,7 @@ def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
 
 SECTION = Section(
     order=40,
-    view=lambda given: given.scenes,
+    view=lambda contents: contents.scenes,
     entries=_entries,
     inner=lambda view: (each for scene in view for each in scene.sections),
 )

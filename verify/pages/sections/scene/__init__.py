@@ -1,4 +1,4 @@
-"""The sections of a scene: a file each, found by itself; see `verify.pages.sections.section`."""
+"""The sections of a scene, one in each file; see `verify.pages.sections.section`."""
 
 from verify.discovery import Catalogue
 

@@ -1,4 +1,4 @@
-"""Regions carried by maps, as the page shows them: sentences, a table, a figure of each."""
+"""Regions carried by maps: sentences, a table, and a figure of each."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, arithmetic_of, plotted
+from verify.pages.figures.captioned_plot import Plot, captioned_plot, name_arithmetic
 from verify.pages.sections.flow_finding import finding, findings, mean_of, region_of
 from verify.pages.sections.flow_words import words
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Place, Section
-from verify.pages.text.typography import IS, listed, map_name, number, step, whole
+from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
 
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RegionView:
-    """One region: what it is, its images; no `plot` where nothing can be drawn. `plots`: that, and
-    in n degrees of freedom the projections to the other planes after it.
+    """One region and its images.
+
+    `plot` is None where nothing can be drawn; `plots` holds it and, in n degrees of freedom, the
+    projections on the other planes after it.
     """
 
     result: FlowResult
@@ -41,12 +43,12 @@ class RegionView:
 
 @dataclass(frozen=True)
 class FlowView:
-    """All that a scene asks for."""
+    """All regions of a scene."""
 
     finding: tuple[str, ...]
     regions: tuple[RegionView, ...]
 
-    def of(self, source: str) -> tuple[RegionView, ...]:
+    def regions_from(self, source: str) -> tuple[RegionView, ...]:
         return tuple(region for region in self.regions if region.result.source == source)
 
 
@@ -59,7 +61,7 @@ def _view(scene: SceneResult, anchor: str) -> FlowView | None:
 
 
 def _region(flow: FlowResult, anchor: str) -> RegionView:
-    said = words([flow])
+    vocabulary = words([flow])
     return RegionView(
         result=flow,
         anchor=anchor,
@@ -67,32 +69,35 @@ def _region(flow: FlowResult, anchor: str) -> RegionView:
         finding=" ".join(finding(flow)),
         rows=tuple(map(_row, flow.images)),
         plots=tuple(_plots(flow, anchor)),
-        heads=said.heads,
-        about=said.about,
+        heads=vocabulary.heads,
+        about=vocabulary.about,
     )
 
 
 def _title(flow: FlowResult) -> str:
-    what = f"{_the(flow)}, h{IS}{step(flow.step_size)}"
+    what = f"{_describe_region(flow)}, h{IS}{step(flow.step_size)}"
     return f"{flow.source}: {what}" if flow.source else f"{what[:1].upper()}{what[1:]}"
 
 
-def _the(flow: FlowResult) -> str:
+def _describe_region(flow: FlowResult) -> str:
     q, p = map(number, flow.centre)
     begins = "" if flow.t0 is None else f", from t₀{IS}{number(flow.t0)}"
     where = f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{begins}"
     if flow.plane is None:
         return where
-    own = f"q{flow.plane}", f"p{flow.plane}"
-    beside = (f"{name}{IS}{number(x)}" for name, x in flow.point.items() if name not in own)
-    return f"{where.replace('(q, p)', '({}, {})'.format(*own))}, {', '.join(beside)}"
+    plane_names = f"q{flow.plane}", f"p{flow.plane}"
+    other_coordinates = (
+        f"{name}{IS}{number(x)}" for name, x in flow.point.items() if name not in plane_names
+    )
+    placed = where.replace("(q, p)", "({}, {})".format(*plane_names))
+    return f"{placed}, {', '.join(other_coordinates)}"
 
 
 # -- numbers --------------------------------------------------------------------------------------
 
 
-def _cell(value: str | None, error: str | None, *, missing: str = "–") -> str | Markup:
-    """A number with its error, where it has one."""
+def _format_cell(value: str | None, error: str | None, *, missing: str = "–") -> str | Markup:
+    """Return a number with its error, where it has one."""
     if value is None or error is None:
         return missing if value is None else number(value)
     return Markup('{} <span class="bound">± {}</span>').format(number(value), number(error))
@@ -103,26 +108,26 @@ def _row(image: FlowImage) -> Row:
     cells = (
         whole(image.steps),
         number(image.time),
-        _cell(image.area_change, image.probe_error, missing="not known"),
-        _cell(*mean_of(image), missing=no_mean),
-        _planes(image) or _cell(image.distance, image.distance_error),
-        arithmetic_of(image),
+        _format_cell(image.area_change, image.probe_error, missing="not known"),
+        _format_cell(*mean_of(image), missing=no_mean),
+        _projection_areas(image) or _format_cell(image.distance, image.distance_error),
+        name_arithmetic(image),
     )
     disagreement = "the two measures disagree" if image.agree is False else ""
     return Row(image.map, cells, image.problem or disagreement)
 
 
-def _planes(image: FlowImage) -> str | Markup:
-    """What the region's outline encloses in each plane, with its error."""
-    seen = image.outlines[0].projections if image.outlines else ()
-    return Markup(" ").join(_cell(x.area, x.area_error) for x in seen)
+def _projection_areas(image: FlowImage) -> str | Markup:
+    """Return the areas that the region's outline encloses in each plane, with their errors."""
+    projections = image.outlines[0].projections if image.outlines else ()
+    return Markup(" ").join(_format_cell(x.area, x.area_error) for x in projections)
 
 
 # -- the figure -----------------------------------------------------------------------------------
 
 
 def _plots(flow: FlowResult, anchor: str) -> Iterator[Plot]:
-    """The drawings; with them matplotlib is imported only where there is an image."""
+    """Yield the drawings; matplotlib is imported only where there is an image."""
     if not flow.before or not any(image.outlines for image in flow.images):
         return
     planes = range(1, len(flow.point) // 2 + 1)
@@ -136,40 +141,46 @@ def _plot(flow: FlowResult, name: str, plane: int | None) -> Plot:
     from verify.pages.figures.flow_grid import grid_of
     from verify.pages.sections.flow_pictures import picture_sentences
 
-    grid, what = grid_of(flow, plane), _the(flow)
-    maps = listed(map(map_name, dict.fromkeys(image.map for image in flow.images)))
+    grid, what = grid_of(flow, plane), _describe_region(flow)
+    maps = join_and(map(map_name, dict.fromkeys(image.map for image in flow.images)))
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
     if flow.plane is not None:
         lead += f", as it is seen in ({', '.join(grid.axes)})"
-    found = " ".join(picture_sentences(flow, grid))
-    return plotted(
+    sentences = " ".join(picture_sentences(flow, grid))
+    return captioned_plot(
         lambda: draw_flow(grid),
         name=name,
         lead=lead,
-        label=f"{lead}. {found}".strip(),
-        caption=f"{_caption(flow, grid)} {found}".strip(),
+        label=f"{lead}. {sentences}".strip(),
+        caption=f"{_caption(flow, grid)} {sentences}".strip(),
     )
 
 
 def _caption(flow: FlowResult, grid: "Grid") -> str:
-    counts, shown = len({image.steps for image in flow.images}), len(grid.counts)
-    under = "; broad and grey: the exact flow" * any(panel.exact for panel in grid.panels)
-    some = f" {whole(shown)} of {whole(counts)} are drawn." if 0 < shown < counts else ""
-    none = sorted({i.steps for i in flow.images} - {i.steps for i in flow.images if i.outlines})
-    if none:
-        some += f" At N{IS}{listed(map(whole, none))} there is no image."
+    counts, drawn_count = len({image.steps for image in flow.images}), len(grid.counts)
+    exact_note = "; broad and grey: the exact flow" * any(panel.exact for panel in grid.panels)
+    notes = (
+        f" {whole(drawn_count)} of {whole(counts)} are drawn." if 0 < drawn_count < counts else ""
+    )
+    missing_steps = sorted(
+        {i.steps for i in flow.images} - {i.steps for i in flow.images if i.outlines}
+    )
+    if missing_steps:
+        notes += f" At N{IS}{join_and(map(whole, missing_steps))} there is no image."
     q, p = grid.axes
     before = "Grey: before; in" if len(grid.before[0]) > 1 else "In"
-    measured = "whose area is measured" if flow.plane is None else "around which ∮ p·dq is measured"
+    measure = "whose area is measured" if flow.plane is None else "around which ∮ p·dq is measured"
     return (
-        f"{before} colour: after N steps by each map{under}.{some} Tinted is {region_of(flow)}, "
-        f"{measured}. One scale for {q} and {p} in all panels."
+        f"{before} colour: after N steps by each map{exact_note}.{notes} Tinted is "
+        f"{region_of(flow)}, {measure}. One scale for {q} and {p} in all panels."
     )
 
 
 def _terms(views: Sequence[FlowView]) -> dict[str, Markup]:
-    every = (words([each.result for each in view.regions]).terms for view in views)
-    return {term: meaning for own in every for term, meaning in own.items()}
+    terms_by_view = (words([each.result for each in view.regions]).terms for view in views)
+    return {
+        term: meaning for section_terms in terms_by_view for term, meaning in section_terms.items()
+    }
 
 
 def _pictures(view: FlowView) -> Iterator[Picture]:
@@ -186,5 +197,7 @@ SECTION = Section(
     pictures=_pictures,
     terms=_terms,
     shows="flow",
-    drawn=lambda view, label: ((each.plot, each.finding) for each in view.of(label)),
+    matching_plots=lambda view, label: (
+        (each.plot, each.finding) for each in view.regions_from(label)
+    ),
 )

@@ -1,4 +1,4 @@
-"""What is lost of the symplectic form in n degrees of freedom, and what det J would have said.
+"""The defect of the symplectic form in n degrees of freedom, compared with what det J tells.
 
 S has n(2n − 1) entries and det J is one number: at its lowest order det J − 1 is the sum of n of
 them. Along a run W = Σ MᵀSM grows with the tangent map M, and Λ = Π det J − 1 does not.
@@ -8,11 +8,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.pages.figures.captioned_plot import few_digits
+from verify.pages.figures.captioned_plot import known_digits
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Section
 from verify.pages.text import words
-from verify.pages.text.typography import counted, listed, number, power_of_h, start, step, whole
+from verify.pages.text.typography import (
+    count_noun,
+    join_and,
+    number,
+    power_of_h,
+    start,
+    step,
+    whole,
+)
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
 from verify.structures import SYMPLECTIC
@@ -28,17 +36,19 @@ class BeyondView:
 
 
 def _view(scene: SceneResult, _: str) -> BeyondView | None:
-    found = scene.work_precision
-    if found is None or found.structure is not SYMPLECTIC:
+    result = scene.work_precision
+    if result is None or result.structure is not SYMPLECTIC:
         return None
-    own = [line for line in found.lines if not line.peer]
-    caption = f"float64 runs to T = {number(found.time)} from {start(found)}"
-    groups = tuple(Group(line.name, list(map(_row, line.points)), _kept(line)) for line in own)
-    said = (*_orders(scene), *_finding(found, own))
-    return BeyondView(said, groups, caption)
+    schemes = [line for line in result.lines if not line.peer]
+    caption = f"float64 runs to T = {number(result.time)} from {start(result)}"
+    groups = tuple(
+        Group(line.name, list(map(_row, line.points)), _describe_proof(line)) for line in schemes
+    )
+    sentences = (*_compare_orders(scene), *_finding(result, schemes))
+    return BeyondView(sentences, groups, caption)
 
 
-def _kept(line: WorkLine) -> str:
+def _describe_proof(line: WorkLine) -> str:
     return "S ≡ 0 is proved" if line.area_preserving else ""
 
 
@@ -48,14 +58,14 @@ def _row(point: WorkPoint) -> Row:
         return Row(label, (steps,), f"failed: {point.reason}")
     values = (point.error, point.energy, point.symplectic_defect, point.lam)
     seconds = "–" if point.seconds_median is None else number(f"{point.seconds_median:.2e}")
-    return Row(label, (steps, *map(few_digits, values), seconds))
+    return Row(label, (steps, *map(known_digits, values), seconds))
 
 
 # -- sentences ------------------------------------------------------------------------------------
 
 
-def _orders(scene: SceneResult) -> Iterator[str]:
-    """Where det J − 1 begins with a higher power of h than S."""
+def _compare_orders(scene: SceneResult) -> Iterator[str]:
+    """Yield the schemes whose det J − 1 begins with a higher power of h than S."""
     for proof in scene.proofs:
         form = proof.form
         if form is None or form.volume_order is None or proof.order is None:
@@ -64,53 +74,57 @@ def _orders(scene: SceneResult) -> Iterator[str]:
             yield (
                 f"S of {proof.scheme} begins with {power_of_h(proof.order)} and det J − 1 with "
                 f"{power_of_h(form.volume_order)}: by det J alone it would seem to be "
-                f"{counted(form.volume_order - proof.order, 'order')} better than it is."
+                f"{count_noun(form.volume_order - proof.order, 'order')} better than it is."
             )
 
 
-def _finding(found: WorkPrecisionResult, own: list[WorkLine]) -> Iterator[str]:
-    kept = [line.name for line in own if line.area_preserving]
-    if kept:
-        yield f"{listed(kept)}: every step is symplectic, S ≡ 0, by proof; so are all N of them."
-    lost = [line for line in own if not line.area_preserving]
-    pairs = [(line, point) for line in lost for point in line.points if _compared(point)]
+def _finding(result: WorkPrecisionResult, schemes: list[WorkLine]) -> Iterator[str]:
+    symplectic = [line.name for line in schemes if line.area_preserving]
+    if symplectic:
+        yield (
+            f"{join_and(symplectic)}: every step is symplectic, S ≡ 0, by proof; so are all N of "
+            "them."
+        )
+    others = [line for line in schemes if not line.area_preserving]
+    pairs = [(line, point) for line in others for point in line.points if _can_be_compared(point)]
     if not pairs:
         return
-    line, point = max(pairs, key=lambda each: _ratio(each[1]))
+    line, point = max(pairs, key=lambda each: _ratio_of_defects(each[1]))
     yield (
         f"What det J alone would have said: of {line.name} at h = {step(point.step_size or '')} "
         f"that {whole(point.steps or 0)} steps change volume by Λ = {_few(point.lam)}, while "
         f"the symplectic form is off by max |W| = {_few(point.symplectic_defect)}, "
-        f"{number(f'{_ratio(point):.1e}')} times as much."
+        f"{number(f'{_ratio_of_defects(point):.1e}')} times as much."
     )
     yield (
         "det J is one number where S has n(2n − 1) entries, and says nothing of how errors of the "
         "form are carried on: W grows with the tangent map, as Mᵀ S M, Λ does not."
     )
-    wide = [p.name for p in lost if any(_beyond_orbit(x, found) for x in p.points)]
-    if wide:
+    off_orbit = [p.name for p in others if any(_is_beyond_orbit(x, result) for x in p.points)]
+    if off_orbit:
         yield (
-            f"Of {listed(wide)} some solutions are farther off than the orbit is wide: there "
-            "no scheme follows this orbit, and the energy and the form are what is left to compare."
+            f"Of {join_and(off_orbit)} some solutions are farther off than the orbit is wide: "
+            "there no scheme follows this orbit, and the energy and the form are what is left to "
+            "compare."
         )
 
 
-def _compared(point: WorkPoint) -> bool:
-    both = point.lam, point.symplectic_defect
-    return all(x is not None and Fraction(x.value) for x in both)
+def _can_be_compared(point: WorkPoint) -> bool:
+    defects = point.lam, point.symplectic_defect
+    return all(x is not None and Fraction(x.value) for x in defects)
 
 
-def _ratio(point: WorkPoint) -> float:
+def _ratio_of_defects(point: WorkPoint) -> float:
     lam, form = point.lam, point.symplectic_defect
     return abs(float(form.value) / float(lam.value)) if lam and form else 0.0
 
 
-def _beyond_orbit(point: WorkPoint, found: WorkPrecisionResult) -> bool:
-    return point.error is not None and Fraction(point.error.value) > Fraction(found.scale)
+def _is_beyond_orbit(point: WorkPoint, result: WorkPrecisionResult) -> bool:
+    return point.error is not None and Fraction(point.error.value) > Fraction(result.scale)
 
 
 def _few(value: object) -> str:
-    return str(few_digits(value))  # type: ignore[arg-type]
+    return str(known_digits(value))  # type: ignore[arg-type]
 
 
 SECTION = Section(

@@ -1,4 +1,4 @@
-"""What orbits do over two of their initial values, as the page shows it: sentences and a figure."""
+"""The kinds of orbits over two of their initial values: sentences and a figure."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -6,106 +6,111 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from verify.arithmetic.exact import short
-from verify.pages.figures.captioned_plot import plotted
+from verify.pages.figures.captioned_plot import captioned_plot
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.orbits_view import OrbitsView, pictures
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import IS, listed, number, step, whole
+from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 
 
 def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
-    together = by_key(
+    groups = by_key(
         scene.orbit_maps,
         lambda m: (m.axes, m.across, m.upwards, m.q, m.p, m.step_size, m.steps, m.beyond),
     )
-    return tuple(_one(of, f"starts-{k}-of-{anchor}") for k, of in enumerate(together.values()))
+    return tuple(
+        _orbits_view(maps, f"starts-{k}-of-{anchor}") for k, maps in enumerate(groups.values())
+    )
 
 
-def _one(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
+def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     from verify.pages.figures.orbit_map_figure import draw_orbit_maps
 
-    over = maps[0]
-    axes = " and ".join(over.axes)
-    cells = whole(len(over.across) * len(over.upwards))
+    first_map = maps[0]
+    axes = " and ".join(first_map.axes)
+    cells = whole(len(first_map.across) * len(first_map.upwards))
     title = f"{cells} orbits over {axes}"
-    time = short(Fraction(over.step_size) * over.steps)
-    names = listed(m.scheme for m in maps)
-    lead = f"{title}, by {names}, until t{IS}{number(time)}; h{IS}{step(over.step_size)}"
+    time = short(Fraction(first_map.step_size) * first_map.steps)
+    names = join_and(m.scheme for m in maps)
+    lead = f"{title}, by {names}, until t{IS}{number(time)}; h{IS}{step(first_map.step_size)}"
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
-    rest = ", ".join(f"{name}{IS}{number(x)}" for name, x in _others(over))
-    lines = " Grey lines: the same energy H." if _has_energies(over) else ""
+    rest = ", ".join(f"{name}{IS}{number(x)}" for name, x in _others(first_map))
+    lines = " Grey lines: the same energy H." if _has_energies(first_map) else ""
     return OrbitsView(
         anchor=anchor,
         title=title,
         finding=" ".join(map(_energy_finding, maps)),
         rows=tuple(_row(m, kind) for m in maps for kind in m.counted()),
-        plot=plotted(
+        plot=captioned_plot(
             lambda: draw_orbit_maps(maps),
             name=f"orbits-of-{anchor}",
             lead=lead,
             label=f"{lead}. {counts}.",
             caption=(
                 f"Each mark is an orbit in float64{', with ' + rest if rest else ''}. It leaves "
-                f"where a coordinate is beyond ±{number(over.beyond)}.{lines}"
+                f"where a coordinate is beyond ±{number(first_map.beyond)}.{lines}"
             ),
         ),
     )
 
 
-def _counts(over: OrbitMapResult) -> str:
-    return listed(f"{whole(n)} {kind}" for kind, n in over.counted().items())
+def _counts(orbit_map: OrbitMapResult) -> str:
+    return join_and(f"{whole(n)} {kind}" for kind, n in orbit_map.counted().items())
 
 
-def _others(over: OrbitMapResult) -> Iterator[tuple[str, str]]:
-    """The initial values that are the same for all."""
-    for letter, values in (("q", over.q), ("p", over.p)):
+def _others(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
+    """Yield the initial values that are the same for all orbits."""
+    for letter, values in (("q", orbit_map.q), ("p", orbit_map.p)):
         if isinstance(values, tuple):
             for k, x in enumerate(values, start=1):
-                if f"{letter}{k}" not in over.axes:
+                if f"{letter}{k}" not in orbit_map.axes:
                     yield f"{letter}{k}", x
 
 
-def _has_energies(over: OrbitMapResult) -> bool:
-    return all(x is not None for row in over.energies for x in row)
+def _has_energies(orbit_map: OrbitMapResult) -> bool:
+    return all(x is not None for row in orbit_map.energies for x in row)
 
 
-def _energy_finding(over: OrbitMapResult) -> str:
-    """Which energies leave, and which stay."""
-    found: dict[bool, list[Fraction]] = {True: [], False: []}
-    for i, j in over.places():
-        energy = over.energies[i][j]
+def _energy_finding(orbit_map: OrbitMapResult) -> str:
+    """Return a sentence on the energies of orbits that leave and of those that stay."""
+    energies: dict[bool, list[Fraction]] = {True: [], False: []}
+    for i, j in orbit_map.places():
+        energy = orbit_map.energies[i][j]
         if energy is not None:
-            found[over.kinds[i][j] == "leaves"].append(Fraction(energy))
-    leave, stay = found[True], found[False]
+            energies[orbit_map.kinds[i][j] == "leaves"].append(Fraction(energy))
+    leave, stay = energies[True], energies[False]
     if not leave:
-        return f"By {over.scheme} none leaves."
+        return f"By {orbit_map.scheme} none leaves."
     if not stay:
-        return f"By {over.scheme} all leave."
+        return f"By {orbit_map.scheme} all leave."
     least, most = (number(short(x)) for x in (min(leave), max(stay)))
     return (
-        f"By {over.scheme} the lowest energy that leaves is {least}, the highest that stays {most}."
+        f"By {orbit_map.scheme} the lowest energy that leaves is {least}, the highest that stays "
+        f"{most}."
     )
 
 
-def _row(over: OrbitMapResult, kind: OrbitKind) -> Row:
-    """How many are of one kind, their greatest rate and W, and from when on they leave."""
-    own = [(i, j) for i, j in over.places() if over.kinds[i][j] == kind]
+def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> Row:
+    """Return a kind's row: the number of orbits, greatest rate and W, first step of leaving."""
+    cells = [(i, j) for i, j in orbit_map.places() if orbit_map.kinds[i][j] == kind]
     rates, defects = (
-        [x for i, j in own if (x := rows[i][j]) is not None]
-        for rows in (over.lyapunov, over.defects)
+        [x for i, j in cells if (x := rows[i][j]) is not None]
+        for rows in (orbit_map.lyapunov, orbit_map.defects)
     )
-    left = [seen for i, j in own if (seen := over.left[i][j]) is not None]
-    cells = (
+    leaving_steps = [
+        first_step for i, j in cells if (first_step := orbit_map.left[i][j]) is not None
+    ]
+    entries = (
         kind,
-        whole(len(own)),
+        whole(len(cells)),
         number(max(rates, key=Fraction)) if rates else "–",
         number(max(defects, key=Fraction)) if defects else "–",
-        whole(min(left)) if left else "–",
+        whole(min(leaving_steps)) if leaving_steps else "–",
     )
-    return Row(over.scheme, cells)
+    return Row(orbit_map.scheme, entries)
 
 
 _TERMS = {

@@ -1,72 +1,87 @@
-"""Orbits where they pass a surface, as the page shows them: sentences, a figure, a table."""
+"""Orbits where they pass a surface: sentences, a figure, a table."""
 
 from fractions import Fraction
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import plotted
-from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pictures, title_from
+from verify.pages.figures.captioned_plot import captioned_plot
+from verify.pages.sections.orbits_view import (
+    OrbitsView,
+    describe_escape,
+    describe_partly_known,
+    pictures,
+    title_from,
+)
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import IS, listed, map_name, number, step, whole
+from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.report import SceneResult
 
 
 def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
-    return tuple(_one(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare))
+    return tuple(
+        _orbits_view(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare)
+    )
 
 
-def _one(result: PoincareResult, anchor: str) -> OrbitsView:
-    from verify.pages.figures.orbit_points_figure import draw_passes, drawn, drawn_looks
+def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
+    from verify.pages.figures.orbit_points_figure import (
+        count_drawn_looks,
+        draw_passes,
+        select_points,
+    )
 
     way = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
     where = f"where {result.coordinate} passes {number(result.value)} {way}"
     title = f"{orbits} orbits {where}"
     lead = (
-        f"{title}, by {listed(map_name(each.map) for each in result.sections)}, "
+        f"{title}, by {join_and(map_name(each.map) for each in result.sections)}, "
         f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
     passes = max(len(o.points) for each in result.sections for o in each.orbits)
-    shown = drawn_looks(result.sections)
-    some = f" The first {whole(shown)} passes are drawn." * (shown < passes)
-    outside = drawn(result)[1]
+    drawn_count = count_drawn_looks(result.sections)
+    omissions = f" The first {whole(drawn_count)} passes are drawn." * (drawn_count < passes)
+    outside = select_points(result)[1]
     if outside:
-        some += f" Points far out, by orbits that escape, are not drawn: {whole(outside)}."
-    said = " ".join(map(_finding, result.sections))
+        omissions += f" Points far out, by orbits that escape, are not drawn: {whole(outside)}."
+    finding = " ".join(map(_finding, result.sections))
     return OrbitsView(
         anchor=anchor,
         title=title_from(result.source, title),
-        finding=said,
+        finding=finding,
         rows=tuple(
-            Row(each.map, _cells(o), left(o)) for each in result.sections for o in each.orbits
+            Row(each.map, _cells(o), describe_escape(o))
+            for each in result.sections
+            for o in each.orbits
         ),
-        plot=plotted(
+        plot=captioned_plot(
             lambda: draw_passes(result),
             name=f"points-of-{anchor}",
             lead=lead,
-            label=f"{lead}. {said}",
+            label=f"{lead}. {finding}",
             caption=(
                 "A colour an orbit, the same in all panels; grey: what a second reckoning does "
-                f"not confirm. Points of one curve: regular motion; scattered ones: chaos.{some}"
+                "not confirm. Points of one curve: regular motion; scattered ones: "
+                f"chaos.{omissions}"
             ),
         ),
     )
 
 
 def _finding(sections: MapSections) -> str:
-    """How far the map's orbits are known, and how well."""
+    """Return a sentence on how far the map's orbits are known, and with what error."""
     orbits = sections.orbits
-    lost = [o for o in orbits if o.known < len(o.points)]
+    partly_decided = [o for o in orbits if o.known < len(o.points)]
     error = max((o.error for o in orbits), key=Fraction)
-    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, "
-    said += f"by {map_name(sections.map)},"
-    within = f"within {number(error)} (estimated, by a second reckoning)"
-    if not lost:
-        return f"{said} every point is known {within}."
-    part = first_known(orbits, lost, "passes")
-    return f"{said} {part}; what is known is so {within}."
+    sentence = f"With {whole(sections.digits)} digits in {sections.arithmetic}, "
+    sentence += f"by {map_name(sections.map)},"
+    accuracy = f"within {number(error)} (estimated, by a second reckoning)"
+    if not partly_decided:
+        return f"{sentence} every point is known {accuracy}."
+    part = describe_partly_known(orbits, partly_decided, "passes")
+    return f"{sentence} {part}; what is known is so {accuracy}."
 
 
 def _cells(orbit: PoincareOrbit) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.sections import scheme as of_scheme
-from verify.pages.sections.section import Entry, Place, Section, Shown, shown
+from verify.pages.sections.section import Entry, Place, Section, VisibleSection, select_sections
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
@@ -16,7 +16,7 @@ class SchemeView:
 
     proof: ProofResult
     anchor: str
-    sections: tuple[Shown, ...]
+    sections: tuple[VisibleSection, ...]
 
     @property
     def entry(self) -> Entry:
@@ -33,7 +33,7 @@ def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...]:
 
 def _scheme(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeView:
     place = Place(anchor, proof.scheme)
-    return SchemeView(proof, anchor, shown(of_scheme.FILES, place, scene, proof, anchor))
+    return SchemeView(proof, anchor, select_sections(of_scheme.FILES, place, scene, proof, anchor))
 
 
 SECTION = Section(

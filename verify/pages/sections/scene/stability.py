@@ -1,4 +1,4 @@
-"""How stable a scene's schemes are, as the page shows it: sentences, pictures, tables."""
+"""The stability of a scene's schemes: sentences, pictures, tables."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -8,12 +8,12 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from verify.arithmetic.exact import plain, short
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import Plot, captioned_plot
 from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import Row, shown, told
+from verify.pages.sections.rows import Row, describe_excerpt, select_members
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text.prose import prose
-from verify.pages.text.typography import coordinates, listed, number, step, whole
+from verify.pages.text.typography import coordinates, join_and, number, step, whole
 from verify.pages.text.words import counts_of
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import (
@@ -39,17 +39,18 @@ MEANINGS: dict[Kind, str] = {
 
 @dataclass(frozen=True)
 class StabilityView:
-    """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded.
+    """The view of a scene's stability.
 
-    `runs`: those that are shown, each with its name and its step size, `told` which they are of how
-    many, `count`. `plots`: each with how many kinds of run it shows.
+    `kinds`: the verdicts that occur; `bound`: the time over which the largest steps are bounded.
+    `runs`: the visible ones of `count` runs, each with its name and step size, and `excerpt` says
+    which they are. `plots`: each with the number of kinds of run that it shows.
     """
 
     finding: tuple[str, ...]
     kinds: tuple[Kind, ...]
     runs: tuple[tuple[str, str, StabilityResult], ...]
     count: int
-    told: str
+    excerpt: str
     largest: tuple[Row, ...]
     bound: str
     plots: tuple[tuple[int, Plot], ...]
@@ -59,28 +60,30 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
     runs, steps, maps = scene.stability, scene.largest_steps, scene.stability_maps
     if not (runs or steps or maps):
         return None
-    seen = {run.kind for run in runs} | {kind for over in maps for kind in over.counted()}
-    (held,) = shown([runs], _unsound)
+    occurring = {run.kind for run in runs} | {
+        kind for stability_map in maps for kind in stability_map.counted()
+    }
+    (visible,) = select_members([runs], _is_not_stable)
     return StabilityView(
         finding=tuple(_finding(runs, steps)),
-        kinds=tuple(kind for kind in KINDS if kind in seen),
-        runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in held),
+        kinds=tuple(kind for kind in KINDS if kind in occurring),
+        runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in visible),
         count=len(runs),
-        told=told(len(runs), len(held), sum(map(_unsound, runs))),
-        largest=tuple(map(_largest, steps)),
-        bound=_bound(steps),
+        excerpt=describe_excerpt(len(runs), len(visible), sum(map(_is_not_stable, runs))),
+        largest=tuple(map(_row_of_largest_step, steps)),
+        bound=_describe_time(steps),
         plots=tuple(_plots(maps, anchor)),
     )
 
 
-def _unsound(run: StabilityResult) -> bool:
+def _is_not_stable(run: StabilityResult) -> bool:
     return run.kind != "stable"
 
 
 def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
     if runs:
-        counted = Counter(run.kind for run in runs)
-        yield f"Of {whole(len(runs))} runs: {counts_of(counted)}."
+        counts = Counter(run.kind for run in runs)
+        yield f"Of {whole(len(runs))} runs: {counts_of(counts)}."
     drifting = sorted(
         (run for run in runs if run.rate), key=lambda run: -abs(Fraction(run.rate or 0))
     )
@@ -90,9 +93,9 @@ def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]
             f"The fastest drift is that of {worst.scheme} at h = {step(worst.step_size)}: its "
             f"energy changes by {number(worst.rate or '0')} of its own scale in a unit of time."
         )
-    beyond = [s for s in steps if s.bounded and s.linear and Fraction(s.linear) > 0]
-    if beyond:
-        ratios = [Fraction(s.bounded or 0) / Fraction(s.linear or 1) for s in beyond]
+    comparable = [s for s in steps if s.bounded and s.linear and Fraction(s.linear) > 0]
+    if comparable:
+        ratios = [Fraction(s.bounded or 0) / Fraction(s.linear or 1) for s in comparable]
         low, high = (f"{float(x):.2g}" for x in (min(ratios), max(ratios)))
         yield (
             f"Where linear theory allows steps at all, the largest step with bounded motion is "
@@ -101,69 +104,70 @@ def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]
     never = [s.scheme for s in steps if s.linear and Fraction(s.linear) == 0 and s.bounded]
     if never:
         yield (
-            f"For {listed(never)} it allows none, and what is bounded over this time is so for "
+            f"For {join_and(never)} it allows none, and what is bounded over this time is so for "
             "this time only."
         )
 
 
 def _name(run: StabilityResult) -> str:
-    """What its id says beside the scene, the scheme and the step size: section, initial value."""
+    """Return the run's id without scene, scheme and step size: section and initial value."""
     _, *parts = run.id.split("/")
-    own = (run.scheme, f"h={short(Fraction(run.step_size))}")
-    return ", ".join(part for part in parts if part not in own)
+    implied = (run.scheme, f"h={short(Fraction(run.step_size))}")
+    return ", ".join(part for part in parts if part not in implied)
 
 
-def _largest(found: LargestStepResult) -> Row:
+def _row_of_largest_step(result: LargestStepResult) -> Row:
     linear, ratio = "no limit", "–"
-    if found.linear is not None:
-        linear = _four(found.linear) if Fraction(found.linear) else "none is stable"
-        if found.bounded and Fraction(found.linear):
-            ratio = f"{float(Fraction(found.bounded) / Fraction(found.linear)):.3f}"
-    measured = _four(found.bounded) if found.bounded else prose(found.detail)
-    return Row(f"{found.scheme}{_within(found)}", (measured, linear, ratio))
+    if result.linear is not None:
+        linear = _four_digits(result.linear) if Fraction(result.linear) else "none is stable"
+        if result.bounded and Fraction(result.linear):
+            ratio = f"{float(Fraction(result.bounded) / Fraction(result.linear)):.3f}"
+    measured_step = _four_digits(result.bounded) if result.bounded else prose(result.detail)
+    return Row(f"{result.scheme}{_describe_requirements(result)}", (measured_step, linear, ratio))
 
 
-def _within(found: LargestStepResult) -> str:
-    """What it had to keep beside its bounds."""
-    asked = (("energy error", found.energy_error), ("|W|", found.symplectic_defect))
-    said = [f"{what} ≤ {number(most)}" for what, most in asked if most]
-    return f", {' and '.join(said)}" if said else ""
+def _describe_requirements(result: LargestStepResult) -> str:
+    """Return the requirements on the motion other than to stay bounded."""
+    requirements = (("energy error", result.energy_error), ("|W|", result.symplectic_defect))
+    limits = [f"{what} ≤ {number(most)}" for what, most in requirements if most]
+    return f", {' and '.join(limits)}" if limits else ""
 
 
-def _four(x: str) -> str:
+def _four_digits(x: str) -> str:
     return number(plain(Fraction(x), 4))
 
 
-def _bound(steps: Sequence[LargestStepResult]) -> str:
+def _describe_time(steps: Sequence[LargestStepResult]) -> str:
     times = dict.fromkeys(number(s.time) for s in steps)
-    return f"until t = {listed(list(times))}" if times else ""
+    return f"until t = {join_and(list(times))}" if times else ""
 
 
 def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[int, Plot]]:
-    """One for the maps of all schemes over the same steps and values.
+    """Yield a plot for the maps of all schemes over the same steps and values.
 
     The drawing, and with it matplotlib, is imported only where there is a map.
     """
-    together = by_key(maps, lambda m: (m.parameter, m.values, m.step_sizes, m.steps, m.q, m.p))
-    for index, of in enumerate(together.values()):
+    groups = by_key(maps, lambda m: (m.parameter, m.values, m.step_sizes, m.steps, m.q, m.p))
+    for index, group in enumerate(groups.values()):
+        # matplotlib takes long to import, and is needed only where there is a map.
         from verify.pages.figures.stability_figure import draw_planes
 
-        names = listed(over.scheme for over in of)
-        lead = f"Stability of {names} over the step size h and {of[0].parameter}"
-        counts = "; ".join(f"{m.scheme}: {counts_of(m.counted())}" for m in of)
-        plot = plotted(
-            lambda of=of: draw_planes(of),  # type: ignore[misc]
+        names = join_and(stability_map.scheme for stability_map in group)
+        lead = f"Stability of {names} over the step size h and {group[0].parameter}"
+        counts = "; ".join(f"{m.scheme}: {counts_of(m.counted())}" for m in group)
+        plot = captioned_plot(
+            lambda group=group: draw_planes(group),  # type: ignore[misc]
             name=f"stability-{index}-of-{anchor}",
             lead=lead,
             label=f"{lead}. {counts}.",
-            caption=_caption(of, counts),
+            caption=_caption(group, counts),
         )
-        yield len({kind for over in of for kind in over.counted()}), plot
+        yield len({kind for stability_map in group for kind in stability_map.counted()}), plot
 
 
 def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
-    """What a picture of one map is, with its counts; those of several are in their alternative."""
-    over = maps[0]
+    """Return the caption, with the counts of a single map; a text alternative has several."""
+    first_map = maps[0]
     limit = ""
     if any(_is_positive(h) for m in maps for h in m.linear):
         limit = (
@@ -172,10 +176,12 @@ def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
         )
     never = [m.scheme for m in maps if any(m.linear) and not any(map(_is_positive, m.linear))]
     if never:
-        limit += f" For {listed(never)} linear theory has no stable step."
+        limit += f" For {join_and(never)} linear theory has no stable step."
     return (
-        f"Each mark is a run of {whole(over.steps)} steps from q = {coordinates(over.q)}, "
-        f"p = {coordinates(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
+        f"Each mark is a run of {whole(first_map.steps)} steps from "
+        f"q = {coordinates(first_map.q)}, p = {coordinates(first_map.p)}.{limit}"
+        + f" {counts}."
+        * (len(maps) == 1)
     )
 
 
@@ -184,21 +190,21 @@ def _is_positive(step_size: str | None) -> bool:
 
 
 def _pictures(view: StabilityView) -> Iterator[Picture]:
-    """That with the most kinds of run tells the most."""
+    """Yield the pictures; the one with the most kinds of run ranks first."""
     for kinds, plot in view.plots:
         yield Picture((1, -kinds), plot)
 
 
 def _terms(views: Sequence[StabilityView]) -> dict[str, Markup]:
-    """The verdicts on runs that occur."""
-    seen = {kind for view in views for kind in view.kinds}
-    each = (
+    """Return the meanings of the verdicts that occur."""
+    occurring = {kind for view in views for kind in view.kinds}
+    items = (
         Markup("<div><dt>{}</dt><dd>{}</dd></div>").format(kind, meaning)
         for kind, meaning in MEANINGS.items()
-        if kind in seen
+        if kind in occurring
     )
-    listed = Markup('<dl class="kinds" id="kinds">{}</dl>').format(Markup("\n").join(each))
-    return {"Verdicts on runs": listed} if seen else {}
+    definitions = Markup('<dl class="kinds" id="kinds">{}</dl>').format(Markup("\n").join(items))
+    return {"Verdicts on runs": definitions} if occurring else {}
 
 
 SECTION = Section(

@@ -1,27 +1,33 @@
-"""Orbits at multiples of a period, as the page shows them: sentences, a figure, a table."""
+"""Orbits at multiples of a period: sentences, a figure, a table."""
 
 from collections.abc import Iterator
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import plotted
-from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pictures, title_from
+from verify.pages.figures.captioned_plot import captioned_plot
+from verify.pages.sections.orbits_view import (
+    OrbitsView,
+    describe_escape,
+    describe_partly_known,
+    pictures,
+    title_from,
+)
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import IS, listed, number, step, whole
+from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.orbit_sections import StroboscopicResult
 from verify.scenes.results.report import SceneResult
 
 
 def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
     results = enumerate(scene.stroboscopic)
-    return tuple(_one(result, f"strobe-{k}-of-{anchor}") for k, result in results)
+    return tuple(_orbits_view(result, f"strobe-{k}-of-{anchor}") for k, result in results)
 
 
-def _one(result: StroboscopicResult, anchor: str) -> OrbitsView:
-    from verify.pages.figures.orbit_points_figure import draw_periods, drawn_looks
+def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
+    from verify.pages.figures.orbit_points_figure import count_drawn_looks, draw_periods
 
-    schemes = listed(each.scheme for each in result.sections)
+    schemes = join_and(each.scheme for each in result.sections)
     begins = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
     orbits = whole(len(result.sections[0].orbits))
     lead = (
@@ -30,20 +36,22 @@ def _one(result: StroboscopicResult, anchor: str) -> OrbitsView:
     )
     title = f"{orbits} orbits at multiples of T{IS}{number(result.period)}"
     turn = " q is an angle, and drawn within one turn." * result.q_is_angle
-    drawn = drawn_looks(result.sections, 1)
-    some = f" The first {whole(drawn)} periods are drawn." * (drawn < result.periods)
-    said = " ".join(_finding(result))
+    drawn_count = count_drawn_looks(result.sections, 1)
+    omission = f" The first {whole(drawn_count)} periods are drawn." * (
+        drawn_count < result.periods
+    )
+    finding = " ".join(_finding(result))
     return OrbitsView(
         anchor=anchor,
         title=title_from(result.source, title),
-        finding=said,
+        finding=finding,
         rows=tuple(_rows(result)),
-        plot=plotted(
+        plot=captioned_plot(
             lambda: draw_periods(result),
             name=f"points-of-{anchor}",
             lead=lead,
-            label=f"{lead}. {said}",
-            caption=f"A colour an orbit; grey: what more digits do not confirm.{turn}{some}",
+            label=f"{lead}. {finding}",
+            caption=f"A colour an orbit; grey: what more digits do not confirm.{turn}{omission}",
         ),
         source=result.source,
     )
@@ -51,12 +59,12 @@ def _one(result: StroboscopicResult, anchor: str) -> OrbitsView:
 
 def _finding(result: StroboscopicResult) -> Iterator[str]:
     for each in result.sections:
-        lost = [o for o in each.orbits if o.known < len(o.points) - 1]
-        of = f"{each.scheme}: with {whole(each.digits)} digits in {each.arithmetic}"
-        if lost:
-            yield f"{of} {first_known(each.orbits, lost, 'periods')}."
+        partly_decided = [o for o in each.orbits if o.known < len(o.points) - 1]
+        source = f"{each.scheme}: with {whole(each.digits)} digits in {each.arithmetic}"
+        if partly_decided:
+            yield f"{source} {describe_partly_known(each.orbits, partly_decided, 'periods')}."
         else:
-            yield f"{of} every orbit is known to its end."
+            yield f"{source} every orbit is known to its end."
         floats = min(o.in_float64 for o in each.orbits)
         if floats < result.periods:
             yield f"float64 shows another picture from period {whole(floats + 1)} on."
@@ -70,7 +78,7 @@ def _rows(result: StroboscopicResult) -> Iterator[Row]:
                 number(orbit.q), number(orbit.p), whole(done), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
-            yield Row(each.scheme, cells, left(orbit))
+            yield Row(each.scheme, cells, describe_escape(orbit))
 
 
 _TERMS = {
@@ -90,5 +98,5 @@ SECTION = Section(
     pictures=lambda views: pictures(views, 3),
     terms=lambda _: _TERMS,
     shows="stroboscopic",
-    drawn=lambda views, label: ((x.plot, x.finding) for x in views if x.source == label),
+    matching_plots=lambda views, label: ((x.plot, x.finding) for x in views if x.source == label),
 )

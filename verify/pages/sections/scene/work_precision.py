@@ -1,4 +1,4 @@
-"""Error against run time as the page shows it: sentences, figures and tables, all from the data."""
+"""Error against run time: sentences, figures and tables, all from the data."""
 
 import re
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few_digits
+from verify.pages.figures.captioned_plot import Plot, known_digits
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text import words
@@ -24,55 +24,56 @@ from verify.scenes.results.work_precision import (
 from verify.structures import AREA, SYMPLECTIC
 
 _HEADS = {AREA: ("order of Λ", "Λ, plain"), SYMPLECTIC: ("order of max |W|", "max |W|")}
-_UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
+# A count and its unit are joined by a no-break space.
+_UNIT = re.compile(r"(\d) ")
 
 
 @dataclass(frozen=True)
 class WorkPrecisionView:
     result: WorkPrecisionResult
-    heads: tuple[str, str]  # of the order of what is lost, and of what is the sharper
+    heads: tuple[str, str]  # of two columns: the order of the defect, and the sharper defect
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
     schemes: tuple[Row, ...]
     groups: tuple[Group, ...]
     systems: tuple[Row, ...]
     count: int
-    computed: str
+    provenance: str
 
 
 def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
-    found = scene.work_precision
-    if found is None:
+    result = scene.work_precision
+    if result is None:
         return None
     from verify.pages.figures.work_precision_plots import plots
 
-    own = [line for line in found.lines if not line.peer]
+    schemes = [line for line in result.lines if not line.peer]
     return WorkPrecisionView(
-        result=found,
-        heads=_HEADS[found.structure],
-        finding=tuple(_finding(found)),
-        plots=tuple(plots(found, name=anchor)),
-        schemes=tuple(_scheme(line) for line in own),
-        groups=tuple(_group(line) for line in found.lines),
-        systems=tuple(_system(point) for point in found.systems),
-        count=sum(len(line.points) for line in found.lines),
-        computed=_computed(found),
+        result=result,
+        heads=_HEADS[result.structure],
+        finding=tuple(_finding(result)),
+        plots=tuple(plots(result, name=anchor)),
+        schemes=tuple(_scheme_row(line) for line in schemes),
+        groups=tuple(_group(line) for line in result.lines),
+        systems=tuple(_system_row(point) for point in result.systems),
+        count=sum(len(line.points) for line in result.lines),
+        provenance=_describe_provenance(result),
     )
 
 
 # -- sentences ------------------------------------------------------------------------------------
 
 
-def _finding(found: WorkPrecisionResult) -> Iterator[str]:
+def _finding(result: WorkPrecisionResult) -> Iterator[str]:
     yield (
-        f"The error is that of the float64 state after T = {number(found.time)} from "
-        f"{start(found)}, "
+        f"The error is that of the float64 state after T = {number(result.time)} from "
+        f"{start(result)}, "
         "against the exact solution, which is known to within "
-        f"{number(found.reference_bound)}."
+        f"{number(result.reference_bound)}."
     )
-    if found.rounded_down:
-        yield f"{found.rounded_down}."
-    points = [point for line in found.lines if not line.peer for point in line.points]
+    if result.rounded_down:
+        yield f"{result.rounded_down}."
+    points = [point for line in result.lines if not line.peer for point in line.points]
     rounded = sum(point.limited_by == "rounding" for point in points)
     lost = sum(point.limited_by == "failed" for point in points)
     if rounded:
@@ -84,49 +85,49 @@ def _finding(found: WorkPrecisionResult) -> Iterator[str]:
         yield f"{whole(lost)} {'run' if lost == 1 else 'runs'} left the range of float64."
 
 
-def _computed(found: WorkPrecisionResult) -> str:
+def _describe_provenance(result: WorkPrecisionResult) -> str:
     return (
-        f"Reference: {found.reference}, its bound estimated by a second evaluation with more "
+        f"Reference: {result.reference}, its bound estimated by a second evaluation with more "
         "digits. "
-        f"Run times: {found.clock} on {found.machine}, the least and the median of "
-        f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
+        f"Run times: {result.clock} on {result.machine}, the least and the median of "
+        f"{result.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
         f"alone. A point is limited by rounding where that may be more than "
-        f"{100 * float(found.rounding_share):g}{NBSP}% of its error. At equal run time only runs "
-        f"are compared whose error is not larger than the orbit itself, {number(found.scale)}."
+        f"{100 * float(result.rounding_share):g}{NBSP}% of its error. At equal run time only runs "
+        f"are compared whose error is not larger than the orbit itself, {number(result.scale)}."
     )
 
 
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _scheme(line: WorkLine) -> Row:
+def _scheme_row(line: WorkLine) -> Row:
     cells = (
         "–" if line.order is None else str(line.order),
-        _slope(line.error_slope),
-        "0, proved" if line.area_preserving else _slope(line.lambda_slope),
+        _format_slope(line.error_slope),
+        "0, proved" if line.area_preserving else _format_slope(line.lambda_slope),
         *_operations(line.cost),
         _seconds(line.compile_seconds),
     )
     return Row(line.name, cells)
 
 
-def _slope(found: SlopeResult) -> str:
-    if found.value is None:
+def _format_slope(slope: SlopeResult) -> str:
+    if slope.value is None:
         return "–"
-    return f"{float(found.value):.2f}{NBSP}±{NBSP}{float(found.standard_error or 0):.2f}"
+    return f"{float(slope.value):.2f}{NBSP}±{NBSP}{float(slope.standard_error or 0):.2f}"
 
 
 def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
-    shown = _UNIT.sub(rf"\1{NBSP}", cost.text)
+    operations = _UNIT.sub(rf"\1{NBSP}", cost.text)
     if cost.gradient is None:
-        return shown, "–"
-    counted = (
+        return operations, "–"
+    gradient = (
         Markup("{}{}H<sub>{}</sub>").format(n, NBSP, name[-1]) for name, n in cost.gradient.items()
     )
-    return shown, Markup(", ").join(counted)
+    return operations, Markup(", ").join(gradient)
 
 
 def _group(line: WorkLine) -> Group:
@@ -139,21 +140,21 @@ def _row(point: WorkPoint) -> Row:
     label = step(point.step_size) if point.step_size else number(point.tolerance or "")
     steps = "–" if point.steps is None else whole(point.steps)
     if point.limited_by == "failed":
-        at = f" at step {whole(point.failed_step)}" if point.failed_step else ""
-        return Row(label, (steps,), f"failed{at}: {point.reason}")
-    values = (point.error, point.rounding, point.energy, point.lam, _sharper(point))
+        place = f" at step {whole(point.failed_step)}" if point.failed_step else ""
+        return Row(label, (steps,), f"failed{place}: {point.reason}")
+    values = (point.error, point.rounding, point.energy, point.lam, _sharper_defect(point))
     times = (point.seconds_min, point.seconds_median)
     limit = "its tolerance" if point.limited_by == "tolerance" else point.limited_by
-    cells = (*map(few_digits, values), *map(_seconds, times), limit)
+    cells = (*map(known_digits, values), *map(_seconds, times), limit)
     return Row(label, (steps, *cells))
 
 
-def _sharper(point: WorkPoint) -> Value | None:
-    """Λ by the plain product; in n degrees of freedom max |W|."""
+def _sharper_defect(point: WorkPoint) -> Value | None:
+    """Return Λ by the plain product; in n degrees of freedom max |W|."""
     return point.symplectic_defect or point.lam_plain
 
 
-def _system(point: SystemPoint) -> Row:
+def _system_row(point: SystemPoint) -> Row:
     cells = (
         str(point.digits),
         point.certified or f"– ({point.reason})",

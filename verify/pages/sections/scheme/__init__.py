@@ -1,4 +1,4 @@
-"""The sections of a scheme: a file each, found by itself; see `verify.pages.sections.section`."""
+"""The sections of a scheme, one in each file; see `verify.pages.sections.section`."""
 
 from verify.discovery import Catalogue
 

@@ -6,12 +6,12 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.studies.criteria import NAMES
 
-CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with what it asks for
+CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with the criterion's name
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView:
-    own = (c for c in scene.criteria if c.scheme == proof.scheme)
-    return tuple((c, NAMES.get(c.number, "")) for c in own)
+    criteria = (c for c in scene.criteria if c.scheme == proof.scheme)
+    return tuple((c, NAMES.get(c.number, "")) for c in criteria)
 
 
 SECTION = Section(order=30, view=_view)

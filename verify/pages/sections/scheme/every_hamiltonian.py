@@ -1,4 +1,4 @@
-"""What holds of a scheme for every Hamiltonian, where that was asked for."""
+"""The properties of a scheme that are proved for every Hamiltonian, where requested."""
 
 from verify.pages.sections.section import Section
 from verify.scenes.results.proof import EveryResult, ProofResult

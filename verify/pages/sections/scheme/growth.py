@@ -1,4 +1,4 @@
-"""The growth law of Λ as the page shows it: sentences, a figure and a table, all from the data."""
+"""The growth law of Λ: sentences, a figure and a table, all from the data."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few, plotted
+from verify.pages.figures.captioned_plot import Plot, captioned_plot, round_to_few_digits
 from verify.pages.figures.logarithm import lg
-from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown, told
+from verify.pages.sections.rows import MOST_ROWS, Group, Row, describe_excerpt, select_members
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import NBSP, between, listed, number, start, step, whole
+from verify.pages.text.typography import NBSP, between, join_and, number, start, step, whole
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
 from verify.scenes.results.proof import ProofResult
@@ -26,8 +26,8 @@ class GrowthView:
     plots: tuple[Plot, ...]
     groups: tuple[Group, ...]
     count: int
-    told: str  # which of them are shown, where not all are
-    computed: str
+    excerpt: str  # says which rows are shown, where not all are
+    provenance: str
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | None:
@@ -40,8 +40,8 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
         plots=tuple(_plots(laws, anchor)),
         groups=tuple(_groups(laws)),
         count=(count := sum(len(each.predictions) for each in laws)),
-        told=told(count, min(count, MOST_ROWS)),
-        computed=_computed(laws),
+        excerpt=describe_excerpt(count, min(count, MOST_ROWS)),
+        provenance=_describe_provenance(laws),
     )
 
 
@@ -49,7 +49,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
 
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
-    known = [each.law for each in laws if each.law.average]
+    averaged = [each.law for each in laws if each.law.average]
     if not laws[0].law.power:
         return
     yield (
@@ -58,53 +58,53 @@ def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
         f"log(1 + Λ) grows at the rate {_h(laws[0].law.power)} ⟨g⟩, and ⟨g⟩, the time average "
         "along the exact orbit, is decided by the initial value alone."
     )
-    if len(known) > 1:
-        rates = sorted((Fraction(law.average.value) for law in known if law.average), key=abs)
+    if len(averaged) > 1:
+        rates = sorted((Fraction(law.average.value) for law in averaged if law.average), key=abs)
         low, high = (_few(rate) for rate in (rates[0], rates[-1]))
-        yield f"⟨g⟩ is {low} … {high} over the {len(known)} orbits."
+        yield f"⟨g⟩ is {low} … {high} over the {len(averaged)} orbits."
     if explains:
         yield (
             f"That is the pattern in {explains}: at one h, the Λ of different initial values are "
             "as their ⟨g⟩, and only the bounded part looks irregular."
         )
-    yield from _agreement([p for each in laws for p in each.predictions])
-    unknown = len(laws) - len(known)
-    if unknown:
-        have = "has" if unknown == 1 else "have"
-        count = f"Of {len(laws)} initial values, {unknown}"
+    yield from _describe_agreement([p for each in laws for p in each.predictions])
+    undecided = len(laws) - len(averaged)
+    if undecided:
+        have = "has" if undecided == 1 else "have"
+        count = f"Of {len(laws)} initial values, {undecided}"
         yield f"{count} {have} no known average; the table says why."
 
 
-def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:
-    gaps = [(abs(Fraction(p.difference.value)), p) for p in found if p.difference]
+def _describe_agreement(predictions: Sequence[PredictionResult]) -> Iterator[str]:
+    gaps = [(abs(Fraction(p.difference.value)), p) for p in predictions if p.difference]
     if not gaps:
         return
-    worst, at = max(gaps, key=lambda gap: gap[0])
+    worst, worst_prediction = max(gaps, key=lambda gap: gap[0])
     ratio = max(gap / Fraction(p.step_size) for gap, p in gaps)
     runs = "the one run" if len(gaps) == 1 else f"the {whole(len(gaps))} runs"
     yield (
         f"Over {runs}, predicted and measured Λ differ by at most {_few(worst)} of Λ "
-        f"(at h = {step(at.step_size)}), and by at most {_few(ratio)} h of it."
+        f"(at h = {step(worst_prediction.step_size)}), and by at most {_few(ratio)} h of it."
     )
-    shares = [share for p in found if (share := _share(p)) is not None]
+    shares = [share for p in predictions if (share := _bounded_share(p)) is not None]
     if shares:
-        parts = between(_part(min(shares)), _part(max(shares)))
+        parts = between(_format_share(min(shares)), _format_share(max(shares)))
         yield f"The bounded part is {parts} as large as the secular one."
 
 
-def _share(p: PredictionResult) -> Fraction | None:
+def _bounded_share(p: PredictionResult) -> Fraction | None:
     secular = abs(Fraction(p.secular.value))
     return abs(Fraction(p.boundary.value)) / secular if secular else None
 
 
-def _computed(laws: Sequence[GrowthLawResult]) -> str:
+def _describe_provenance(laws: Sequence[GrowthLawResult]) -> str:
     methods = dict.fromkeys(
         f"{each.law.error_kind} ({each.law.error_method})" for each in laws if each.law.average
     )
     if not methods:
         return ""
     return (
-        f"⟨g⟩ by quadrature over one period of the exact flow; its error is {listed(methods)}. "
+        f"⟨g⟩ by quadrature over one period of the exact flow; its error is {join_and(methods)}. "
         "The difference has no bound of its own: it is the law’s remainder."
     )
 
@@ -116,8 +116,8 @@ def _few(value: Fraction) -> str:
     return number(f"{size:.3g}")
 
 
-def _part(value: Fraction) -> str:
-    """Two digits: per cent of what is smaller than the whole, else how many times the whole."""
+def _format_share(value: Fraction) -> str:
+    """Return a ratio to two digits: per cent below 1, else a number of times."""
     if value < 1:
         return f"{number(f'{float(100 * value):.2g}')}{NBSP}%"
     return f"{whole(round(value)) if value >= 10 else f'{float(value):.2g}'} times"
@@ -127,30 +127,35 @@ def _part(value: Fraction) -> str:
 
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
-    """|Λ| predicted and measured, where there are step sizes to compare."""
-    drawable = orbits(laws)
+    """Yield the plot of |Λ| predicted and measured, where there are step sizes to compare."""
+    # An orbit needs two step sizes with known digits, or there is no line to draw.
+    drawable = select_drawable(laws)
     if not drawable:
         return
     from verify.pages.figures.figures import MOST_LINES
     from verify.pages.figures.growth_figure import draw_predicted_against_measured
 
-    drawn = drawable[:: -(-len(drawable) // MOST_LINES)]
-    left = f" {len(drawn)} of {whole(len(drawable))} orbits are drawn." * (drawn != drawable)
+    selected = drawable[:: -(-len(drawable) // MOST_LINES)]
+    omission = f" {len(selected)} of {whole(len(drawable))} orbits are drawn." * (
+        selected != drawable
+    )
 
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
-    yield plotted(
-        lambda: draw_predicted_against_measured(drawn),
+    yield captioned_plot(
+        lambda: draw_predicted_against_measured(selected),
         name=f"growth-of-{name}",
         lead=lead,
         label=lead,
-        caption=_caption(drawable[0].law) + left,
+        caption=_caption(drawable[0].law) + omission,
     )
 
 
-def orbits(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
-    """Those along which two step sizes and more can be drawn, with these predictions alone."""
-    found = (each.model_copy(update={"predictions": _known(each)}) for each in laws)
-    return [each for each in found if len(each.predictions) > 1]
+def select_drawable(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
+    """Return the laws with two drawable predictions or more, reduced to these predictions."""
+    drawable = (
+        each.model_copy(update={"predictions": _drawable_predictions(each)}) for each in laws
+    )
+    return [each for each in drawable if len(each.predictions) > 1]
 
 
 def _caption(law: AverageResult) -> str:
@@ -167,11 +172,11 @@ def _caption(law: AverageResult) -> str:
     )
 
 
-def _known(each: GrowthLawResult) -> tuple[PredictionResult, ...]:
-    """Those of whose Λ and difference a digit is known."""
+def _drawable_predictions(law: GrowthLawResult) -> tuple[PredictionResult, ...]:
+    """Return the predictions for which a digit of Λ and of the difference is known."""
     return tuple(
         p
-        for p in each.predictions
+        for p in law.predictions
         if p.difference
         and all(isfinite(lg(v.value)) for v in (p.difference, p.predicted, p.measured))
     )
@@ -181,7 +186,7 @@ def _known(each: GrowthLawResult) -> tuple[PredictionResult, ...]:
 
 
 def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
-    for each, rows in zip(laws, shown(each.predictions for each in laws), strict=True):
+    for each, rows in zip(laws, select_members(each.predictions for each in laws), strict=True):
         if rows or not each.predictions:
             yield Group(start(each.law), [_row(p) for p in rows], _about(each.law))
 
@@ -189,8 +194,8 @@ def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
 def _about(law: AverageResult) -> str:
     if law.average is None:
         return law.reason
-    period = f", P = {few(law.period.value)}" if law.period else ""
-    rate = few(law.average.value)
+    period = f", P = {round_to_few_digits(law.period.value)}" if law.period else ""
+    rate = round_to_few_digits(law.average.value)
     if Decimal(law.average.value) == 0 and law.average.bound != "0":
         rate = f"0 to within {number(law.average.bound)}"
     return f"{law.orbit}{period}, ⟨g⟩ = {rate}"
@@ -198,7 +203,7 @@ def _about(law: AverageResult) -> str:
 
 def _row(p: PredictionResult) -> Row:
     values = (p.boundary, p.secular, p.predicted, p.measured, p.difference)
-    cells = (few(v.value) if v else "–" for v in values)
+    cells = (round_to_few_digits(v.value) if v else "–" for v in values)
     return Row(step(p.step_size), (whole(p.steps), *cells))
 
 

@@ -1,4 +1,4 @@
-"""What is proved of a scheme: its map, its Jacobian matrix, ΔJ and both orders."""
+"""The proof of a scheme: its map, its Jacobian matrix, ΔJ and both orders."""
 
 from verify.pages.sections.section import Section
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify import observables
-from verify.pages.figures.captioned_plot import computed
+from verify.pages.figures.captioned_plot import describe_runs
 from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import Group, Row, shown, told
+from verify.pages.sections.rows import Group, Row, describe_excerpt, select_members
 from verify.pages.sections.section import Section
 from verify.pages.text import words
 from verify.pages.text.typography import number, start, value, whole
@@ -19,16 +19,16 @@ from verify.scenes.results.run import RunResult
 
 @dataclass(frozen=True)
 class RunTable:
-    """The runs of one scheme: a column an observable, a group an initial value."""
+    """The runs of one scheme, with a column for each observable, a group for each initial value."""
 
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
     count: int
-    told: str  # which of them are shown, where not all are
-    computed: str
+    excerpt: str  # says which rows are shown, where not all are
+    provenance: str
     certainty: str  # which of the bounds are rigorous
     notes: tuple[str, ...]  # where another arithmetic was taken, and which left H's domain
-    proved: tuple[str, ...]  # the columns that a proof gave, for all runs
+    proved_columns: tuple[str, ...]  # the columns that a proof gave, for all runs
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
@@ -37,35 +37,35 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
     names = [n for n in columns if any(n in run.values for run in runs)]
     if not names and all(run.status == "finished" for run in runs):
         return None
-    failed = [run for run in runs if _failed(run)]
-    (held,) = shown([runs], _failed)
+    failed = [run for run in runs if _has_failed(run)]
+    (visible,) = select_members([runs], _has_failed)
     return RunTable(
         columns=tuple(columns[n] for n in names) or ("outcome",),
-        groups=tuple(_groups(held, names)),
+        groups=tuple(_groups(visible, names)),
         count=len(runs),
-        told=told(len(runs), len(held), len(failed)),
-        computed=computed(runs),
-        certainty=_certainty(runs),
-        notes=(*_fallbacks(runs), *_beyond(runs)),
-        proved=tuple(columns[n] for n in names if all(n in run.exact for run in runs)),
+        excerpt=describe_excerpt(len(runs), len(visible), len(failed)),
+        provenance=describe_runs(runs),
+        certainty=_describe_certainty(runs),
+        notes=(*_describe_fallbacks(runs), *_describe_exits(runs)),
+        proved_columns=tuple(columns[n] for n in names if all(n in run.exact for run in runs)),
     )
 
 
-def _failed(run: RunResult) -> bool:
+def _has_failed(run: RunResult) -> bool:
     return run.status != "finished"
 
 
-def _certainty(runs: Sequence[RunResult]) -> str:
-    """How many of the runs are certified, in a sentence."""
+def _describe_certainty(runs: Sequence[RunResult]) -> str:
+    """Return a sentence on how many of the runs are certified."""
     finished = [run for run in runs if run.status == "finished"]
     certain = sum(run.error_kind == "enclosed" for run in finished)
     if not finished:
         return ""
     if certain == len(finished):
-        every = "The run is" if certain == 1 else f"All {whole(certain)} runs are"
+        subject = "The run is" if certain == 1 else f"All {whole(certain)} runs are"
         return (
-            f"{every} certified: the error bounds are rigorous (enclosed), so each value is proved "
-            "to lie within its bound."
+            f"{subject} certified: the error bounds are rigorous (enclosed), so each value is "
+            "proved to lie within its bound."
         )
     if certain == 0:
         return "The error bounds are estimates, not certificates."
@@ -75,25 +75,25 @@ def _certainty(runs: Sequence[RunResult]) -> str:
     )
 
 
-def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
-    """Each reason for another arithmetic than the one asked for, with its runs."""
-    elsewhere = [run for run in runs if run.fallback]
-    groups = by_key(elsewhere, lambda run: (run.arithmetic, run.fallback))
-    for (arithmetic, reason), held in groups.items():
-        sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in held))
-        count = "One run" if len(held) == 1 else f"{whole(len(held))} runs"
+def _describe_fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
+    """Yield the reasons for another arithmetic than the requested one, with their runs."""
+    replaced = [run for run in runs if run.fallback]
+    groups = by_key(replaced, lambda run: (run.arithmetic, run.fallback))
+    for (arithmetic, reason), group in groups.items():
+        sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in group))
+        count = "One run" if len(group) == 1 else f"{whole(len(group))} runs"
         yield f"{count} (h = {sizes}) went to {arithmetic} instead: {reason}"
 
 
-def _beyond(runs: Sequence[RunResult]) -> Iterator[str]:
-    """Which of them are seen to leave where H is defined, though the scheme goes on."""
+def _describe_exits(runs: Sequence[RunResult]) -> Iterator[str]:
+    """Yield the runs that leave the domain of H, although the scheme goes on."""
     for run in (run for run in runs if run.left_domain):
         yield f"From {start(run)}, h = {number(run.step_size)}: {run.left_domain}"
 
 
 def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
-    for label, own in by_key(runs, start).items():
-        yield Group(label, [_row(run, names) for run in own])
+    for label, group in by_key(runs, start).items():
+        yield Group(label, [_row(run, names) for run in group])
 
 
 def _row(run: RunResult, names: Sequence[str]) -> Row:

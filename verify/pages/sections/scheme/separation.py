@@ -1,4 +1,4 @@
-"""Truncation against rounding in Λ, or in W, as the page shows it: sentences, figures, tables."""
+"""Truncation against rounding in Λ, or in W: sentences, figures, tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,22 +7,27 @@ from functools import partial
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few, few_digits, plotted
+from verify.pages.figures.captioned_plot import (
+    Plot,
+    captioned_plot,
+    known_digits,
+    round_to_few_digits,
+)
 from verify.pages.figures.separation_caption import caption, end_of
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import decades_below, finding, growth_finding
 from verify.pages.sections.separation_table import (
     PartsTable,
-    computed,
-    each_kind,
+    describe_evaluation,
     grids_of,
     groups_of_grids,
+    list_kinds,
     parts_table,
 )
 from verify.pages.text import words
 from verify.pages.text.prose import prose
-from verify.pages.text.typography import NBSP, listed, number, start, step, whole
+from verify.pages.text.typography import NBSP, join_and, number, start, step, whole
 from verify.scenes.results.form_value import largest
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
@@ -39,92 +44,108 @@ from verify.structures import AREA, SYMPLECTIC, Structure
 
 @dataclass(frozen=True)
 class SeparationView:
-    """`finding`: what is said of all, or of the longest run; `growth`: of how rounding grows, in Λ,
-    whose table is of `growths`, as that of W is."""
+    """The view of a separation.
+
+    `finding`: sentences on all runs, or on the longest one; `growth`: a sentence on how rounding in
+    Λ grows; `growths`: the table of that growth, or of the growth of W.
+    """
 
     structure: Structure
     finding: tuple[str, ...]
     table: PartsTable
     growths: tuple[Group, ...]
     plots: tuple[Plot, ...] = ()
-    crossed: tuple[str, ...] = ()
+    crossovers: tuple[str, ...] = ()
     growth: str = ""
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView | None:
-    own, wide = grids_of(scene.separations, proof), grids_of(scene.crossovers, proof)
-    if not own and not wide:
+    plain_grids, crossover_grids = (
+        grids_of(scene.separations, proof),
+        grids_of(scene.crossovers, proof),
+    )
+    if not plain_grids and not crossover_grids:
         return _view_of_form(scene, proof)
-    of_grid = [point for grid in own or wide for point in grid.points]
+    grid_points = [point for grid in plain_grids or crossover_grids for point in grid.points]
     return SeparationView(
         structure=AREA,
-        finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
-        table=parts_table([*own, *wide], _compared, lambda part: part, each_kind),
-        growths=tuple(groups_of_grids([*own, *wide], _growth_row)),
-        plots=tuple(_plots(wide, anchor)),
-        growth=growth_finding(of_grid),
+        finding=tuple(finding(grid_points, " on the grid of runs" if plain_grids else "")),
+        table=parts_table(
+            [*plain_grids, *crossover_grids],
+            _rounding_against_truncation,
+            lambda part: part,
+            list_kinds,
+        ),
+        growths=tuple(groups_of_grids([*plain_grids, *crossover_grids], _growth_row)),
+        plots=tuple(_plots(crossover_grids, anchor)),
+        growth=growth_finding(grid_points),
     )
 
 
 def _view_of_form(scene: SceneResult, proof: ProofResult) -> SeparationView | None:
-    """That of W, in n degrees of freedom."""
-    own, wide = grids_of(scene.form_separations, proof), grids_of(scene.form_crossovers, proof)
-    every = [*own, *wide]
-    if not every:
+    """Return the view of W, in n degrees of freedom."""
+    plain_grids, crossover_grids = (
+        grids_of(scene.form_separations, proof),
+        grids_of(scene.form_crossovers, proof),
+    )
+    grids = [*plain_grids, *crossover_grids]
+    if not grids:
         return None
     return SeparationView(
         structure=SYMPLECTIC,
-        finding=tuple(_longest([point for grid in every for point in grid.points])),
-        table=parts_table(every, _greatest, abs, listed),
-        growths=tuple(groups_of_grids(every, _motion_row)),
-        crossed=tuple(map(_crossed, wide)),
+        finding=tuple(_describe_longest_run([point for grid in grids for point in grid.points])),
+        table=parts_table(grids, _greatest_rounding, abs, join_and),
+        growths=tuple(groups_of_grids(grids, _motion_row)),
+        crossovers=tuple(map(_describe_crossover, crossover_grids)),
     )
 
 
-def _longest(rows: Sequence[SeparationInDegrees]) -> Iterator[Markup]:
-    """What is said of the longest of the runs: how W grew, and how the motion did."""
-    held = [point for point in rows if point.tangent]
-    if not held:
+def _describe_longest_run(rows: Sequence[SeparationInDegrees]) -> Iterator[Markup]:
+    """Yield a sentence on the longest run: how W grew, and how the tangent map did."""
+    separated = [point for point in rows if point.tangent]
+    if not separated:
         yield Markup("No run could be separated; the table says why.")
         return
-    longest = max(held, key=lambda point: Fraction(point.step_size) * point.steps)
+    longest = max(separated, key=lambda point: Fraction(point.step_size) * point.steps)
     assert longest.tangent is not None  # noqa: S101 - chosen so
     where = Markup("Over T = {}, h = {}: ").format(longest.tangent.time, step(longest.step_size))
     yield where + prose(longest.tangent.meaning) + Markup(".")
 
 
-def _crossed(grid: SeparationGridInDegrees) -> str:
+def _describe_crossover(grid: SeparationGridInDegrees) -> str:
     ways = [(label, getattr(grid, way)) for way, label in WAYS.items()]
-    found = (f"{label}: {f'h* ≈ {x.step_size}' if x.step_size else x.reason}" for label, x in ways)
-    return f"Rounding overtakes truncation, from {start(grid.points[0])}: {listed(found)}."
+    crossovers = (
+        f"{label}: {f'h* ≈ {x.step_size}' if x.step_size else x.reason}" for label, x in ways
+    )
+    return f"Rounding overtakes truncation, from {start(grid.points[0])}: {join_and(crossovers)}."
 
 
 # -- figures --------------------------------------------------------------------------------------
 
 
 def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
-    """A figure for each grid over which truncation and rounding can be drawn."""
+    """Yield a figure for each grid over which truncation and rounding can be drawn."""
     for index, grid in enumerate(grids):
         from verify.pages.figures import crossover_figure as figure
 
-        lines, marks = figure.contents(grid)
+        lines, marks = figure.lines_and_marks(grid)
         if len(lines) < 2:
             continue
         place = f"{start(grid.points[0])}{end_of(grid.points)}"
-        yield plotted(
+        yield captioned_plot(
             partial(figure.draw_truncation_against_rounding, lines, marks),
             name=f"crossover-{index}-of-{name}",
             lead=f"Truncation and rounding in Λ against h, from {place}",
-            caption=caption(grid, computed(grid.points, each_kind)),
+            caption=caption(grid, describe_evaluation(grid.points, list_kinds)),
         )
 
 
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _compared(evaluation: AnyEvaluation) -> Markup:
+def _rounding_against_truncation(evaluation: AnyEvaluation) -> Markup:
     gap = decades_below(evaluation)
-    rounding = few_digits(largest(evaluation.parts.total))
+    rounding = known_digits(largest(evaluation.parts.total))
     if gap is None:
         return rounding
     side = "below" if gap > 0 else "above"
@@ -134,61 +155,66 @@ def _compared(evaluation: AnyEvaluation) -> Markup:
     )
 
 
-def _greatest(evaluation: AnyEvaluation) -> Markup:
-    return few_digits(abs(largest(evaluation.parts.total)))
+def _greatest_rounding(evaluation: AnyEvaluation) -> Markup:
+    return known_digits(abs(largest(evaluation.parts.total)))
 
 
 def _growth_row(point: SeparationResult) -> Row | None:
     if point.plain is None:
         return None
     ways = map(point.ways.get, WAYS)
-    cells = (_growth(each.growth["total"]) if each else Markup("–") for each in ways)
+    cells = (_format_growth(each.growth["total"]) if each else Markup("–") for each in ways)
     return Row(step(point.step_size), (whole(point.steps), *cells))
 
 
-def _growth(found: GrowthResult) -> Markup:
-    if found.exponent is None:
-        return Markup('{} <span class="bound">{}</span>').format(found.name, prose(found.reason))
-    exponent = f"{number(found.exponent)}{NBSP}±{NBSP}{found.standard_error}"
-    return Markup('{} <span class="muted beside">{}</span>').format(exponent, found.name)
+def _format_growth(growth: GrowthResult) -> Markup:
+    if growth.exponent is None:
+        return Markup('{} <span class="bound">{}</span>').format(growth.name, prose(growth.reason))
+    exponent = f"{number(growth.exponent)}{NBSP}±{NBSP}{growth.standard_error}"
+    return Markup('{} <span class="muted beside">{}</span>').format(exponent, growth.name)
 
 
 def _motion_row(point: SeparationInDegrees) -> Row | None:
-    found, closed = point.tangent, point.closed_form
-    if found is None or closed is None:
+    tangent, closed_form = point.tangent, point.closed_form
+    if tangent is None or closed_form is None:
         return None
-    law = closed.law if any(map(any, closed.parts.w_working.exact)) else None
+    law = closed_form.law if any(map(any, closed_form.parts.w_working.exact)) else None
     cells = (
         whole(point.steps),
-        few(found.norm_squared),
-        few(found.areas),
-        few(found.finite_time_lyapunov),
-        f"exponential, {_CAUSES[found.cause]}" if found.cause else found.motion,
-        _law(law.exponent, law.name) if law else "0",
+        round_to_few_digits(tangent.norm_squared),
+        round_to_few_digits(tangent.areas),
+        round_to_few_digits(tangent.finite_time_lyapunov),
+        f"exponential, {_CAUSES[tangent.cause]}" if tangent.cause else tangent.motion,
+        _format_law(law.exponent, law.name) if law else "0",
     )
     return Row(step(point.step_size), cells)
 
 
-def _law(exponent: str | None, name: str) -> str:
+def _format_law(exponent: str | None, name: str) -> str:
     return name if exponent is None else f"{name} ({exponent})"
 
 
 _CAUSES = {"motion": "the motion’s", "scheme": "the scheme’s", "undecided": "whose, undecided"}
-_CROSSED = {
+_CROSSOVER_TERMS = {
     "Crossover h*": Markup(
         "The step size below which rounding is larger than truncation, interpolated in logarithms "
         "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
     )
 }
 _TERMS = {
-    AREA: words.SEPARATED | _CROSSED | words.RAN,
+    AREA: words.SEPARATED | _CROSSOVER_TERMS | words.RAN,
     SYMPLECTIC: {"W": words.OF_FORM["W"]} | words.SEPARATED_FORM | words.RAN,
 }
 
 
 def _terms(views: Sequence[SeparationView]) -> Mapping[str, Markup]:
-    seen = {view.structure for view in views}
-    return {k: x for each, own in _TERMS.items() if each in seen for k, x in own.items()}
+    structures = {view.structure for view in views}
+    return {
+        k: x
+        for each, structure_terms in _TERMS.items()
+        if each in structures
+        for k, x in structure_terms.items()
+    }
 
 
 SECTION = Section(

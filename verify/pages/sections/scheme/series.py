@@ -1,11 +1,16 @@
-"""What happens along a run: ΔJ and Λ over time, in a picture with its caption.
+"""ΔJ and Λ along a run, over time, in a picture with its caption.
 
 The drawing, and with it matplotlib, is imported only where something is drawn.
 """
 
 from collections.abc import Iterator, Sequence
 
-from verify.pages.figures.captioned_plot import Plot, computed, few, plotted
+from verify.pages.figures.captioned_plot import (
+    Plot,
+    captioned_plot,
+    describe_runs,
+    round_to_few_digits,
+)
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text import words
@@ -14,7 +19,7 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
-SeriesView = tuple[tuple[Plot, str], ...]  # each with what of a paper it repeats
+SeriesView = tuple[tuple[Plot, str], ...]  # each with the part of a paper that it repeats
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
@@ -22,39 +27,48 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
 
 
 def _plots(scene: SceneResult, proof: ProofResult, anchor: str) -> Iterator[tuple[Plot, str]]:
-    """One of all that repeats the same with the same step size."""
-    own = [run for run in scene.series if run.scheme == proof.scheme and run.series]
-    together = by_key(own, lambda run: (run.source, run.step_size, run.arithmetic))
-    for index, ((source, *_), runs) in enumerate(together.items()):
+    """Yield a plot for all runs that repeat the same figure with the same step size."""
+    scheme_series = [run for run in scene.series if run.scheme == proof.scheme and run.series]
+    groups = by_key(scheme_series, lambda run: (run.source, run.step_size, run.arithmetic))
+    for index, ((source, *_), runs) in enumerate(groups.items()):
         yield _over_time(runs, name=f"time-{index}-of-{anchor}"), source
 
 
 def _over_time(runs: Sequence[RunResult], *, name: str) -> Plot:
-    """ΔJ and Λ along runs of one step size, a row for each initial value."""
+    """Return the plot of ΔJ and Λ along runs of one step size, a row for each initial value."""
     from verify.pages.figures import over_time_figure as figure
 
     by_start = by_key(runs, start)
-    rows = [figure.along(at, own) for at, own in by_start.items()]
-    drawn = [run for row in rows for run, _ in row.panels]
-    of = f" from {rows[0].label}" if len(rows) == 1 else ""
+    rows = [figure.select_panels(start_text, group) for start_text, group in by_start.items()]
+    drawn_runs = [run for row in rows for run, _ in row.panels]
+    origin = f" from {rows[0].label}" if len(rows) == 1 else ""
     source = f" (for {runs[0].source})" if runs[0].source else ""
-    hidden = any(len(row.panels) == 1 for row in rows)
-    what = "Λ" if hidden else "ΔJ = det J − 1 and Λ"
-    said = [
-        _bands(max(p.last - p.first + 1 for run in drawn for p in figure.merged(run.series))),
-        "ΔJ goes up and down within each band, so that its picture would be a rectangle." * hidden,
-        *(each for at, own in by_start.items() for each in _ends(own, at if not of else "")),
-        computed(drawn),
+    is_hidden = any(len(row.panels) == 1 for row in rows)
+    what = "Λ" if is_hidden else "ΔJ = det J − 1 and Λ"
+    sentences = [
+        _describe_bands(
+            max(
+                p.last - p.first + 1 for run in drawn_runs for p in figure.merge_buckets(run.series)
+            )
+        ),
+        "ΔJ goes up and down within each band, so that its picture would be a rectangle."
+        * is_hidden,
+        *(
+            each
+            for start_text, group in by_start.items()
+            for each in _describe_ends(group, start_text if not origin else "")
+        ),
+        describe_runs(drawn_runs),
     ]
-    return plotted(
+    return captioned_plot(
         lambda: figure.draw_over_time(rows),
         name=name,
-        lead=f"{what} over time, h = {runs[0].step_size}{of}{source}",
-        caption=" ".join(filter(None, said)),
+        lead=f"{what} over time, h = {runs[0].step_size}{origin}{source}",
+        caption=" ".join(filter(None, sentences)),
     )
 
 
-def _bands(steps: int) -> str:
+def _describe_bands(steps: int) -> str:
     if steps == 1:
         return "Each level is one step."
     return (
@@ -62,14 +76,14 @@ def _bands(steps: int) -> str:
     )
 
 
-def _ends(runs: Sequence[RunResult], label: str) -> Iterator[str]:
-    """What the longest run ends with."""
+def _describe_ends(runs: Sequence[RunResult], label: str) -> Iterator[str]:
+    """Yield the final values of the longest run, or how it ended."""
     run = max(runs, key=lambda each: each.steps)
     where = f"From {label}: the" if label else "The"
     if run.status == "left range":
         yield f"{where} run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
     elif {"delta_j_max", "lambda"} <= set(run.values):
-        top, end = (few(run.values[key].value) for key in ("delta_j_max", "lambda"))
+        top, end = (round_to_few_digits(run.values[key].value) for key in ("delta_j_max", "lambda"))
         yield f"{where} greatest |ΔJ| is {top}; after {whole(run.steps)} steps Λ is {end}."
 
 
@@ -79,5 +93,5 @@ SECTION = Section(
     pictures=lambda view: [Picture((4,), plot) for plot, _ in view],
     terms=lambda _: words.RAN,
     shows="series",
-    drawn=lambda view, label: ((plot, "") for plot, source in view if source == label),
+    matching_plots=lambda view, label: ((plot, "") for plot, source in view if source == label),
 )

@@ -1,4 +1,4 @@
-"""What a step size costs in area: |Λ| and MSE/|Λ| over h."""
+"""The cost of a step size in area: |Λ| and MSE/|Λ| over h."""
 
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import scheme_plots
@@ -19,5 +19,5 @@ SECTION = Section(
     pictures=lambda plots: [Picture((0,), plots[0])],
     terms=lambda _: words.RAN,
     shows="runs",
-    drawn=lambda plots, _: ((plot, "") for plot in plots),
+    matching_plots=lambda plots, _: ((plot, "") for plot in plots),
 )

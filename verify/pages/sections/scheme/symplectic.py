@@ -1,4 +1,4 @@
-"""What is proved of a scheme in n degrees of freedom: S = JᵀΩJ − Ω, entry by entry, and det J."""
+"""The proof of a scheme in n degrees of freedom: S = JᵀΩJ − Ω, entry by entry, and det J."""
 
 from verify.pages.sections.section import Section
 from verify.pages.text import words

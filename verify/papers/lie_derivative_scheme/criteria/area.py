@@ -1,4 +1,4 @@
-"""What “area” is that a map preserves, and Criterion 1: det J, regions, and maps of the plane."""
+"""The definition of area preservation, and Criterion 1: det J, regions, and maps of the plane."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -11,10 +11,10 @@ from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same
-from verify.papers.exact_maps import map_from_formulas
+from verify.papers.exact_maps import map_from_texts
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import duffing_step
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -23,12 +23,17 @@ TRIANGULAR = "p**3/6 + q"  # det J = 1, and the step has an inverse in closed fo
 FOLDED = ("(p**2 - q**2)/sqrt(2*(p**2 + q**2))", "2*p*q/sqrt(2*(p**2 + q**2))")
 
 
-def image_area(found: StepMap) -> sympy.Expr:
-    """The area of the image of the unit square at h = 1/10 as ∮ q' dp' around it, counted with its
-    sign and as often as it is covered; the map must be polynomial."""
+def image_area(step_map: StepMap) -> sympy.Expr:
+    """Return the area of the image of the unit square at h = 1/10, as ∮ p' dq' along its edge.
+
+    It is signed, and counts points as often as they are covered; the map must be polynomial.
+    """
     s = sympy.Symbol("s", real=True)
-    p_next, q_next = (x.subs(H_STEP, sympy.Rational(1, 10)) for x in (found.p_next, found.q_next))
+    p_next, q_next = (
+        x.subs(H_STEP, sympy.Rational(1, 10)) for x in (step_map.p_next, step_map.q_next)
+    )
     sides = [((s, 0), 1), ((1, s), 1), ((s, 1), -1), ((0, s), -1)]  # p, q; and which way round
+    # Green's theorem; the factor `way` makes the edge run counter-clockwise around the square.
     total = sympy.Integer(0)
     for (p, q), way in sides:
         x, y = (each.subs({P: p, Q: q}, simultaneous=True) for each in (p_next, q_next))
@@ -36,24 +41,25 @@ def image_area(found: StepMap) -> sympy.Expr:
     return total
 
 
-def integral_of_det(found: StepMap) -> sympy.Expr:
-    """The integral of 1 + ΔJ over the unit square at h = 1/10."""
-    det = 1 + sympy.expand(found.delta_j.subs(H_STEP, sympy.Rational(1, 10)))
+def integral_of_det(step_map: StepMap) -> sympy.Expr:
+    """Return the integral of 1 + ΔJ over the unit square at h = 1/10."""
+    det = 1 + sympy.expand(step_map.delta_j.subs(H_STEP, sympy.Rational(1, 10)))
     return sympy.integrate(det, (P, 0, 1), (Q, 0, 1))
 
 
-def _areas_agree(name: str, found: StepMap, preserved: bool) -> Check:
-    around, inside = image_area(found), integral_of_det(found)
+def _areas_agree(name: str, step_map: StepMap, preserved: bool) -> Check:
+    # Both numbers are computed independently: one along the edge, one over the interior.
+    outline_area, integral = image_area(step_map), integral_of_det(step_map)
     return Check(
         f"{name}, h = {text(_H)}: the area of the unit square’s image, by its outline, and the "
         f"integral of det J over the square; {'both' if preserved else 'they agree, and are not'} "
         "1",
-        around == inside and (around == 1) is preserved,
-        f"`{around}` and `{inside}`",
+        outline_area == integral and (outline_area == 1) is preserved,
+        f"`{outline_area}` and `{integral}`",
     )
 
 
-def _by_regions(formula: str = TRIANGULAR) -> list[Check]:
+def _check_regions(formula: str = TRIANGULAR) -> list[Check]:
     return [
         _areas_agree(f"lie2, H = `{formula}`", lie_map(Hamiltonian.parse(formula), 2), True),
         _areas_agree("lie2, Duffing, δ = 1", duffing_step(), False),
@@ -64,7 +70,7 @@ def _by_regions(formula: str = TRIANGULAR) -> list[Check]:
 
 
 def area_definition(formula: str = TRIANGULAR) -> Argument:
-    """Area is preserved where that of every region is, which det J tells."""
+    """Prove that area preservation, the same area for each region's image, is decided by det J."""
     return proof(
         "a continuously differentiable map leaves the area of every region, on which it is "
         "one-to-one, as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that "
@@ -73,7 +79,7 @@ def area_definition(formula: str = TRIANGULAR) -> Argument:
             step(
                 "By the change of variables, for every region U on which Φ is one-to-one, "
                 "``area Φ(U) = ∫_U |det J| dp dq``. So |det J| = 1 everywhere gives equal areas.",
-                tried=_by_regions(formula),
+                tried=_check_regions(formula),
             ),
             step(
                 "If |det J| ≠ 1 at one point, it is on one side of 1 in a small disc around it, on "
@@ -82,18 +88,18 @@ def area_definition(formula: str = TRIANGULAR) -> Argument:
             ),
             step(
                 "For lieη det J = 1 + O(`h^(η+1)`) is positive for small h.",
-                Shipped("Theorems", "determinant_of_lie_in_plane"),
+                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
             ),
         ],
     )
 
 
 def area_definition_flow(factor: int = 2) -> Argument:
-    """A map may leave the flow itself as it is and change areas, and the other way round."""
+    """Refute that area is preserved if and only if the flow is unchanged by the map."""
     c, s = sympy.symbols("c s", real=True)
     turn = sympy.Matrix([[c, -s], [s, c]])  # the oscillator's flow, c² + s² = 1
     scaling, shear = sympy.eye(2) * factor, sympy.Matrix([[1, 0], [1, 1]])
-    moved = shear * turn - turn * shear
+    commutator = shear * turn - turn * shear
     scales = Check(
         f"z ↦ {factor}z commutes with every turn of the plane, and its determinant is not 1",
         scaling * turn == turn * scaling and scaling.det() != 1,
@@ -101,8 +107,8 @@ def area_definition_flow(factor: int = 2) -> Argument:
     )
     shears = Check(
         "the shear has determinant 1, and what it differs by from commuting with a turn",
-        shear.det() == 1 and moved != sympy.zeros(2, 2),
-        f"`{moved[0, 0]}`, `{moved[0, 1]}`, `{moved[1, 0]}`, `{moved[1, 1]}`",
+        shear.det() == 1 and commutator != sympy.zeros(2, 2),
+        f"`{commutator[0, 0]}`, `{commutator[0, 1]}`, `{commutator[1, 0]}`, `{commutator[1, 1]}`",
     )
     return refutation(
         f"for H = (p² + q²)/2 the scaling z ↦ {factor}z leaves the flow unchanged and multiplies "
@@ -118,8 +124,8 @@ def area_definition_flow(factor: int = 2) -> Argument:
                 shears,
             ),
         ],
-        given="That a mapping ψ leaves the phase flow φ unchanged would say ψ∘φₜ = φₜ∘ψ for all t "
-        "(or ψ∘φₜ = φₜ, which only the identity does).",
+        setting="That a mapping ψ leaves the phase flow φ unchanged would say ψ∘φₜ = φₜ∘ψ for all "
+        "t (or ψ∘φₜ = φₜ, which only the identity does).",
         remark="Area preservation and an unchanged flow are independent of each other.",
     )
 
@@ -128,7 +134,7 @@ def area_definition_flow(factor: int = 2) -> Argument:
 
 
 def criterion_1(formula: str = TRIANGULAR) -> Argument:
-    """det J = 1 gives equal areas, of regions on which the step is one-to-one."""
+    """Prove that det J = 1 gives equal areas, for regions on which the step is one-to-one."""
     return proof(
         "the area of Φ(U) is the integral of det J over U for every region U on which the step is "
         "one-to-one, and lieη is so on any bounded region once h is small enough; for a polynomial "
@@ -137,7 +143,7 @@ def criterion_1(formula: str = TRIANGULAR) -> Argument:
             step(
                 "By the change of variables, where Φ is one-to-one on U and det J = 1, "
                 "``area Φ(U) = ∫_U |det J| dp dq = area U``.",
-                tried=_by_regions(formula),
+                tried=_check_regions(formula),
             ),
             step(
                 "lieη is Φ(z) = z + hψ(z), ψ with a Lipschitz constant L on a ball that holds U, "
@@ -163,9 +169,9 @@ def criterion_1(formula: str = TRIANGULAR) -> Argument:
     )
 
 
-def _inverse(found: StepMap) -> Check:
-    """lie2 for p³/6 + q: p ↦ p − h, so that p = p' + h is known, and q from it."""
-    p_next, q_next = found.p_next, found.q_next
+def _inverse(step_map: StepMap) -> Check:
+    """Check the inverse of lie2 for p³/6 + q: p = p' + h, from which q follows."""
+    p_next, q_next = step_map.p_next, step_map.q_next
     back_p = P + H_STEP
     back_q = Q - (q_next - Q).subs(P, back_p)
     again = [x.subs({P: back_p, Q: back_q}, simultaneous=True) for x in (p_next, q_next)]
@@ -178,17 +184,17 @@ def _inverse(found: StepMap) -> Check:
 
 
 def criterion_1_any_map(formulas: Sequence[str] = FOLDED) -> Argument:
-    """(r, θ) ↦ (r/√2, 2θ): det J = 1, every point is hit twice, and an annulus's area halves."""
-    found = map_from_formulas(*formulas)
-    r = sympy.sqrt(sympy.expand(found.p_next**2 + found.q_next**2))
+    """Refute it for any map, by (r, θ) ↦ (r/√2, 2θ): det J = 1, but an annulus's area halves."""
+    step_map = map_from_texts(*formulas)
+    r = sympy.sqrt(sympy.expand(step_map.p_next**2 + step_map.q_next**2))
     radius = sympy.simplify(r**2 / (P**2 + Q**2))
     opposite = [
         sympy.simplify(x.subs({P: -P, Q: -Q}, simultaneous=True) - x)
-        for x in (found.p_next, found.q_next)
+        for x in (step_map.p_next, step_map.q_next)
     ]
     preserves = same(
         f"p' = `{formulas[0]}`, q' = `{formulas[1]}`: ΔJ is the zero function",
-        [found.delta_j],
+        [step_map.delta_j],
         ("p", "q", "h"),
         "`0`",
     )

@@ -21,16 +21,16 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     shrinks_to,
     turns_to_and_fro,
 )
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
 Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
 `x_k`) − 1 = o(1), h → 0."""
-BY_MANY_STEPS = Shipped("Theorems", "error_over_many_steps")
+BY_MANY_STEPS = ShippedTheorem("Theorems", "error_over_many_steps")
 
 
 def inequalities_of(example: ExampleMap) -> Check:
-    """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
+    """Check MSE ≤ m², |Λ| ≤ Π(1 + |x|) − 1 and (Σ|x|)² ≤ N² MSE, in Fractions."""
     holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
     return Check(
         f"MSE ≤ m², |Λ| ≤ Π(1 + |`x_k`|) − 1 and (Σ |`x_k`|)² ≤ N² MSE for “{example.name}”",
@@ -40,20 +40,21 @@ def inequalities_of(example: ExampleMap) -> Check:
     )
 
 
-def inequalities_hold(found: Areas) -> bool:
-    count, total, product = len(found.delta_j), Fraction(0), Fraction(1)
-    for x in found.delta_j:
+def inequalities_hold(areas: Areas) -> bool:
+    # Every inequality is checked without roots or logarithms, so that Fractions decide it.
+    count, total, product = len(areas.delta_j), Fraction(0), Fraction(1)
+    for x in areas.delta_j:
         total += abs(x)
         product *= 1 + abs(x)
     return (
-        found.mse <= found.largest**2
-        and abs(found.lam) <= product - 1
-        and total**2 <= count**2 * found.mse
+        areas.mse <= areas.largest**2
+        and abs(areas.lam) <= product - 1
+        and total**2 <= count**2 * areas.mse
     )
 
 
 def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
-    """Criterion 2 is sufficient for criterion 3."""
+    """Prove that criterion 2 is sufficient for criterion 3."""
     return proof(
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
@@ -61,7 +62,7 @@ def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
             step(
                 "A mean is at most the greatest of its terms: "
                 "``MSE = (1/N) Σ_{k} x_k^2 ≤ m^2 = o(h^2)``, more than criterion 3 asks for.",
-                Shipped("Sums", "sum_of_less"),
+                ShippedTheorem("Sums", "sum_of_less"),
                 tried=[inequalities_of(FRICTION), inequalities_of(not_uniform)],
             ),
             step(
@@ -84,12 +85,12 @@ def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
                 FRICTION.check(),
             ),
         ],
-        given=SETTING,
+        setting=SETTING,
     )
 
 
 def criterion_4_and_2(friction: ExampleMap = FRICTION) -> Argument:
-    """Criterion 4 follows from criterion 2, read uniformly in k."""
+    """Refute that 4 and 2 do not imply each other: 2, read uniformly in k, implies 4."""
     return refutation(
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1",
         [
@@ -100,11 +101,11 @@ def criterion_4_and_2(friction: ExampleMap = FRICTION) -> Argument:
             step(
                 "For all real `x_k`, more precisely, "
                 "``|Π_{k} (1 + x_k) − 1| ≤ e^(Σ_k |x_k|) − 1``.",
-                Shipped("Product", "product_near_one_by_sum"),
+                ShippedTheorem("Product", "product_near_one_by_sum"),
                 tried=[inequalities_of(friction)],
             ),
         ],
-        given=SETTING,
+        setting=SETTING,
         remark="The paper’s own scheme is smooth in (p, q, h), so that criterion 2 holds for each "
         "k only where it holds uniformly: for that scheme 2 implies 4.",
     )
@@ -114,7 +115,7 @@ def criterion_4_and_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
-    """Neither of criteria 3 and 4 implies the other."""
+    """Prove that neither of criteria 3 and 4 implies the other."""
     return proof(
         "criterion 3 does not imply criterion 4 (an oscillator with friction has MSE = O(h²) and "
         "Λ → `e^(−T)` − 1), nor does 4 imply 3 (p' = −p (1 − √h q)/(1 + √h q), q' = −q)",
@@ -134,7 +135,7 @@ def criterion_4_and_3(
                 *to_and_fro(alternating),
             ),
         ],
-        given=SETTING,
+        setting=SETTING,
         remark="By Cauchy and Schwarz Σ |`x_k`| ≤ N √MSE = T √MSE/h, so |Λ| ≤ exp(T √MSE/h) − 1: "
         "MSE = o(h²) does imply criterion 4, and this is the right scale for criterion 3.",
     )
@@ -144,7 +145,7 @@ def criterion_4_against_2(
     compensated: ExampleMap = COMPENSATED,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
-    """Criterion 4 is weaker than criterion 2."""
+    """Refute that 4 is stronger than criterion 2: it is weaker."""
     between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]
     small = Check(
         "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
@@ -167,7 +168,7 @@ def criterion_4_against_2(
             step(
                 "But Σ `ΔJ_k` = h/2, so that ``1 + Λ = Π_{k} (1 + x_k) ≤ e^(Σ_k x_k) = e^(h/2)``.",
                 compensated_changes(),
-                Shipped("Product", "one_plus_below_exp"),
+                ShippedTheorem("Product", "one_plus_below_exp"),
             ),
             step(
                 "`x_k` and `x_{N−k}` are opposite, so Λ > 0: "
@@ -179,7 +180,7 @@ def criterion_4_against_2(
                 *to_and_fro(alternating),
             ),
         ],
-        given=SETTING,
+        setting=SETTING,
         remark="What can be said in favour of criterion 4 is of smooth steps and all times: see "
         "the other reading.",
     )
@@ -189,7 +190,7 @@ def criterion_4_against_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
-    """Criterion 4 is not stronger than criterion 3, of any one-step map."""
+    """Refute that 4 is stronger than criterion 3, for one-step maps in general."""
     return refutation(
         "criteria 3 and 4 imply each other in neither direction: p' = −p (1 − √h q)/(1 + √h q), q' "
         "= −q satisfies 4 and not 3",
@@ -205,16 +206,16 @@ def criterion_4_against_3(
                 *shrinking(friction),
             ),
         ],
-        given=SETTING,
+        setting=SETTING,
     )
 
 
 def shrinking(friction: ExampleMap) -> list[Check]:
-    """ΔJ, the limit of Λ, and the numbers of an oscillator with friction."""
+    """Check ΔJ, the limit of Λ, and the numbers of an oscillator with friction."""
     return [friction.changes(), shrinks_to(), friction.check()]
 
 
 def to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
-    """ΔJ of a map and of its next step, and its numbers for even and odd N."""
+    """Check ΔJ of the alternating map in two steps, and its numbers for even and odd N."""
     each = [example.check() for example in alternating]
     return [alternating[0].changes(), turns_to_and_fro(), *each]

@@ -15,14 +15,14 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     shrinks_to,
 )
 from verify.papers.lie_derivative_scheme.error_measures import CHAIN
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 _ETAS = range(1, 4)
-_OF_LIE = Shipped("Theorems", "determinant_of_lie_in_plane")
+_OF_LIE = ShippedTheorem("Theorems", "determinant_of_lie_in_plane")
 
 
 def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
-    """Criterion 2, uniformly, makes Λ tend to 0."""
+    """Prove that criterion 2, read uniformly, makes Λ tend to 0."""
     return proof(
         "if max |`ΔJ_k`| = o(h), then |Λ| ≤ exp(T max |`ΔJ_k`|/h) − 1 → 0 on [t₀, `t_end`]: areas "
         "change by a part of them that vanishes with h; and lieη of a smooth H does satisfy it",
@@ -51,7 +51,7 @@ def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
                 "all bounds.",
                 not_small.changes(),
                 squares_of_times(),
-                Shipped("Product", "product_above_sum"),
+                ShippedTheorem("Product", "product_above_sum"),
                 not_small.check(),
             ),
         ],
@@ -64,7 +64,7 @@ def _vanishing() -> Check:
 
 
 def criterion_3(hamiltonian: bool = True) -> Argument:
-    """For lieη, and every smoothly consistent scheme, MSE = o(h) and Λ → 0, both."""
+    """Prove that MSE = o(h) and Λ → 0 for lieη, and for every smoothly consistent scheme."""
     return proof(
         "for the Lie derivative algorithm of a smooth H both sides of the implication hold: MSE = "
         "`O(h^(2η+2))`, and Λ = `O(h^η)` → 0, so that areas change by o(1)",
@@ -78,7 +78,7 @@ def criterion_3(hamiltonian: bool = True) -> Argument:
             step("It is so uniformly on compact sets, in one of which the run stays for small h."),
             step(
                 "A mean is at most its greatest term: ``MSE = O(h^(2η+2)) = o(h)``.",
-                Shipped("Sums", "sum_of_less"),
+                ShippedTheorem("Sums", "sum_of_less"),
             ),
             step("``|Λ| ≤ e^(T O(h^η)) − 1 → 0``.", BY_MANY_STEPS),
         ],
@@ -88,7 +88,7 @@ def criterion_3(hamiltonian: bool = True) -> Argument:
 
 
 def criterion_3_any_map(friction: ExampleMap = FRICTION) -> Argument:
-    """MSE = o(h), and every area shrinks to a fraction 1/e."""
+    """Refute it for any map: MSE = o(h), and every area shrinks to a fraction 1/e."""
     return refutation(
         "for p' = p − h(q + p), q' = q + hp MSE = h²(1 − h)² = o(h), and over [0, 1] every area "
         "shrinks to a fraction that tends to 1/e",

@@ -24,13 +24,13 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     TO_AND_FRO_ODD,
     ExampleMap,
 )
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import ShippedTheorem
 
 _FIXED = (0, 1, 2)  # k
 
 
 def _small_for_each_k(example: ExampleMap) -> Check:
-    """ΔJ_k / h² for a few fixed k: the same number for every N, so that each ΔJ_k is O(h²)."""
+    """Check that ΔJ_k/h² does not depend on N for a few fixed k, so that each ΔJ_k is O(h²)."""
     ratios = [{example.run(n).delta_j[k] * n**2 for n in example.steps if n > k} for k in _FIXED]
     return Check(
         f"{example.name}: `ΔJ_k`/h² is the same for N = {', '.join(map(str, example.steps))}, k = "
@@ -42,11 +42,12 @@ def _small_for_each_k(example: ExampleMap) -> Check:
 
 
 def _grows(example: ExampleMap) -> Check:
-    """Λ ≥ Σ ΔJ_k ≥ N/8, so that Λ has no bound as N grows; and MSE does not tend to 0."""
+    """Check that Λ ≥ Σ ΔJ_k ≥ N/8, which is unbounded, and that MSE does not tend to 0."""
     runs = [(n, example.run(n)) for n in example.steps]
     holds = all(
-        found.lam >= sum(found.delta_j) >= Fraction(n, 8) and found.mse >= Fraction(1, 12)
-        for n, found in runs
+        run_areas.lam >= sum(run_areas.delta_j) >= Fraction(n, 8)
+        and run_areas.mse >= Fraction(1, 12)
+        for n, run_areas in runs
     )
     return Check(
         f"{example.name}: Λ ≥ Σ `ΔJ_k` ≥ N/8, MSE ≥ 1/12",
@@ -57,7 +58,7 @@ def _grows(example: ExampleMap) -> Check:
 
 
 def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
-    """Each ΔJ_k = O(h²), and MSE → 1/5."""
+    """Refute 2 ⇒ 3 for each k alone: each ΔJ_k = O(h²), and MSE → 1/5."""
     return refutation(
         "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
         "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
@@ -87,7 +88,7 @@ def criterion_4_and_2_pointwise(
     not_uniform: ExampleMap = NOT_UNIFORM,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
-    """Of each k alone: 2 does not imply 4, nor 4 2."""
+    """Prove that for each k alone 2 does not imply 4, nor 4 imply 2."""
     first = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
     at_first = Check(
         "to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly", NUMBERS
@@ -105,7 +106,7 @@ def criterion_4_and_2_pointwise(
             ),
             step(
                 "But over [0, 1] ``Λ = Π_{k} (1 + (kh)^2) − 1 ≥ Σ_{k} (kh)^2 ≥ N/8``.",
-                Shipped("Product", "product_above_sum"),
+                ShippedTheorem("Product", "product_above_sum"),
                 squares_of_times(),
                 not_uniform.check(),
                 _grows(not_uniform),
@@ -121,49 +122,49 @@ def criterion_4_and_2_pointwise(
 
 
 def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
-    """For steps z + hg + h²r criterion 4 on every [0, t] and criterion 2 say the same.
+    """Refute that 4 is stronger: on every [0, t] it is equivalent to 2 for steps z + hg + h²r.
 
-    `hamiltonian`: as for `_of_every_time`.
+    `hamiltonian`: as for `_steps_for_every_time`.
     """
     return refutation(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 2, and criterion 2 implies it: 4 is as strong as 2, and no stronger",
         [
-            *_of_every_time(hamiltonian),
+            *_steps_for_every_time(hamiltonian),
             step(
                 "Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = "
                 "max |`ΔJ_k`|.",
                 BY_MANY_STEPS,
             ),
         ],
-        given="Let the orbit of z' = g(z) exist on [0, T].",
+        setting="Let the orbit of z' = g(z) exist on [0, T].",
     )
 
 
 def criterion_4_against_3_smooth(
     hamiltonian: bool = False, friction: ExampleMap = FRICTION
 ) -> Argument:
-    """For steps z + hg + h²r: 4 on every [0, t] implies 3, and 3 does not imply 4."""
+    """Prove for steps z + hg + h²r that 4 on every [0, t] implies 3, but not vice versa."""
     return proof(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 3, which always holds then, and is not implied by it",
         [
-            *_of_every_time(hamiltonian),
+            *_steps_for_every_time(hamiltonian),
             step(
                 "Criterion 3 always holds: the mean of `ΔJ_k²` is at most its maximum, O(h²).",
-                Shipped("Sums", "sum_of_less"),
+                ShippedTheorem("Sums", "sum_of_less"),
             ),
             step(
                 "Criterion 4 does not hold for the oscillator with friction, where div g = −1.",
                 *shrinking(friction),
             ),
         ],
-        given="Let the orbit of z' = g(z) exist on [0, T].",
+        setting="Let the orbit of z' = g(z) exist on [0, T].",
     )
 
 
-def _of_every_time(hamiltonian: bool) -> list[Step]:
-    """Criterion 4 on every [0, t] gives ΔJ = O(h²), for steps z + hg + h²r.
+def _steps_for_every_time(hamiltonian: bool) -> list[Step]:
+    """Show that criterion 4 on every [0, t] gives ΔJ = O(h²), for steps z + hg + h²r.
 
     `hamiltonian`: whether g is a Hamiltonian's, for which div g = 0 and there is nothing to show.
     """

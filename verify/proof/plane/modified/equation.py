@@ -1,4 +1,4 @@
-"""What is known of a scheme's modified equation; see `verify.proof.plane.modified.field`."""
+"""The modified equation of a scheme, with its verdict; see `verify.proof.plane.modified.field`."""
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -10,7 +10,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.notebook import aligned_latex, cut, html_table, short_latex
-from verify.proof.by_conditions import told_nearby
+from verify.proof.by_conditions import describe_nearby
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.scheme import Scheme
@@ -27,7 +27,8 @@ class Term:
     function. Both are None where that is not decided. `witness` is a point where the divergence is
     not 0, `enclosure` its value there; `domain` says for which parameters there is one.
     `hamiltonian`: G with p' = −∂G/∂q, q' = ∂G/∂p; None where the term is not Hamiltonian, or where
-    no G is found in closed form. `energy`: that G in its ring, `found` the divergence, of one H.
+    no G is found in closed form. `energy`: that G in its ring, and `divergence_element` the
+    divergence in its ring; both for one H.
     """
 
     power: int
@@ -41,7 +42,7 @@ class Term:
     enclosure: str = ""
     domain: Domain = EVERYWHERE
     energy: tuple[Ring, Poly] | None = field(default=None, repr=False, compare=False)
-    found: tuple[Ring, Poly] | None = field(default=None, repr=False, compare=False)
+    divergence_element: tuple[Ring, Poly] | None = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class ModifiedEquation:
 
     `hamiltonian`: H as a formula, or for which H it holds. `consistent`: whether the first term is
     that of H. `area`: whether the first divergence that is not 0 is the leading coefficient of ΔJ,
-    which is made another way; None where one of them is not known. `verdict` is REFUTED where the
+    computed independently; None where one of them is not decided. `verdict` is REFUTED where the
     scheme claims another order, or det J ≡ 1 and a term is not Hamiltonian; `reason` is one line.
     """
 
@@ -78,17 +79,17 @@ class ModifiedEquation:
 
     @property
     def known(self) -> tuple[Term, ...]:
-        """The terms that H̃ is made of: those before the first that has no function."""
-        found = []
+        """The terms that H̃ is the sum of: those before the first without a Hamiltonian."""
+        terms = []
         for term in self.terms:
             if term.is_hamiltonian is not True or term.hamiltonian is None:
                 break
-            found.append(term)
-        return tuple(found)
+            terms.append(term)
+        return tuple(terms)
 
     @property
     def reach(self) -> int:
-        """The highest power of h up to which the modified Hamiltonian is known; −1 for none."""
+        """The highest power of h up to which H̃ is given in closed form; −1 for none."""
         return len(self.known) - 1
 
     @property
@@ -105,12 +106,12 @@ class ModifiedEquation:
             if term.energy is None:
                 raise InputError("hamiltonian", self.hamiltonian, "is no single H; see `text`")
             ring, x = term.energy
-            total.append(H_STEP**term.power * ring.factored(x))
+            total.append(H_STEP**term.power * ring.as_product(x))
         return sympy.Add(*total)
 
     @property
     def domain(self) -> Domain:
-        """Where it holds: where the map is defined, and what is said not to vanish does not."""
+        """The domain where it holds: the map is defined, and the first divergence is not 0."""
         first = self.first_not_hamiltonian
         return self.where & first.domain if first else self.where
 
@@ -127,7 +128,7 @@ class ModifiedEquation:
         return html_table(caption, heads, rows, str(self.reason))
 
     def _repr_latex_(self) -> str:
-        """H̃, as far as it is known of one H."""
+        """Return H̃ for one H in LaTeX, as far as it is given in closed form."""
         if not all(x.energy for x in self.known):
             return ""
         formula = short_latex(sympy.latex(self.expression))
@@ -143,60 +144,72 @@ def _times_power(n: int, text: str) -> str:
 # -- the verdict ----------------------------------------------------------------------------------
 
 
-def judged(
-    found: ModifiedEquation, scheme: Scheme | None, near: NearbyOrder | None = None
+def judge_equation(
+    equation: ModifiedEquation, scheme: Scheme | None, near: NearbyOrder | None = None
 ) -> ModifiedEquation:
-    """The same with its verdict: what is shown, held against what the scheme claims; `near`: the
-    order of exact coefficients near those that it prints."""
-    if near is None or near.order <= found.agreed:
-        verdict, reason = _verdict(found, scheme, found.agreed)
-        return replace(found, verdict=verdict, reason=reason)
-    verdict, reason = _verdict(found, scheme, near.order)
+    """Return the equation with its verdict, the terms compared with what the scheme claims.
+
+    `near`: the order of exact coefficients near those that the scheme prints.
+    """
+    if near is None or near.order <= equation.agreed:
+        verdict, reason = _verdict(equation, scheme, equation.agreed)
+        return replace(equation, verdict=verdict, reason=reason)
+    verdict, reason = _verdict(equation, scheme, near.order)
     if verdict is Verdict.PROVED:
         verdict = near.verdict
-    said = prose(reason, "; the terms are of the printed coefficients; ", told_nearby(near))
-    return replace(found, verdict=verdict, reason=said)
+    sentence = prose(reason, "; the terms are of the printed coefficients; ", describe_nearby(near))
+    return replace(equation, verdict=verdict, reason=sentence)
 
 
-def _verdict(found: ModifiedEquation, scheme: Scheme | None, agreed: int) -> tuple[Verdict, Prose]:
-    """`agreed`: up to which power of h the map is the exact flow, to what its digits leave."""
-    first, order = found.first_not_hamiltonian, found.order
-    if found.area is False:
+def _verdict(
+    equation: ModifiedEquation, scheme: Scheme | None, agreed: int
+) -> tuple[Verdict, Prose]:
+    """Return the verdict and its reason.
+
+    `agreed`: the power of h up to which the map is the exact flow, except for what rounded digits
+    leave.
+    """
+    first, order = equation.first_not_hamiltonian, equation.order
+    # Both are computed from the same map by different code: a contradiction is an error of ours,
+    # and no verdict may rest on either.
+    if equation.area is False:
         return Verdict.UNDECIDED, prose(
             "the terms and the leading term of ΔJ contradict each other: an error of ours"
         )
-    if found.consistent is None and agreed < 1:
+    if equation.consistent is None and agreed < 1:
         return Verdict.UNDECIDED, prose("whether the first term is that of H is not decided")
-    if not found.consistent and agreed < 1:
+    if not equation.consistent and agreed < 1:
         return Verdict.REFUTED, prose("not a scheme for this H: the first term is not that of H")
     if scheme is not None:
-        later = found.terms[max(agreed, 1) : scheme.order]
+        # A term of h^k with k below the scheme's order contradicts that order, since f̃ − f =
+        # O(h^order).
+        later = equation.terms[max(agreed, 1) : scheme.order]
         missed = next((x for x in later if not x.vanishes), None)
         if missed is not None and missed.vanishes is None:
-            said = f"whether the term of `h^{missed.power}` is 0 is not decided"
-            return Verdict.UNDECIDED, read_prose(said)
+            sentence = f"whether the term of `h^{missed.power}` is 0 is not decided"
+            return Verdict.UNDECIDED, read_prose(sentence)
         if missed is not None:
             claims = f"{scheme.name} claims order {scheme.order}; "
             return Verdict.REFUTED, read_prose(f"{claims}the term of `h^{missed.power}` is not 0")
         if scheme.area_preserving and first is not None:
             claims = f"{scheme.name} claims det J ≡ 1; "
-            said = f"the term of `h^{first.power}` has a divergence that is not 0"
-            return Verdict.REFUTED, read_prose(claims + said)
-    undecided = next((x for x in found.terms if x.is_hamiltonian is None), None)
+            sentence = f"the term of `h^{first.power}` has a divergence that is not 0"
+            return Verdict.REFUTED, read_prose(claims + sentence)
+    undecided = next((x for x in equation.terms if x.is_hamiltonian is None), None)
     if undecided is not None and (first is None or undecided.power < first.power):
-        said = f"whether the term of `h^{undecided.power}` is Hamiltonian is not decided"
-        return Verdict.UNDECIDED, read_prose(said)
+        sentence = f"whether the term of `h^{undecided.power}` is Hamiltonian is not decided"
+        return Verdict.UNDECIDED, read_prose(sentence)
     if first is not None:
         return Verdict.PROVED, prose(read_prose(_until(first)), _where(first.domain))
-    if found.reach < order:
-        said = f"every term up to `h^{order}` has divergence 0; of `h^{found.reach + 1}` no "
-        return Verdict.PROVED, read_prose(said + "function is found in closed form")
+    if equation.reach < order:
+        sentence = f"every term up to `h^{order}` has divergence 0; of `h^{equation.reach + 1}` no "
+        return Verdict.PROVED, read_prose(sentence + "function is found in closed form")
     return Verdict.PROVED, read_prose(f"every term up to `h^{order}` is Hamiltonian")
 
 
 def _until(first: Term) -> str:
-    said = f"that of `h^{first.power}` is not: its divergence does not vanish"
-    return f"the terms below `h^{first.power}` are Hamiltonian, {said}"
+    sentence = f"that of `h^{first.power}` is not: its divergence does not vanish"
+    return f"the terms below `h^{first.power}` are Hamiltonian, {sentence}"
 
 
 def _where(domain: Domain) -> Prose:

@@ -15,8 +15,8 @@ is 1/n times its words bracketed from the left (Dynkin, Specht, Wever; Reutenaue
 Algebras, 1993, theorem 1.4), so that log = Σ_w c_w/n [[…[w_1, w_2], …], w_n] (Baker, Campbell,
 Hausdorff). The Lie derivative of G is X_G = G_p ∂_q − G_q ∂_p, and [X_F, X_G] = X_{F, G} with
 {F, G} = F_p G_q − F_q G_p: every bracket of letters is that of a function, and H̃ is the same sum
-of Poisson brackets of V and T. No field and no divergence is needed; each of these terms is
-Hamiltonian by what it is.
+of Poisson brackets of V and T. No field and no divergence is needed: each of these terms is
+Hamiltonian by construction.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,9 +31,9 @@ from verify.errors import InputError
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import nearby_order
 from verify.proof.expansion import VANISHES, Leading
-from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judge_equation
 from verify.proof.plane.modified.field import Vector, field_of
-from verify.proof.plane.modified.one import Energy, by_field, hamiltonian_in_jets
+from verify.proof.plane.modified.one import Energy, build_equation, hamiltonian_in_jets
 from verify.schemes import get
 from verify.schemes.conditions.coloured_trees import symmetry
 from verify.schemes.conditions.condition import ByConditions
@@ -43,7 +43,7 @@ from verify.schemes.conditions.splitting_conditions import LETTERS, Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, trees
 from verify.schemes.conditions.words.words import words
 from verify.schemes.maps.step_map import solvable
-from verify.schemes.steps.defect import of_flow
+from verify.schemes.steps.defect import defect_series_of
 from verify.structures import AREA
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
@@ -51,38 +51,46 @@ Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
 
 
 def terms_of_splitting(splitting: Splitting, order: int) -> list[Term]:
-    """The terms up to h^order, for every H = T(p) + V(q)."""
+    """Return the terms up to h^order of a splitting, for every H = T(p) + V(q)."""
     jets = Jets(order + 2, separable=True)
     logarithm = Logarithm(splitting, order + 1)
     return [_first(logarithm), *(_term_of(logarithm, jets, n) for n in range(2, order + 2))]
 
 
 class Logarithm:
-    """The coefficients c_w of the logarithm of a splitting's step, in `ring`, of words of at most
-    so many letters."""
+    """The coefficients c_w, in `ring`, of the logarithm of a splitting's step.
+
+    w is a word of at most `most` letters.
+    """
 
     def __init__(self, splitting: Splitting, most: int) -> None:
         self.ring, _ = splitting.numbers
         self._words = splitting.words
         self._words.prepare(word for n in range(most + 1) for word in words("", n))
 
-    def of(self, word: str) -> Poly:
-        """c_w."""
-        found: Poly = self._words.logarithm(tuple((letter, 0) for letter in word))
-        return found
+    def coefficient_of(self, word: str) -> Poly:
+        """Return c_w."""
+        coefficient: Poly = self._words.logarithm(tuple((letter, 0) for letter in word))
+        return coefficient
 
     def energy(self, jets: Jets, n: int) -> Sum:
-        """H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
+        """Return H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
         total: Sum = {}
         for letters in product((_KICK, _DRIFT), repeat=n):
-            number = self.of("".join(letters)) / n
+            # Dynkin, Specht, Wever: a homogeneous Lie polynomial of n letters is 1/n times its
+            # words bracketed.
+            number = self.coefficient_of("".join(letters)) / n
             if not number.is_zero():
-                _add(self.ring, total, _bracketed(jets, letters), number)
+                _add(self.ring, total, _poisson_bracket(jets, letters), number)
         return {m: x for m, x in total.items() if self.ring.vanishes(x) is not True}
 
 
 def _first(logarithm: Logarithm) -> Term:
-    ring, kicks, drifts = logarithm.ring, logarithm.of(_KICK), logarithm.of(_DRIFT)
+    ring, kicks, drifts = (
+        logarithm.ring,
+        logarithm.coefficient_of(_KICK),
+        logarithm.coefficient_of(_DRIFT),
+    )
     p, q = _times(ring, -kicks, "H_q"), _times(ring, drifts, "H_p")
     energy = f"{_times(ring, drifts, 'T')} + {_times(ring, kicks, 'V')}"
     whole = all(ring.vanishes(x - ring.one) for x in (kicks, drifts))
@@ -103,21 +111,21 @@ def _term_of(logarithm: Logarithm, jets: Jets, n: int) -> Term:
 
 
 def _vanishes(ring: Ring, numbers: Iterable[Poly]) -> bool | None:
-    """Whether all of them are 0; those that are shown to be are left out before."""
-    found = {ring.vanishes(x) for x in numbers}
-    return False if False in found else None if found else True
+    """Return True if there are none, False if one is not 0; shown zeros are already left out."""
+    answers = {ring.vanishes(x) for x in numbers}
+    return False if False in answers else None if answers else True
 
 
-def _bracketed(jets: Jets, word: Sequence[str]) -> JetPoly:
-    """{{…{w_1, w_2}, …}, w_n}, whose letters stand for V(q) and T(p)."""
+def _poisson_bracket(jets: Jets, word: Sequence[str]) -> JetPoly:
+    """Return the Poisson bracket {{…{w_1, w_2}, …}, w_n} of V(q) and T(p), the word's letters."""
     # Of a function only its derivatives matter; those of the first letter's are given.
     by_p, by_q = _gradient(jets, word[0])
-    found = jets.zero
+    bracket = jets.zero
     for letter in word[1:]:
         other_p, other_q = _gradient(jets, letter)
-        found = by_p * other_q - by_q * other_p
-        by_p, by_q = jets.diff(found, "p"), jets.diff(found, "q")
-    return found
+        bracket = by_p * other_q - by_q * other_p
+        by_p, by_q = jets.diff(bracket, "p"), jets.diff(bracket, "q")
+    return bracket
 
 
 def _gradient(jets: Jets, letter: str) -> tuple[JetPoly, JetPoly]:
@@ -125,6 +133,7 @@ def _gradient(jets: Jets, letter: str) -> tuple[JetPoly, JetPoly]:
 
 
 def _add(ring: Ring, total: Sum, x: JetPoly, number: Poly) -> None:
+    # The numbers are elements of a ring of algebraic numbers, the monomials those of the jets.
     for monomial, share in terms_of(x):
         total[monomial] = ring.reduce(total.get(monomial, ring.zero) + number * share)
 
@@ -147,10 +156,10 @@ _EVERY, _SEPARABLE = "every smooth H", "every smooth H = T(p) + V(q)"
 
 
 def modified_for_every(name: str, order: int, separable: bool = False) -> ModifiedEquation:
-    """The terms up to h^order, 1 … 8, of the scheme of that name, for every H that it takes.
+    """Compute the modified equation up to h^order, 1 … 8, of a scheme for every H that it takes.
 
-    `separable`: for every H = T(p) + V(q) only. Raises InputError for a scheme that is known for
-    one H at a time only.
+    `name`: the scheme's. `separable`: for every H = T(p) + V(q) only. Raises InputError for a
+    scheme that is defined for one H at a time only.
     """
     scheme = get(name)
     every_h = scheme.every_h
@@ -158,38 +167,38 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         problem = "is given for one H; its terms for every H are not known"
         raise InputError("scheme", name, problem)
     separable = separable or every_h.separable
-    series, told = _series_of(every_h), _SEPARABLE if separable else _EVERY
-    where = EVERYWHERE if scheme.explicit else Domain.of((), solvable(AREA))
+    series, which = _series_of(every_h), _SEPARABLE if separable else _EVERY
+    where = EVERYWHERE if scheme.explicit else Domain.from_requirements((), solvable(AREA))
     if isinstance(every_h, Splitting) and series is None:
         terms = tuple(terms_of_splitting(every_h, order))
         area = all(c.holds is True for c in every_h.area_conditions())
         consistent = terms[0].hamiltonian == "H"
-        found = ModifiedEquation(scheme.name, told, order, terms, consistent, area, where)
+        equation = ModifiedEquation(scheme.name, which, order, terms, consistent, area, where)
     else:
         jets = Jets(order + 3, separable=separable)
-        flow, after = JetFlow.over(jets), _taylor(name, every_h, series, jets, order + 1)
+        flow, after = JetFlow.from_jets(jets), _taylor(name, every_h, series, jets, order + 1)
 
         def energy_of(vector: Vector, factors: int) -> Energy | None:
             if vector == flow.slopes:
                 return "H", None
-            found = hamiltonian_in_jets(jets, vector, factors)
-            return None if found is None else (jets.text(found), None)
+            function = hamiltonian_in_jets(jets, vector, factors)
+            return None if function is None else (jets.text(function), None)
 
-        found = by_field(
+        equation = build_equation(
             flow,
             after,
             _leading(flow, after),
             energy_of,
             scheme=scheme.name,
-            hamiltonian=told,
+            hamiltonian=which,
             where=where,
         )
-    return judged(found, scheme, nearby_order(every_h, scheme.order))
+    return judge_equation(equation, scheme, nearby_order(every_h, scheme.order))
 
 
 def _leading(flow: JetFlow, after: tuple[Series, Series]) -> Leading:
-    """The first coefficient of ΔJ that is not 0, as far as the series reach."""
-    series, most = of_flow(flow, after), len(after[0]) - 1
+    """Return the first coefficient of ΔJ that is not 0, as far as the series reach."""
+    series, most = defect_series_of(flow, after), len(after[0]) - 1
     forms = ((m, series.form(m)) for m in range(1, most + 1))
     return next((Leading.of_form(m, x, x.ring) for m, x in forms if x.entries), VANISHES)
 
@@ -221,9 +230,10 @@ def _by_trees(name: str, every_h: TreeConditions, jets: Jets, most: int) -> tupl
             weight = weights.weight(tree)
             if not weight.is_constant():
                 raise InputError("scheme", name, "has irrational weights; give one H")
+            # z' = z + Σ_t h^|t| b·Φ(t) F(t)/σ(t), the B-series of the method.
             share = weight.leading_coefficient() if not weight.is_zero() else 0
-            for part, x in enumerate(differentials.of(tree)):
+            for part, x in enumerate(differentials.differential(tree)):
                 total[part] += x * share / symmetry(tree)
-        for own, x in zip(result, total, strict=True):
-            own.append(x)
+        for coefficients, x in zip(result, total, strict=True):
+            coefficients.append(x)
     return result

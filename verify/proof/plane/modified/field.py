@@ -26,18 +26,18 @@ Vector = tuple[Poly, Poly]  # the parts of p' and of q'
 def modified_field(
     ring: CoefficientRing, p_next: Sequence[Poly], q_next: Sequence[Poly], timed: bool = False
 ) -> list[Vector]:
-    """[f_1, f_2, …] of the map with these coefficients of h⁰, h¹, … in p' and q'.
+    """Return [f_1, f_2, …] for the map with these coefficients of h⁰, h¹, … in p' and q'.
 
-    Those of h⁰ are p and q. As many terms as there are coefficients after them. `timed`: they
-    depend on t.
+    The coefficients of h⁰ are p and q, and each further one gives a term. `timed`: they depend
+    on t.
     """
-    found: list[Vector] = []
+    terms: list[Vector] = []
     # flows[n][k]: [y_n]_k, with its gradient, which is made once.
     flows: dict[tuple[int, int], Vector] = {}
     gradients: dict[tuple[int, int], tuple[Vector, Vector]] = {}
 
     def along(vector: Vector, n: int, k: int) -> Vector:
-        """The derivative of [y_n]_k along a vector field."""
+        """Return the derivative of [y_n]_k along a vector field."""
         if (n, k) not in gradients:
             p, q = ((ring.diff(x, "p"), ring.diff(x, "q")) for x in flows[n, k])
             gradients[n, k] = p, q
@@ -46,10 +46,11 @@ def modified_field(
 
     for k in range(1, len(p_next)):
         term = p_next[k], q_next[k]
+        # [y_n]_k = (1/n) Σ_j f_j·∇[y_(n−1)]_(k−j): only f_1 … f_(k−1), all of them computed before.
         for n in range(2, k + 1):
             total = ring.zero, ring.zero
             for j in range(1, k - n + 2):
-                change = along(found[j - 1], n - 1, k - j)
+                change = along(terms[j - 1], n - 1, k - j)
                 total = total[0] + change[0], total[1] + change[1]
             if timed:
                 later = [ring.diff(x, "t") for x in flows[n - 1, k - 1]]
@@ -57,15 +58,15 @@ def modified_field(
             flows[n, k] = ring.reduce(total[0] / n), ring.reduce(total[1] / n)
             term = term[0] - flows[n, k][0], term[1] - flows[n, k][1]
         flows[1, k] = ring.reduce(term[0]), ring.reduce(term[1])
-        found.append(flows[1, k])
-    return found
+        terms.append(flows[1, k])
+    return terms
 
 
 def divergence(ring: CoefficientRing, vector: Vector) -> Poly:
-    """∂/∂p of its part in p' plus ∂/∂q of that in q'."""
+    """Return the divergence of (p', q') = vector: ∂p'/∂p + ∂q'/∂q."""
     return ring.reduce(ring.diff(vector[0], "p") + ring.diff(vector[1], "q"))
 
 
 def field_of(ring: CoefficientRing, energy: Poly) -> Vector:
-    """(−∂G/∂q, ∂G/∂p), the Hamiltonian vector field of G."""
+    """Return the Hamiltonian vector field of G, (−∂G/∂q, ∂G/∂p)."""
     return -ring.diff(energy, "q"), ring.diff(energy, "p")

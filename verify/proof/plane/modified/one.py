@@ -1,20 +1,19 @@
 """The modified Hamiltonian of a step map, term by term, for one H.
 
 See `verify.proof.plane.modified.field`. Each term is decided: its divergence is the zero function,
-and then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian reaches
-there. The first divergence that is not 0 is held against the leading term of ΔJ, which is made from
-the determinant of the map and shares no code with the terms.
+and then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian exists up
+to there. The first divergence that is not 0 is compared with the leading term of ΔJ, which comes
+from the determinant of the map and shares no code with the terms.
 
-The function G whose Hamiltonian vector field (−∂G/∂q, ∂G/∂p) is a given one, where one is found.
-
-A field with divergence 0 has such a G on every disc. It is looked for in closed form:
+A field with divergence 0 is on every disc the Hamiltonian vector field (−∂G/∂q, ∂G/∂p) of some
+function G. It is sought in closed form:
 - in p and q as polynomials: by integrating term by term, which finds it always;
 - among the products of k derivatives of H with k − 1 derivatives by p and by q each: the modified
   Hamiltonians of Runge–Kutta methods and splittings are made of those, whatever H is (Hairer,
   Lubich, Wanner, IX.9; of splittings they are Poisson brackets of T and V); in time a factor less
   may be a derivative by t more;
-- among the polynomials in what H and the field are made of, for maps of a user's own.
-What is found is held against the field in the ring; what is not found is not denied.
+- among the polynomials in the generators of H and the field, for a user's own maps.
+A G that is found is checked against the field in the ring; where none is found nothing is claimed.
 """
 
 import math
@@ -25,7 +24,7 @@ from typing import Any
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.generator import terms_of
-from verify.algebra.linear_combination import combination
+from verify.algebra.linear_combination import solve_combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
 from verify.algebra.series.power_series import CoefficientRing, Derivatives
@@ -33,7 +32,7 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.proof.expansion import MOST_ORDERS, ClosedSeries, Leading
 from verify.proof.order import leading_of, nearby_of_scheme
-from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judge_equation
 from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
 from verify.proof.plane.potential import among_polynomials
 from verify.proof.telescoping import multisets
@@ -44,19 +43,21 @@ _MOST_PRODUCTS, _MOST_IN_TIME = 400, 2000  # tried in the second way
 
 
 def hamiltonian_of(field: CanonicalField, vector: Vector, factors: int) -> Poly | None:
-    """G for one H; None where none is found. `factors`: how many derivatives of H are multiplied
-    in each term of the vector field, of a scheme for every H.
+    """Find G for one H; None where none is found.
+
+    `factors`: how many derivatives of H are multiplied in each term of the vector field, if the
+    scheme is one for every H.
     """
     ring = field.ring
     for way in (_by_integration, _among_products, _among_all):
-        found = way(field, vector, factors)
-        if found is not None and _is_hamiltonian_of(ring, found, vector):
-            return found
+        candidate = way(field, vector, factors)
+        if candidate is not None and _is_hamiltonian_of(ring, candidate, vector):
+            return candidate
     return None
 
 
 def hamiltonian_in_jets(jets: Jets, vector: Vector, factors: int) -> Poly | None:
-    """G for every H, a polynomial in its derivatives; None where there is none.
+    """Find G for every H, a polynomial in its derivatives; None where there is none.
 
     H_11 … are free, so that the highest derivative in G is of one order less than in the field.
     """
@@ -64,38 +65,39 @@ def hamiltonian_in_jets(jets: Jets, vector: Vector, factors: int) -> Poly | None
     indices = [index for index in jets.indices if sum(index) < max(degrees, default=1)]
     chosen = multisets(indices, factors, factors - 1, factors - 1)
     # p itself occurs in no term, and keeps the two parts of a field apart.
-    return _combined(jets, list(map(jets.product, chosen)), vector, jets.p)
+    return _find_combination(jets, list(map(jets.product, chosen)), vector, jets.p)
 
 
 def _orders(jets: Jets, x: Poly) -> Iterator[int]:
-    """i + j of the derivatives H_ij that occur in x."""
+    """Yield i + j for the derivatives H_ij that occur in x."""
     degrees = x.degrees()[2:]
     yield from (i + j for (i, j), n in zip(jets.indices, degrees, strict=True) if n > 0)
 
 
-def _joined(mark: Poly, vector: Vector) -> Poly:
-    """Both parts in one element, by a variable that does not occur in them."""
+def _combine_parts(mark: Poly, vector: Vector) -> Poly:
+    """Combine both parts in one element, by a variable that does not occur in them."""
     return vector[0] + mark * vector[1]
 
 
-def _is_hamiltonian_of(ring: Ring, found: Poly, vector: Vector) -> bool:
-    pairs = zip(field_of(ring, found), vector, strict=True)
-    return all(ring.vanishes(own - x) is True for own, x in pairs)
+def _is_hamiltonian_of(ring: Ring, candidate: Poly, vector: Vector) -> bool:
+    pairs = zip(field_of(ring, candidate), vector, strict=True)
+    return all(ring.vanishes(y - x) is True for y, x in pairs)
 
 
 # -- for one H: each way gives a G, or None; the caller checks it ---------------------------------
 
 
 def _by_integration(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
-    """G = ∫ q' dp + ∫ (what is left of −p') dq, where p and q stand in no function."""
+    """Return G = ∫ q' dp + ∫ (the rest of −p') dq, where p and q stand in no function."""
     ring = field.ring
     gens = ring.context.gens()
     functions = [g.index for g in ring.generators_in(*vector) if g.kind != "variable"]
     if any(ring.depends(gens[k], name) for k in functions for name in ("p", "q")):
         return None
+    # q' = ∂G/∂p and p' = −∂G/∂q: after G has been integrated in p, the rest depends on q alone.
     by_p = vector[1].integral(ring.places["p"])
-    left = ring.reduce(-vector[0] - ring.diff(by_p, "q"))
-    return ring.reduce(by_p + left.integral(ring.places["q"]))
+    remaining = ring.reduce(-vector[0] - ring.diff(by_p, "q"))
+    return ring.reduce(by_p + remaining.integral(ring.places["q"]))
 
 
 def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly | None:
@@ -117,22 +119,22 @@ def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly
     numbers = _numbers_in(ring, vector)
     candidates = [ring.multiply(c, m) for c in numbers for m in products if not m.is_zero()]
     # h is in no coefficient of a series in h.
-    return _combined(ring, candidates, vector, ring.variable("h"))
+    return _find_combination(ring, candidates, vector, ring.variable("h"))
 
 
 def _products_in_time(
     indices: Sequence[Index], factors: int
 ) -> Iterator[list[tuple[int, int, int]]]:
-    """Of m < `factors` derivatives of H, m − 1 by p and by q, and `factors` − m by t."""
+    """Yield products of m < `factors` derivatives of H: m − 1 by p and q, `factors` − m by t."""
     for m in range(1, factors):
         for chosen in multisets([(0, 0), *indices], m, m - 1, m - 1):
             shares = product(range(factors - m + 1), repeat=m)
-            made = (
+            products = (
                 tuple(sorted((i, j, k) for (i, j), k in zip(chosen, share, strict=True)))
                 for share in shares
                 if sum(share) == factors - m
             )
-            yield from (list(each) for each in set(made) if (0, 0, 0) not in each)
+            yield from (list(each) for each in set(products) if (0, 0, 0) not in each)
 
 
 def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:
@@ -142,28 +144,28 @@ def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:
     return total
 
 
-def _combined(
+def _find_combination(
     ring: CoefficientRing, candidates: Sequence[Poly], vector: Vector, mark: Poly
 ) -> Poly | None:
-    """The sum of multiples of the candidates whose field that is; `mark` keeps its parts apart."""
-    columns = [_joined(mark, field_of(ring, m)) for m in candidates]
-    found, _ = combination(columns, _joined(mark, vector))
-    if found is None:
+    """Find a linear combination of the candidates that has this field; `mark` separates parts."""
+    columns = [_combine_parts(mark, field_of(ring, m)) for m in candidates]
+    coefficients, _ = solve_combination(columns, _combine_parts(mark, vector))
+    if coefficients is None:
         return None
-    return sum((c * candidates[k] for k, c in found.items()), ring.zero)
+    return sum((c * candidates[k] for k, c in coefficients.items()), ring.zero)
 
 
 def _numbers_in(ring: Ring, vector: Vector) -> list[Poly]:
-    """The products of irrational numbers that are factors of terms, such as ∛2; 1 is one."""
+    """Return 1 and the products of irrational numbers that are factors of terms, such as ∛2."""
     gens = ring.context.gens()
-    used = [g.index for g in ring.generators_in(*vector) if g.kind != "variable"]
-    numbers = [k for k in used if not any(ring.depends(gens[k], n) for n in ring.variables)]
-    found = {tuple(0 for _ in numbers)}
+    indices = [g.index for g in ring.generators_in(*vector) if g.kind != "variable"]
+    numbers = [k for k in indices if not any(ring.depends(gens[k], n) for n in ring.variables)]
+    exponents = {tuple(0 for _ in numbers)}
     for x in vector:
-        found |= {tuple(int(monomial[k]) for k in numbers) for monomial, _ in terms_of(x)}
+        exponents |= {tuple(int(monomial[k]) for k in numbers) for monomial, _ in terms_of(x)}
     return [
         math.prod((gens[k] ** n for k, n in zip(numbers, powers, strict=True)), start=ring.one)
-        for powers in sorted(found)
+        for powers in sorted(exponents)
     ]
 
 
@@ -171,11 +173,11 @@ def _among_all(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
     ring, mark = field.ring, field.ring.variable("h")
 
     def derive(x: Poly) -> Poly:
-        return _joined(mark, field_of(ring, x))
+        return _combine_parts(mark, field_of(ring, x))
 
     derivatives = [ring.diff(x, name) for x in vector for name in ("p", "q")]
-    used = (field.energy, *vector, *derivatives)  # sin has cos for its integral
-    return among_polynomials(ring, used, derive, _joined(mark, vector))
+    elements = (field.energy, *vector, *derivatives)  # sin has cos for its integral
+    return among_polynomials(ring, elements, derive, _combine_parts(mark, vector))
 
 
 MOST_ORDER = 10
@@ -183,7 +185,7 @@ Energy = tuple[str, tuple[Ring, Poly] | None]  # G as a formula, and in its ring
 
 
 def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> ModifiedEquation:
-    """The terms up to h^order, 1 … 10, and what `scheme` claims held against them.
+    """Compute the modified equation up to h^order, 1 … 10, and judge what `scheme` claims.
 
     Raises InputError where the map does not begin with (p, q) at h = 0, or is not smooth there.
     """
@@ -192,15 +194,15 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
     ring = source.ring
     for name, first in zip(("p", "q"), (p_next[0], q_next[0]), strict=True):
         if ring.vanishes(first - ring.variable(name)) is not True:
-            shown = str(step_map.hamiltonian.expression)
+            formula = str(step_map.hamiltonian.expression)
             problem = f"the map is not (p, q) at h = 0: {name}' is {ring.text(first)} there"
-            raise InputError("map", shown, problem)
+            raise InputError("map", formula, problem)
 
     def energy_of(vector: Vector, factors: int) -> Energy | None:
-        found = hamiltonian_of(source, vector, factors) if any(vector) else ring.zero
-        return None if found is None else (ring.text(found), (ring, found))
+        function = hamiltonian_of(source, vector, factors) if any(vector) else ring.zero
+        return None if function is None else (ring.text(function), (ring, function))
 
-    found = by_field(
+    equation = build_equation(
         source,
         (p_next, q_next),
         leading_of(step_map),
@@ -210,11 +212,11 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
         where=step_map.domain,
     )
     near = nearby_of_scheme(scheme, step_map.hamiltonian) if scheme else None
-    return judged(found, scheme, near)
+    return judge_equation(equation, scheme, near)
 
 
 def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly], Sequence[Poly]]:
-    """The coefficients of h⁰ … h^most in p' and q', and the vector field in their ring."""
+    """Return the vector field, and the coefficients of h⁰ … h^most in p' and q' in its ring."""
     series = step_map.series(most)
     if series is not None:
         source, (p, q) = series
@@ -229,7 +231,7 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
 # -- of one H, and of every one -------------------------------------------------------------------
 
 
-def by_field(
+def build_equation(
     flow: Flow,
     after: tuple[Sequence[Poly], Sequence[Poly]],
     leading: Leading,
@@ -239,8 +241,11 @@ def by_field(
     hamiltonian: str,
     where: Domain,
 ) -> ModifiedEquation:
-    """By the coefficients of p' and q'. `leading`: of ΔJ; `energy_of`: G of a field with divergence
-    0, in which so many derivatives of H are multiplied in each term."""
+    """Build the modified equation from the coefficients of p' and q', `after`.
+
+    `leading`: the leading coefficient of ΔJ; `energy_of`: finds G for a field with divergence 0, in
+    whose terms so many derivatives of H are multiplied.
+    """
     vectors = modified_field(flow.ring, *after, flow.timed)
     terms = [_term(flow.ring, j, vector, where, energy_of) for j, vector in enumerate(vectors)]
     return ModifiedEquation(
@@ -261,15 +266,16 @@ def _term(
     where: Domain,
     energy_of: Callable[[Vector, int], Energy | None],
 ) -> Term:
-    """That of h^power in the field: its divergence decided, its energy looked for."""
+    """Build the term of h^power in the field: decide its divergence and look for its energy."""
     nothing = ring.zero, ring.zero
+    # A field that is zero by identities is replaced by 0, so that its texts do not hide it.
     vanishes = _same(ring, vector, nothing)
     vector = nothing if vanishes else vector
-    turned = divergence(ring, vector)
-    decision = ring.decide(turned)
+    div = divergence(ring, vector)
+    decision = ring.decide(div)
     text, energy = (decision.zero and energy_of(vector, power + 1)) or (None, None)
-    element = None if decision.zero else (ring, turned)
-    leading = Leading(None if decision.zero else power, decision, element).within(where)
+    element = None if decision.zero else (ring, div)
+    leading = Leading(None if decision.zero else power, decision, element).restrict_to(where)
     return Term(
         power=power,
         p=ring.text(vector[0]),
@@ -282,31 +288,36 @@ def _term(
         enclosure=leading.decision.enclosure,
         domain=leading.domain,
         energy=energy,
-        found=(ring, turned),
+        divergence_element=(ring, div),
     )
 
 
 def _same(ring: CoefficientRing, vector: Vector, other: Sequence[Poly]) -> bool | None:
-    """Whether two fields are the same; None where that is not decided."""
-    found = {ring.vanishes(x - y) for x, y in zip(vector, other, strict=True)}
-    return False if False in found else None if None in found else True
+    """Return True if two fields are the same; None where that is not decided."""
+    answers = {ring.vanishes(x - y) for x, y in zip(vector, other, strict=True)}
+    return False if False in answers else None if None in answers else True
 
 
 def _area(leading: Leading, terms: Sequence[Term]) -> bool | None:
-    """Whether the first divergence is the leading coefficient of ΔJ; None where neither is known.
+    """Return True if the first divergence is the leading coefficient of ΔJ; None if undecided.
 
-    Of a field whose terms are all Hamiltonian: whether ΔJ vanishes as far as they tell.
+    If all terms are Hamiltonian: True if ΔJ vanishes as far as the terms reach.
     """
     first = next((x for x in terms if x.is_hamiltonian is not True), None)
     if leading.decision.zero is None or (first is not None and first.is_hamiltonian is None):
         return None
     if first is None:
         return leading.decision.zero or leading.power is None or leading.power > len(terms)
-    if leading.power != first.power + 1 or leading.element is None or first.found is None:
+    if (
+        leading.power != first.power + 1
+        or leading.element is None
+        or first.divergence_element is None
+    ):
         return False
-    (ring, x), (other, y) = first.found, leading.element
+    # The leading term of ΔJ is h^k div f_k for the first divergence that is not 0 (module `field`).
+    (ring, x), (other, y) = first.divergence_element, leading.element
     if ring is other:
         return ring.vanishes(x - y)
-    gap = ring.expression(x) - other.expression(y)
-    common, (difference,) = embed([gap], ring.variables)
+    residual = ring.expression(x) - other.expression(y)
+    common, (difference,) = embed([residual], ring.variables)
     return common.vanishes(difference)

@@ -1,9 +1,9 @@
-"""The named shapes, one file each with a `SHAPE`, found by themselves."""
+"""The named shapes, each a file with a `SHAPE`, which a catalogue finds."""
 
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import unknown
+from verify.errors import unknown_name
 
 if TYPE_CHECKING:
     from verify.scenes.shapes.outline import Shape
@@ -12,13 +12,13 @@ _FILES = Catalogue(__name__, __path__)
 
 
 def names() -> tuple[str, ...]:
-    """The names of all shapes."""
+    """Return the names of all shapes."""
     return _FILES.names
 
 
 def get(name: str) -> "Shape":
-    """The shape of that name; InputError where there is none."""
+    """Return the shape of that name; InputError where there is none."""
     if name not in _FILES:
-        raise unknown("shape", name, names())
+        raise unknown_name("shape", name, names())
     shape: Shape = _FILES.module(name).SHAPE
     return shape

@@ -1,8 +1,8 @@
-"""A cat's face, about (0, 0) and of about radius 1: every outline one smooth (analytic) curve.
+"""A cat's face, around (0, 0) and of radius about 1; every outline is one analytic curve.
 
-The head is an ellipse drawn out at the ears by exp(k (cos(θ − θ₀) − 1)), a bump of width 1/√k; the
-other outlines are ellipses, bent or drawn to three rounded corners. So all have a spectrum that
-falls geometrically, and the trapezoidal rule converges so on them.
+The head is an ellipse stretched at the ears by exp(k (cos(θ − θ₀) − 1)), a bump of width 1/√k; the
+other outlines are ellipses, bent or stretched to three rounded corners. All have a spectrum that
+decreases geometrically, so that the trapezoidal rule converges geometrically on them.
 """
 
 from fractions import Fraction
@@ -15,8 +15,8 @@ Point = tuple[str, str]  # x, y as exact decimals
 
 def _head(mp: Context, s: Number) -> tuple[Number, Number]:
     turn = angle(mp, s)
-    x = _of(mp, "0.88") * mp.cos(turn)
-    y = _of(mp, "0.72") * mp.sin(turn) - _of(mp, "0.13")
+    x = _exact(mp, "0.88") * mp.cos(turn)
+    y = _exact(mp, "0.72") * mp.sin(turn) - _exact(mp, "0.13")
     cos, sin = mp.cos(turn / 2), mp.sin(turn / 2)
     # 1 − cos(θ − θ₀) = 2 sin²((θ − θ₀)/2) keeps its digits in float64; the axes θ₀ are (±8, 15)/17
     # of the ears and (±4, −3)/5 of the cheeks, whose halves are rational but for a common root.
@@ -26,99 +26,105 @@ def _head(mp: Context, s: Number) -> tuple[Number, Number]:
     ):
         # A broad bump and a sharper one on it make an ear.
         broad, tip = (mp.exp(-k * ear * ear / 17) for k in (10, 40))
-        x += side * (_of(mp, "0.05") * broad + _of(mp, "0.12") * tip)
-        y += _of(mp, "0.18") * broad + _of(mp, "0.36") * tip
-        x += side * _of(mp, "0.10") * mp.exp(-6 * cheek * cheek / 5)
+        x += side * (_exact(mp, "0.05") * broad + _exact(mp, "0.12") * tip)
+        y += _exact(mp, "0.18") * broad + _exact(mp, "0.36") * tip
+        x += side * _exact(mp, "0.10") * mp.exp(-6 * cheek * cheek / 5)
     return x, y
 
 
-def _of(mp: Context, decimal: str) -> Number:
+def _exact(mp: Context, decimal: str) -> Number:
     return number(mp, Fraction(decimal))
 
 
 def _ellipse(centre: Point, radii: Point) -> Arc:
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
-        x = _of(mp, centre[0]) + _of(mp, radii[0]) * mp.cos(turn)
-        return x, _of(mp, centre[1]) + _of(mp, radii[1]) * mp.sin(turn)
+        x = _exact(mp, centre[0]) + _exact(mp, radii[0]) * mp.cos(turn)
+        return x, _exact(mp, centre[1]) + _exact(mp, radii[1]) * mp.sin(turn)
 
-    return at
+    return evaluate
 
 
 def _almond(centre: Point, radii: Point, tilt: str) -> Arc:
     """An eye: an ellipse with narrow ends, its right end raised by `tilt`."""
 
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
         cos, sin = mp.cos(turn), mp.sin(turn)
-        narrow = 1 - cos * cos * _of(mp, "0.3")
-        x = _of(mp, centre[0]) + _of(mp, radii[0]) * cos
-        return x, _of(mp, centre[1]) + _of(mp, radii[1]) * sin * narrow + _of(mp, tilt) * cos
+        narrow = 1 - cos * cos * _exact(mp, "0.3")
+        x = _exact(mp, centre[0]) + _exact(mp, radii[0]) * cos
+        return x, _exact(mp, centre[1]) + _exact(mp, radii[1]) * sin * narrow + _exact(
+            mp, tilt
+        ) * cos
 
-    return at
+    return evaluate
 
 
 def _triangle(centre: Point, up: Point, aside: Point) -> Arc:
     """Three rounded corners: z = e^iθ + e^−2iθ/4 (simple below 1/2), its axes `aside` and `up`."""
 
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
         # One corner is at the end of the axis `up`.
-        along = mp.cos(turn) + mp.cos(2 * turn) / 4
-        across = mp.sin(turn) - mp.sin(2 * turn) / 4
-        x = _of(mp, centre[0]) + _of(mp, up[0]) * along + _of(mp, aside[0]) * across
-        return x, _of(mp, centre[1]) + _of(mp, up[1]) * along + _of(mp, aside[1]) * across
+        lengthwise = mp.cos(turn) + mp.cos(2 * turn) / 4
+        sideways = mp.sin(turn) - mp.sin(2 * turn) / 4
+        x = _exact(mp, centre[0]) + _exact(mp, up[0]) * lengthwise + _exact(mp, aside[0]) * sideways
+        return x, _exact(mp, centre[1]) + _exact(mp, up[1]) * lengthwise + _exact(
+            mp, aside[1]
+        ) * sideways
 
-    return at
+    return evaluate
 
 
 def _mouth(mp: Context, s: Number) -> tuple[Number, Number]:
     """A thin outline about the graph of a wave: one crest below the nose, half of one each side."""
     turn = angle(mp, s)
     u = mp.cos(turn)
-    wave = mp.cos(2 * mp.pi * u) * _of(mp, "0.035") + mp.exp(-20 * u * u) * _of(mp, "0.05")
-    return _of(mp, "0.22") * u, wave + _of(mp, "0.008") * mp.sin(turn) - _of(mp, "0.415")
+    wave = mp.cos(2 * mp.pi * u) * _exact(mp, "0.035") + mp.exp(-20 * u * u) * _exact(mp, "0.05")
+    return _exact(mp, "0.22") * u, wave + _exact(mp, "0.008") * mp.sin(turn) - _exact(mp, "0.415")
 
 
 def _whisker(root: Point, tip: Point) -> Arc:
     """A thin outline about a parabola from `root` to `tip`, bent upwards halfway."""
-    outwards = 1 if Fraction(tip[0]) > Fraction(root[0]) else -1
+    side = 1 if Fraction(tip[0]) > Fraction(root[0]) else -1
 
-    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+    def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
         u = mp.cos(turn)
-        (x0, x1), (y0, y1) = ([_of(mp, c) for c in pair] for pair in zip(root, tip, strict=True))
-        bent = (y0 + y1 + (y1 - y0) * u) / 2 + _of(mp, "0.03") * (1 - u * u)
+        (x0, x1), (y0, y1) = ([_exact(mp, c) for c in pair] for pair in zip(root, tip, strict=True))
+        height = (y0 + y1 + (y1 - y0) * u) / 2 + _exact(mp, "0.03") * (1 - u * u)
         # Counterclockwise to either side.
-        width = outwards * _of(mp, "0.007") * mp.sin(turn)
-        return (x0 + x1 + (x1 - x0) * u) / 2, bent + width
+        width = side * _exact(mp, "0.007") * mp.sin(turn)
+        return (x0 + x1 + (x1 - x0) * u) / 2, height + width
 
-    return at
+    return evaluate
 
 
-def _one(name: str, arc: Arc) -> Outline:
+def _outline(name: str, arc: Arc) -> Outline:
     return Outline(name, (arc,))
 
 
 SHAPE = Shape(
     "cat",
     (
-        _one("head", _head),
-        _one(
+        _outline("head", _head),
+        _outline(
             "left inner ear", _triangle(("-0.515", "0.57"), ("-0.045", "0.17"), ("-0.10", "-0.03"))
         ),
-        _one("right inner ear", _triangle(("0.515", "0.57"), ("0.045", "0.17"), ("-0.10", "0.03"))),
-        _one("left eye", _almond(("-0.34", "0.02"), ("0.19", "0.17"), "-0.03")),
-        _one("right eye", _almond(("0.34", "0.02"), ("0.19", "0.17"), "0.03")),
-        _one("left pupil", _ellipse(("-0.33", "0.02"), ("0.05", "0.13"))),
-        _one("right pupil", _ellipse(("0.33", "0.02"), ("0.05", "0.13"))),
-        _one("nose", _triangle(("0", "-0.23"), ("0", "-0.06"), ("0.075", "0"))),
-        _one("mouth", _mouth),
-        _one("left upper whisker", _whisker(("-0.42", "-0.26"), ("-1.12", "-0.10"))),
-        _one("left middle whisker", _whisker(("-0.42", "-0.33"), ("-1.15", "-0.35"))),
-        _one("left lower whisker", _whisker(("-0.42", "-0.40"), ("-1.08", "-0.60"))),
-        _one("right upper whisker", _whisker(("0.42", "-0.26"), ("1.12", "-0.10"))),
-        _one("right middle whisker", _whisker(("0.42", "-0.33"), ("1.15", "-0.35"))),
-        _one("right lower whisker", _whisker(("0.42", "-0.40"), ("1.08", "-0.60"))),
+        _outline(
+            "right inner ear", _triangle(("0.515", "0.57"), ("0.045", "0.17"), ("-0.10", "0.03"))
+        ),
+        _outline("left eye", _almond(("-0.34", "0.02"), ("0.19", "0.17"), "-0.03")),
+        _outline("right eye", _almond(("0.34", "0.02"), ("0.19", "0.17"), "0.03")),
+        _outline("left pupil", _ellipse(("-0.33", "0.02"), ("0.05", "0.13"))),
+        _outline("right pupil", _ellipse(("0.33", "0.02"), ("0.05", "0.13"))),
+        _outline("nose", _triangle(("0", "-0.23"), ("0", "-0.06"), ("0.075", "0"))),
+        _outline("mouth", _mouth),
+        _outline("left upper whisker", _whisker(("-0.42", "-0.26"), ("-1.12", "-0.10"))),
+        _outline("left middle whisker", _whisker(("-0.42", "-0.33"), ("-1.15", "-0.35"))),
+        _outline("left lower whisker", _whisker(("-0.42", "-0.40"), ("-1.08", "-0.60"))),
+        _outline("right upper whisker", _whisker(("0.42", "-0.26"), ("1.12", "-0.10"))),
+        _outline("right middle whisker", _whisker(("0.42", "-0.33"), ("1.15", "-0.35"))),
+        _outline("right lower whisker", _whisker(("0.42", "-0.40"), ("1.08", "-0.60"))),
     ),
 )

@@ -1,10 +1,10 @@
-"""The conditions on a scheme's coefficients for H that depend on time, whatever kind it is of.
+"""The conditions on a scheme's coefficients for H that depend on time, for any kind of scheme.
 
-    conditions = conditions_for(scheme.every_h, Kinetic.MASS)
-    order, violated = agreed_order(conditions, scheme.order)  # of verify.proof.by_conditions
+conditions = conditions_for(scheme.every_h, Kinetic.MASS) order, violated = agreed_order(conditions,
+scheme.order) # of verify.proof.by_conditions
 
-Without times of its own a scheme has the right ones. A scheme that is a series, as `lieη`, has no
-coefficients of which to ask: its order is that of the series, with D = ∂_t + X for X.
+A scheme without specified times has the right ones. A scheme that is a series, as `lieη`, has no
+coefficients to put conditions on: its order is that of the series, with D = ∂_t + X for X.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ def conditions_for(
     kinetic: Kinetic | None = None,
     times: Sequence[sympy.Expr | int | None] = (),
 ) -> Splitting | TreeConditions:
-    """Of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
+    """Return the conditions of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
 
     `kinetic` None: for every H(p, q, t) that the scheme takes. `times`: of each part, or of each
     stage, as parts of h; None for the right one, and without them those of the scheme itself.
@@ -39,27 +39,28 @@ def conditions_for(
     elif isinstance(every_h, RungeKutta):
         count = len(every_h.weights)
         rows = [[*row, *[0] * (count - len(row))] for row in every_h.rows]
-        tableau = ImplicitTableau.of(rows, every_h.weights)
+        tableau = ImplicitTableau.from_numbers(rows, every_h.weights)
     elif isinstance(every_h, StageEquations):
         tableau = _of_stages(every_h)
     else:
         raise InputError("scheme", type(every_h).__name__, "is not given by coefficients")
     of_all = Kinetic.GENERAL if every_h.separable else None
-    return TreeConditions(tableau.at_times(times or None), kinetic or of_all)
+    return TreeConditions(tableau.with_times(times or None), kinetic or of_all)
 
 
 def _of_stages(equations: StageEquations) -> ImplicitTableau:
-    """Stages that are made one after the other; one part where p and q are alike in them."""
-    of_p = _one_after_the_other([(s.kick, s.at_p) for s in equations.stages])
-    of_q = _one_after_the_other([(s.drift, s.at_q) for s in equations.stages])
+    """Return the tableau of stages that are made one after the other; one part where p and q are
+    alike in them."""
+    of_p = _sequential_tableau([(s.kick, s.at_p) for s in equations.stages])
+    of_q = _sequential_tableau([(s.drift, s.at_q) for s in equations.stages])
     return of_p if of_p == of_q else replace(of_p, of_q=of_q)
 
 
-def _one_after_the_other(stages: Sequence[tuple[Fraction, Fraction]]) -> ImplicitTableau:
-    """z_i = z_(i−1) + h b_i f(z_(i−1) + at_i (z_i − z_(i−1)))."""
+def _sequential_tableau(stages: Sequence[tuple[Fraction, Fraction]]) -> ImplicitTableau:
+    """Return the tableau of z_i = z_(i−1) + h b_i f(z_(i−1) + at_i (z_i − z_(i−1)))."""
     weights = [weight for weight, _ in stages]
     rows = [
-        [*weights[:i], at * weight, *[0] * (len(stages) - i - 1)]
-        for i, (weight, at) in enumerate(stages)
+        [*weights[:i], share * weight, *[0] * (len(stages) - i - 1)]
+        for i, (weight, share) in enumerate(stages)
     ]
-    return ImplicitTableau.of(rows, weights)
+    return ImplicitTableau.from_numbers(rows, weights)

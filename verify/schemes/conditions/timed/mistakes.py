@@ -1,7 +1,7 @@
 """Clocks that are wrong in a way that has a name.
 
-The times at which kicks, drifts or stages are taken are compared with what they would be by some
-mistake that is made in practice. Where all those that are read are the same, that is its name.
+The times at which kicks, drifts or stages are taken are compared with those that a common mistake
+would give. Where all times that are read agree with one, that mistake is named.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.algebra.enclosure import enclosed
+from verify.algebra.enclosure import enclose_defined
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.conditions.splitting_conditions import Splitting, sums_before
 
@@ -19,10 +19,10 @@ _PRECISION = 192
 
 @dataclass(frozen=True)
 class Reading:
-    """What is read at `times`, where `right` are the right ones: a force in kicks, say.
+    """Function values read at `times`, where `right` are the right ones: a force in kicks, say.
 
-    `sizes`: what part of h each takes; a part of 0 reads nothing. `own`: what the parts of its own
-    kind add up to before each.
+    `sizes`: the part of h that each takes; a part of 0 reads nothing. `own_kind_sums`: the sums of
+    the parts of its own kind before each.
     """
 
     ring: Ring
@@ -30,39 +30,41 @@ class Reading:
     where: str
     times: Sequence[Poly]
     right: Sequence[Poly]
-    own: Sequence[Poly]
+    own_kind_sums: Sequence[Poly]
     sizes: Sequence[Poly]
 
 
-def mistakes_of_splitting(splitting: Splitting, within: Fraction = Fraction(0)) -> list[str]:
-    """Of the kicks and, where their time counts, of the drifts: what each does, in words.
+def find_mistakes(splitting: Splitting, tolerance: Fraction = Fraction(0)) -> list[str]:
+    """Return the mistakes of the kicks and, where their time counts, of the drifts, in words.
 
-    `within`: how far two times may differ, 0 for exactly; as for clocks that were measured. Empty
-    where the clocks are right, or wrong in no way that has a name.
+    `tolerance`: how far two times may differ, 0 for exactly; positive for clocks that were
+    measured. Empty where the clocks are right, or wrong in no way that has a name.
     """
-    found = (name_of(reading, within) for reading in _of_parts(splitting))
-    return [name for name in found if name is not None]
+    names = (name_of(reading, tolerance) for reading in _of_parts(splitting))
+    return [name for name in names if name is not None]
 
 
 def _of_parts(splitting: Splitting) -> Iterator[Reading]:
     ring, parts = splitting.numbers
     for letter, what, where in (("K", "force", "kick"), ("D", "velocity", "drift")):
-        if splitting.kinetic and letter in splitting.kinetic.timed:
+        if splitting.kinetic and letter in splitting.kinetic.timed_letters:
             both = list(zip(parts, splitting.right, strict=True))
             sizes = [size for (kind, size, _), _ in both if kind == letter]
             times = [time for (kind, _, time), _ in both if kind == letter]
             clocks = [clock for (kind, *_), clock in both if kind == letter]
-            own = sums_before([(letter, size) for size in sizes], ring.zero, own=True)
-            yield Reading(ring, what, where, times, clocks, own, sizes)
+            own_sums = sums_before([(letter, size) for size in sizes], ring.zero, same_kind=True)
+            yield Reading(ring, what, where, times, clocks, own_sums, sizes)
 
 
-def name_of(reading: Reading, within: Fraction) -> str | None:
-    """What mistake the times look like; None where they are right, or wrong in no way known."""
+def name_of(reading: Reading, tolerance: Fraction) -> str | None:
+    """Return the mistake that the times look like; None where they are right, or wrong in no known
+    way."""
     ring = reading.ring
+    # A part of size 0 reads nothing, so its time cannot be wrong.
     read = [k for k, size in enumerate(reading.sizes) if not size.is_zero()]
 
     def same(times: Sequence[Poly], others: Sequence[Poly]) -> bool:
-        return all(_alike(ring, times[k] - others[k], within) for k in read)
+        return all(_alike(ring, times[k] - others[k], tolerance) for k in read)
 
     if same(reading.times, reading.right):
         return None
@@ -72,23 +74,24 @@ def name_of(reading: Reading, within: Fraction) -> str | None:
     return None
 
 
-def _alike(ring: Ring, gap: Poly, within: Fraction) -> bool:
-    if within == 0:
+def _alike(ring: Ring, gap: Poly, tolerance: Fraction) -> bool:
+    if tolerance == 0:
         return ring.decide(gap).zero is True
-    ball = enclosed(ring, ring.reduce(gap), {}, _PRECISION)
-    return bool(abs(ball) <= flint.fmpq(within.numerator, within.denominator))
+    ball = enclose_defined(ring, ring.reduce(gap), {}, _PRECISION)
+    return bool(abs(ball) <= flint.fmpq(tolerance.numerator, tolerance.denominator))
 
 
 def _middle_at(reading: Reading, time: int) -> list[Poly]:
-    """The right clock, but that what is due at the middle is taken at this time."""
+    """Return the right clock, except that parts due at the middle are taken at this time."""
     ring, half = reading.ring, reading.ring.one / 2
     due = [ring.decide(clock - half).zero is True for clock in reading.right]
     return [ring.one * time if d else x for d, x in zip(due, reading.right, strict=True)]
 
 
-def _own_and_itself(reading: Reading) -> list[Poly]:
-    sizes = zip(reading.own, reading.sizes, strict=True)
-    return [reading.ring.reduce(own + size) for own, size in sizes]
+def _own_kind_after(reading: Reading) -> list[Poly]:
+    """Return the sums of the parts of its own kind up to and including each."""
+    sizes = zip(reading.own_kind_sums, reading.sizes, strict=True)
+    return [reading.ring.reduce(before + size) for before, size in sizes]
 
 
 # The first that fits is named: of one kick, say, several may.
@@ -102,9 +105,11 @@ MISTAKES: Mapping[str, Callable[[Reading], Sequence[Poly]]] = {
     ),
     "the {what} in the step's middle is read at its end": lambda r: _middle_at(r, 1),
     "the {what} in the step's middle is read at its start": lambda r: _middle_at(r, 0),
-    "as if each {where} read the clock of its own kind: kick and drift exchanged": lambda r: r.own,
+    "as if each {where} read the clock of its own kind: kick and drift exchanged": lambda r: (
+        r.own_kind_sums
+    ),
     "as if each {where} read the clock of its own kind, after it: kick and drift exchanged": (
-        _own_and_itself
+        _own_kind_after
     ),
     "every {where} reads the time of the one before it": lambda r: [r.ring.zero, *r.right[:-1]],
     "every {where} reads the time of the one after it": lambda r: [*r.right[1:], r.ring.one],

@@ -1,4 +1,4 @@
-"""Conditions on a step's coefficients of words, as they can be asked over any numbers.
+"""Conditions on a step's coefficients of words, which can be evaluated over any numbers.
 
 See `verify.schemes.conditions.splitting_conditions`, which decides them in a ring.
 """
@@ -12,60 +12,64 @@ from typing import Any, Literal
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.quadratic import Combination, combinations
 from verify.schemes.conditions.words.step_words import StepWords, factors
-from verify.schemes.conditions.words.words import Word, lyndon, of_the_flow, text, weight
+from verify.schemes.conditions.words.words import Word, flow_coefficient, lyndon, text, weight
 
 _PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
 
 
 @dataclass(frozen=True)
 class WordEquation:
-    """Of a combination of words' coefficients `of` the step, its generator or its logarithm."""
+    """A condition on a combination of words' coefficients in the `operator`: the step, its
+    generator or its logarithm."""
 
     name: str
     order: int
     terms: Combination
     value: Fraction
-    of: Literal["step", "generator", "logarithm"] = "step"
+    operator: Literal["step", "generator", "logarithm"] = "step"
 
     @property
-    def needed(self) -> frozenset[Word]:
+    def words_to_prepare(self) -> frozenset[Word]:
         """The words whose coefficients are to be prepared."""
-        if self.of == "step":
+        if self.operator == "step":
             return frozenset(word for _, word in self.terms)
         return frozenset(x for _, word in self.terms for x in factors(word))
 
     def residue(self, words: StepWords) -> Any:
-        """Left side − right side; with every sign plus where the step's numbers are bounds."""
+        """Return left side − right side; with every sign plus where the step's numbers are
+        bounds."""
         one = words.ring.one * self.value.numerator / self.value.denominator
+        # A bound adds absolute values: left side plus right side.
         total = one if words.bound else -one
-        made = {"generator": words.generator, "logarithm": words.logarithm}
-        coefficient = made.get(self.of, words.coefficient)
+        coefficient_functions = {"generator": words.generator, "logarithm": words.logarithm}
+        coefficient = coefficient_functions.get(self.operator, words.coefficient)
         for n, word in self.terms:
             total += coefficient(word) * (abs(n) if words.bound else n)
         return total
 
 
 def residues_of(equations: Sequence[WordEquation], words: StepWords) -> list[Any]:
-    """All of them, their words made together."""
-    words.prepare(_needed(tuple(equations)))
+    """Return the residuals of all equations, their words computed together."""
+    words.prepare(_words_to_prepare(tuple(equations)))
     return [each.residue(words) for each in equations]
 
 
 @lru_cache(maxsize=256)
-def _needed(equations: tuple[WordEquation, ...]) -> frozenset[Word]:
-    return frozenset(word for each in equations for word in each.needed)
+def _words_to_prepare(equations: tuple[WordEquation, ...]) -> frozenset[Word]:
+    return frozenset(word for each in equations for word in each.words_to_prepare)
 
 
 @cache
 def equations_of(kinetic: Kinetic | None, n: int) -> tuple[WordEquation, ...]:
-    """Those of weight n for every V and every T of the class; None: without time."""
+    """Return the conditions of weight n for every V and every T of the class; None: without
+    time."""
     if kinetic is not None and kinetic.quadratic and n > _PLAIN:
-        return tuple(map(_of_generator, combinations(kinetic.timed, n)))
-    return tuple(map(_of_word, lyndon(kinetic.timed if kinetic else "", n)))
+        return tuple(map(_of_generator, combinations(kinetic.timed_letters, n)))
+    return tuple(map(_of_word, lyndon(kinetic.timed_letters if kinetic else "", n)))
 
 
 def _of_word(word: Word) -> WordEquation:
-    flow = of_the_flow(word)
+    flow = flow_coefficient(word)
     return WordEquation(_equation(word, flow), weight(word), ((1, word),), flow)
 
 
@@ -78,7 +82,7 @@ def _of_generator(row: Combination) -> WordEquation:
 
 
 def _equation(word: Word, flow: Fraction) -> str:
-    """The word's condition; of one letter also as a sum over the parts.
+    """Return the word's condition; of one letter also as a sum over the parts.
 
     >>> _equation((("K", 1),), Fraction(1, 2))
     'Σ kicks·time = 1/2, coefficient of K1 = 1/2'

@@ -1,4 +1,4 @@
-"""Which combinations of Lyndon words count where T = p²/(2m).
+"""The combinations of Lyndon words that count where T = p²/(2m).
 
 Then D_n is m_n p²/2, with 1/m = Σ m_n tⁿ, and the bracket of letters is a polynomial in p, in the
 m_n and in the derivatives of the functions V_n(q), which are all free. Some are 0, as
@@ -26,7 +26,8 @@ _MOST = 8  # the weight of words
 
 @cache
 def combinations(kinds: str, weight: int) -> tuple[Combination, ...]:
-    """Those of that weight that vanish exactly where a Lie polynomial's Hamiltonian does.
+    """Return the combinations of that weight that vanish exactly where a Lie polynomial's
+    Hamiltonian does.
 
     `kinds`: those whose time counts, "KD" where m depends on t, "K" where it does not.
     """
@@ -42,60 +43,65 @@ def _of_letters(letters: Word, leading: list[Word]) -> Iterator[Combination]:
     monomials = sorted({m for h in hamiltonians for m in h})
     if not monomials:
         return
-    # With C the brackets' coefficients of the words, c = y C; what is to vanish is y M = c C⁻¹ M.
+    # With C the brackets' coefficients of the words, c = y C; y M = c C⁻¹ M must vanish.
     coefficients = flint.fmpq_mat([[b.words.get(w, 0) for w in leading] for b in brackets])
     values = flint.fmpq_mat([[h.get(m, 0) for m in monomials] for h in hamiltonians])
-    reduced, rank = (coefficients.inv() * values).transpose().rref()
+    echelon, rank = (coefficients.inv() * values).transpose().rref()
     for i in range(rank):
-        row = [reduced[i, j] for j in range(len(leading))]
-        shared = lcm(*(int(x.q) for x in row))
+        row = [echelon[i, j] for j in range(len(leading))]
+        denominator = lcm(*(int(x.q) for x in row))
         yield tuple(
-            (int(x.p) * (shared // int(x.q)), w) for x, w in zip(row, leading, strict=True) if x
+            (int(x.p) * (denominator // int(x.q)), w)
+            for x, w in zip(row, leading, strict=True)
+            if x
         )
 
 
 @dataclass(frozen=True)
 class _Bracket:
-    """Of letters: its words, each with its coefficient, and its Hamiltonian."""
+    """A bracket of letters: its words, each with its coefficient, and its Hamiltonian."""
 
     words: Mapping[Word, int]
     hamiltonian: Poly
 
     def with_letter(self, letter: Letter) -> "_Bracket":
-        """[letter, this one]."""
+        """Return [letter, this one]."""
         return _Bracket(bracket(letter, self.words), _poisson(letter, self.hamiltonian))
 
 
 @cache
 def _brackets(letters: Word) -> tuple[_Bracket, ...]:
-    """A basis of the brackets of these letters, each of them as often as it is there."""
+    """Return a basis of the brackets of these letters, each used as often as it occurs."""
     if len(letters) == 1:
         return (_Bracket({letters: 1}, _of_letter(letters[0])),)
     spanning = []
     for letter in dict.fromkeys(letters):
         others = list(letters)
         others.remove(letter)
+        # Brackets nested to the right span all brackets, with each letter in turn as the outermost.
         spanning += [b.with_letter(letter) for b in _brackets(tuple(others))]
     words = sorted({w for b in spanning for w in b.words})
     if not words:
         return ()
     matrix = flint.fmpq_mat([[b.words.get(w, 0) for b in spanning] for w in words])
-    reduced, rank = matrix.rref()
+    # The pivot columns are the first independent brackets.
+    echelon, rank = matrix.rref()
     columns = range(len(spanning))
-    return tuple(spanning[next(j for j in columns if reduced[i, j])] for i in range(rank))
+    return tuple(spanning[next(j for j in columns if echelon[i, j])] for i in range(rank))
 
 
 def _of_letter(letter: Letter) -> Poly:
-    """Its Hamiltonian, in jets: those of ∂_q ∂_tⁿ V by q are as free as those of V_n."""
+    """Return the Hamiltonian of a letter, in jets: those of ∂_q ∂_tⁿ V by q are as free as those of
+    V_n."""
     kind, n = letter
-    return _jets().variable("p") ** 2 / 2 if kind == "D" else _jets().of((0, 1, n))
+    return _jets().variable("p") ** 2 / 2 if kind == "D" else _jets().derivative((0, 1, n))
 
 
 def _poisson(letter: Letter, x: Poly) -> Poly:
-    """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
+    """Return {letter, x} with {a, b} = a_p b_q − a_q b_p."""
     kind, n = letter
     if kind == "K":
-        return -_jets().of((0, 2, n)) * x.derivative(0)
+        return -_jets().derivative((0, 2, n)) * x.derivative(0)
     return _jets().variable("p") * _jets().diff(x, "q")
 
 

@@ -26,7 +26,7 @@ Heads = tuple[tuple[int, int], ...]  # places of heads and of their tails
 
 
 class Numbers(Protocol):
-    """What a step's coefficients are made in: a ring, or numbers that need no reduction."""
+    """The numbers of a step's coefficients: a ring, or numbers that need no reduction."""
 
     @property
     def zero(self) -> Any: ...
@@ -44,86 +44,90 @@ class PlainNumbers:
 
     @property
     def zero(self) -> Any:
-        """0."""
+        """The number 0."""
         return self.one * 0
 
     def reduce(self, x: Any) -> Any:
-        """x itself."""
+        """Return x itself."""
         return x
 
     def multiply(self, x: Any, y: Any) -> Any:
-        """The product."""
+        """Return the product."""
         return x * y
 
 
 class StepWords:
-    """The coefficients of a step, each made once. `bound`: with every sign plus."""
+    """The coefficients of words in a step, each computed once. `bound`: with every sign plus."""
 
     def __init__(self, ring: Numbers, parts: Sequence[TimedPart], bound: bool = False) -> None:
         self.ring, self.parts, self.bound = ring, parts, bound
-        self._known: dict[Word, Any] = {}
-        self._generated: dict[Word, Any] = {}
+        self._coefficients: dict[Word, Any] = {}
+        self._generators: dict[Word, Any] = {}
 
     def coefficient(self, word: Word) -> Any:
-        """The word's in the step; `prepare` makes those of many together."""
-        if word not in self._known:
+        """Return the word's coefficient in the step; `prepare` computes those of many words
+        together."""
+        if word not in self._coefficients:
             self.prepare([word])
-        return self._known[word]
+        return self._coefficients[word]
 
     def prepare(self, words: Iterable[Word]) -> None:
-        """All of their heads are found in one passage over the parts."""
-        asked = frozenset(words)
-        if asked <= self._known.keys():
+        """Compute the coefficients of all these words and their heads in one pass over the
+        parts."""
+        requested = frozenset(words)
+        if requested <= self._coefficients.keys():
             return
-        ring, plan = self.ring, _planned(asked, frozenset(kinds for kinds, *_ in self.parts))
-        reached: list[Any] = [None if word else ring.one for word in plan.words]
+        ring, plan = self.ring, _make_plan(requested, frozenset(kinds for kinds, *_ in self.parts))
+        totals: list[Any] = [None if word else ring.one for word in plan.words]
         for kinds, size, time in self.parts:
             shares = _shares(ring, plan.tails[kinds], len(kinds) == 1, size, time)
             for place, heads in plan.heads[kinds]:  # a head is shorter, and is not yet this part's
-                total = reached[place]
+                total = totals[place]
                 for head, tail in heads:
-                    before = reached[head]
+                    before = totals[head]
                     if before is not None:
                         term = shares[tail] * before
                         total = term if total is None else total + term
-                reached[place] = None if total is None else ring.reduce(total)
-        values = (ring.zero if x is None else x for x in reached)
-        self._known |= dict(zip(plan.words, values, strict=True))
+                totals[place] = None if total is None else ring.reduce(total)
+        values = (ring.zero if x is None else x for x in totals)
+        self._coefficients |= dict(zip(plan.words, values, strict=True))
 
     def generator(self, word: Word) -> Any:
-        """The word's in G."""
-        if word not in self._generated:
+        """Return the word's coefficient in G."""
+        if word not in self._generators:
             total = self.coefficient(word) * weight(word)
+            # The recursion of the module's text, over all cuts with neither piece empty.
             for head, tail in cuts(word):
                 share = self.coefficient(head) * self.generator(tail)
                 total = total + share if self.bound else total - share
-            self._generated[word] = self.ring.reduce(total)
-        return self._generated[word]
+            self._generators[word] = self.ring.reduce(total)
+        return self._generators[word]
 
     def logarithm(self, word: Word) -> Any:
-        """The word's in log S, of letters without time: Σ (−1)^(k+1)/k over its cuts into k
-        pieces."""
+        """Return the word's coefficient in log S, of letters without time: Σ (−1)^(k+1)/k over its
+        cuts into k pieces."""
         size, sign = len(word), 1 if self.bound else -1
-        reached: list[Any] = [self.ring.one, *[None] * size]
+        totals: list[Any] = [self.ring.one, *[None] * size]
         total = self.ring.zero
+        # totals[end] is the sum over the cuts of the first `end` letters into that many pieces.
         for pieces in range(1, size + 1):
             after: list[Any] = [None] * (size + 1)
             for end in range(pieces, size + 1):
-                made = [
+                products = [
                     before * self.coefficient(word[begin:end])
-                    for begin, before in enumerate(reached[:end])
+                    for begin, before in enumerate(totals[:end])
                     if before is not None
                 ]
-                after[end] = sum(made[1:], made[0]) if made else None
-            reached = after
-            if reached[size] is not None:
-                total = total + reached[size] * (self.ring.one * sign ** (pieces + 1) / pieces)
+                after[end] = sum(products[1:], products[0]) if products else None
+            totals = after
+            if totals[size] is not None:
+                total = total + totals[size] * (self.ring.one * sign ** (pieces + 1) / pieces)
         return self.ring.reduce(total)
 
 
 @cache
 def factors(word: Word) -> frozenset[Word]:
-    """The heads of its tails, of which `StepWords.generator` takes the coefficients."""
+    """Return the heads of its tails, whose coefficients `StepWords.generator` reads."""
     tails = [word, *(tail for _, tail in cuts(word))]
     return frozenset(x for tail in tails for x in (tail, *(head for head, _ in cuts(tail))))
 
@@ -133,9 +137,9 @@ def factors(word: Word) -> frozenset[Word]:
 
 @dataclass(frozen=True)
 class _Plan:
-    """`words`: those asked for and their heads, the longest first; by the kinds of a part's letters
-    `tails`, each after its own head, and `heads`: the places of words that end in such letters,
-    with those of heads and of tails."""
+    """A plan for one pass: `words`: those requested and their heads, the longest first; by the
+    kinds of a part's letters `tails`, each after its own head, and `heads`: the places of words
+    that end in such letters, with those of heads and of tails."""
 
     words: tuple[Word, ...]
     tails: dict[str, tuple[Word, ...]]
@@ -143,50 +147,55 @@ class _Plan:
 
 
 @lru_cache(maxsize=256)
-def _planned(asked: frozenset[Word], kinds: frozenset[str]) -> _Plan:
-    needed, left = {(), *asked}, list(asked)
-    while left:
-        word = left.pop()
-        more = {head for own in kinds for head, _ in _ended(word, own)} - needed
-        needed |= more
-        left += more
-    words = tuple(sorted(needed, key=len, reverse=True))
+def _make_plan(requested: frozenset[Word], kinds: frozenset[str]) -> _Plan:
+    needed_words, pending = {(), *requested}, list(requested)
+    while pending:
+        word = pending.pop()
+        more = {
+            head for letter_kinds in kinds for head, _ in _head_tail_pairs(word, letter_kinds)
+        } - needed_words
+        needed_words |= more
+        pending += more
+    words = tuple(sorted(needed_words, key=len, reverse=True))
     places = {word: k for k, word in enumerate(words)}
     tails, heads = {}, {}
-    for own in kinds:
-        ended = {word: _ended(word, own) for word in words}
-        found = {
-            tail[:n] for each in ended.values() for _, tail in each for n in range(1, len(tail) + 1)
+    for letter_kinds in kinds:
+        splits = {word: _head_tail_pairs(word, letter_kinds) for word in words}
+        tail_prefixes = {
+            tail[:n]
+            for each in splits.values()
+            for _, tail in each
+            for n in range(1, len(tail) + 1)
         }
-        tails[own] = tuple(sorted(found, key=len))
-        at = {tail: k for k, tail in enumerate(tails[own])}
-        heads[own] = tuple(
-            (places[word], tuple((places[head], at[tail]) for head, tail in each))
-            for word, each in ended.items()
+        tails[letter_kinds] = tuple(sorted(tail_prefixes, key=len))
+        tail_places = {tail: k for k, tail in enumerate(tails[letter_kinds])}
+        heads[letter_kinds] = tuple(
+            (places[word], tuple((places[head], tail_places[tail]) for head, tail in each))
+            for word, each in splits.items()
             if each
         )
     return _Plan(words, tails, heads)
 
 
 @cache
-def _ended(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
-    """(head, tail) for each tail, not empty, in letters of these kinds."""
+def _head_tail_pairs(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
+    """Return (head, tail) for each tail, not empty, in letters of these kinds."""
     if len(kinds) == 1:
         return endings(word) if word and word[-1][0] == kinds else ()
     return tuple((word[:k], word[k:]) for k in reversed(range(len(word))))
 
 
 def _shares(ring: Numbers, tails: Sequence[Word], commute: bool, size: Any, time: Any) -> list[Any]:
-    """The coefficients of exp(a Σ sⁿ X_n): Π a sⁿ, less what its orders count, m! of m letters; of
-    those that commute m! of each alone."""
+    """Return the coefficients of exp(a Σ sⁿ X_n): Π a sⁿ, divided by the number of its orders, m!
+    for m letters; of commuting letters m! for each alone."""
     powers = [size]
     for _ in range(max((n for tail in tails for _, n in tail), default=0)):
         powers.append(ring.multiply(powers[-1], time))
-    found: dict[Word, Any] = {}
+    coefficients: dict[Word, Any] = {}
     for tail in tails:
         share = powers[tail[-1][1]]
         if len(tail) > 1:
             orders = tail.count(tail[-1]) if commute else len(tail)
-            share = ring.multiply(found[tail[:-1]], share) / orders
-        found[tail] = share
-    return list(found.values())
+            share = ring.multiply(coefficients[tail[:-1]], share) / orders
+        coefficients[tail] = share
+    return list(coefficients.values())

@@ -24,7 +24,7 @@ Word = tuple[Letter, ...]
 
 
 def weight(word: Word) -> int:
-    """The power of h that it comes with.
+    """Return the power of h that the word comes with.
 
     >>> weight((("K", 1), ("D", 0)))
     3
@@ -33,7 +33,7 @@ def weight(word: Word) -> int:
 
 
 def text(word: Word) -> str:
-    """As it is written; without indices where none depends on time.
+    """Return the word as it is written; without indices where none depends on time.
 
     >>> text((("D", 0), ("K", 1))), text((("D", 0), ("K", 0)))
     ('D0 K1', 'DK')
@@ -43,18 +43,19 @@ def text(word: Word) -> str:
     return "".join(kind for kind, _ in word)
 
 
-def joined(head: Word, tail: Word) -> Word:
-    """The product."""
+def concatenate(head: Word, tail: Word) -> Word:
+    """Return the product of two words."""
     if head and tail and head[-1][0] == tail[0][0]:
         cut = len(head) - len(last_run(head))
         end = next((k for k, x in enumerate(tail) if x[0] != tail[0][0]), len(tail))
+        # Letters of one kind commute: where two runs meet they are merged in falling order.
         run = sorted(head[cut:] + tail[:end], reverse=True)
         return (*head[:cut], *run, *tail[end:])
     return head + tail
 
 
 def last_run(word: Word) -> Word:
-    """The letters at its end that are of one kind."""
+    """Return the letters at its end that are of one kind."""
     cut = len(word)
     while cut and word[cut - 1][0] == word[-1][0]:
         cut -= 1
@@ -63,26 +64,27 @@ def last_run(word: Word) -> Word:
 
 @cache
 def endings(word: Word) -> tuple[tuple[Word, Word], ...]:
-    """(head, tail) for each tail, not empty, that its last run contains: head · tail is the word.
+    """Return (head, tail) for each tail, not empty, that its last run contains: head · tail is the
+    word.
 
     >>> [text(tail) for _, tail in endings((("D", 0), ("K", 1), ("K", 0)))]
     ['K', 'K1', 'K1 K0']
     """
     run = last_run(word)
-    rest = word[: len(word) - len(run)]
+    before = word[: len(word) - len(run)]
     counts = sorted(Counter(run).items(), reverse=True)
-    found: list[tuple[Word, Word]] = [((), ())]
+    pairs: list[tuple[Word, Word]] = [((), ())]
     for letter, many in counts:
         shares = range(many + 1)
-        found = [(a + (letter,) * (many - k), b + (letter,) * k) for a, b in found for k in shares]
-    return tuple((rest + a, b) for a, b in found if b)
+        pairs = [(a + (letter,) * (many - k), b + (letter,) * k) for a, b in pairs for k in shares]
+    return tuple((before + a, b) for a, b in pairs if b)
 
 
 @cache
 def cuts(word: Word) -> tuple[tuple[Word, Word], ...]:
-    """(head, tail) with head · tail the word, each pair once; neither is empty."""
-    found = dict.fromkeys(_cuts(word))
-    return tuple((head, tail) for head, tail in found if head and tail)
+    """Return (head, tail) with head · tail the word, each pair once; neither is empty."""
+    pairs = dict.fromkeys(_cuts(word))
+    return tuple((head, tail) for head, tail in pairs if head and tail)
 
 
 def _cuts(word: Word) -> Iterator[tuple[Word, Word]]:
@@ -91,13 +93,15 @@ def _cuts(word: Word) -> Iterator[tuple[Word, Word]]:
         for head, tail in endings(word):
             yield head, tail
         run = last_run(word)
+        # A cut before the last run takes that run whole into the tail, where letters may commute
+        # with it.
         for head, tail in _cuts(word[: len(word) - len(run)]):
-            yield head, joined(tail, run)
+            yield head, concatenate(tail, run)
 
 
 def letters(kinds: str, most: int) -> list[Letter]:
-    """Those of weights up to `most`: K_n and D_n, n > 0 of the kinds whose time counts, as "K"
-    where only V depends on t; or, of `STEPS`, Y_1, Y_3, …, each a kind by itself."""
+    """Return the letters of weights up to `most`: K_n and D_n, n > 0 of the kinds whose time
+    counts, as "K" where only V depends on t; or, of `STEPS`, Y_1, Y_3, …, each a kind by itself."""
     if kinds == STEPS:
         return [(kind, int(kind) - 1) for kind in kinds if int(kind) <= most]
     return [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
@@ -105,16 +109,18 @@ def letters(kinds: str, most: int) -> list[Letter]:
 
 @cache
 def words(kinds: str, most: int) -> tuple[Word, ...]:
-    """All of that weight in these letters."""
+    """Return all words of that weight in these letters."""
     if most == 0:
         return ((),)
-    found = {joined(w, (x,)) for x in letters(kinds, most) for w in words(kinds, most - 1 - x[1])}
-    return tuple(sorted(sorted(found), key=len) if kinds == STEPS else sorted(found))
+    all_words = {
+        concatenate(w, (x,)) for x in letters(kinds, most) for w in words(kinds, most - 1 - x[1])
+    }
+    return tuple(sorted(sorted(all_words), key=len) if kinds == STEPS else sorted(all_words))
 
 
 @cache
 def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
-    """The Lyndon words of that weight.
+    """Return the Lyndon words of that weight.
 
     >>> [text(word) for word in lyndon("KD", 2)]
     ['DK', 'D1', 'K1']
@@ -123,17 +129,17 @@ def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
 
 
 def bracket(letter: Letter, element: Mapping[Word, int]) -> dict[Word, int]:
-    """[letter, element], numbers by words."""
-    found = Counter[Word]()
+    """Return [letter, element], numbers by words."""
+    coefficients = Counter[Word]()
     for word, n in element.items():
-        found[joined((letter,), word)] += n
-        found[joined(word, (letter,))] -= n
-    return {word: n for word, n in found.items() if n}
+        coefficients[concatenate((letter,), word)] += n
+        coefficients[concatenate(word, (letter,))] -= n
+    return {word: n for word, n in coefficients.items() if n}
 
 
 @cache
-def of_the_flow(word: Word) -> Fraction:
-    """The word's coefficient in the exact flow over a step of 1.
+def flow_coefficient(word: Word) -> Fraction:
+    """Return the word's coefficient in the exact flow over a step of 1.
 
     That of letters in an order is ∫ τ_1^n_1 … τ_m^n_m over 0 < τ_1 < … < τ_m < 1, which is
     Π 1/(weight of the first k letters); of a run all orders are added up.
@@ -141,4 +147,4 @@ def of_the_flow(word: Word) -> Fraction:
     if not word:
         return Fraction(1)
     heads = [head for head, tail in endings(word) if len(tail) == 1]
-    return sum(map(of_the_flow, heads), Fraction(0)) / weight(word)
+    return sum(map(flow_coefficient, heads), Fraction(0)) / weight(word)

@@ -18,10 +18,12 @@ RESERVED = frozenset(_WORDS.split())
 
 
 class _Printer(C99CodePrinter):  # type: ignore[misc]
-    """With products in place of small powers, which are faster, and doubles throughout."""
+    """A printer that writes products in place of small powers, which are faster, and doubles
+    throughout."""
 
     def _print_Pow(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
         base = self.parenthesize(expr.base, sympy.printing.precedence.PRECEDENCE["Pow"])
+        # Small powers are written as products, which avoids calls of pow.
         if expr.exp.is_Integer and expr.base.is_Symbol and 2 <= int(expr.exp) <= 4:
             return f"({'*'.join([base] * int(expr.exp))})"
         return str(super()._print_Pow(expr))
@@ -30,8 +32,8 @@ class _Printer(C99CodePrinter):  # type: ignore[misc]
         return f"{int(expr)}.0"
 
 
-def written(program: Program) -> str:
-    """The whole file."""
+def render(program: Program) -> str:
+    """Return the whole file."""
     lines = [*(f"// {line}" for line in program.head()), "", "#include <math.h>", ""]
     lines += [
         f"static const double {c.name} = {c.literal};  // {c.comment}" for c in program.constants
@@ -42,12 +44,12 @@ def written(program: Program) -> str:
 
 
 def _function(program: Program, key: str) -> list[str]:
-    own, outputs = program.functions[key], program.outputs[key]
-    given = ", ".join(f"double {name}" for name in program.arguments)
+    statements, outputs = program.functions[key], program.outputs[key]
+    arguments = ", ".join(f"double {name}" for name in program.arguments)
     name = program.name if key == "step" else f"{program.name}_{key}"
     printer, declared = _Printer(), set(program.arguments)
     body = []
-    for target, x in own:
+    for target, x in statements:
         value = printer.doprint(x)
         if key != "delta_j" and target in outputs:
             body.append(f"    out[{outputs.index(target)}] = {value};")
@@ -56,13 +58,13 @@ def _function(program: Program, key: str) -> list[str]:
         else:
             body.append(f"    {'' if target in declared else 'double '}{target} = {value};")
             declared.add(target)
-    unused = [n for n in program.arguments if not any(_uses(x, n) for _, x in own)]
+    unused = [n for n in program.arguments if not any(_uses(x, n) for _, x in statements)]
     body = [*(f"    (void){n};" for n in unused), *body]
     if key == "delta_j":
-        return [f"double {name}({given})", "{", *body, "}"]
+        return [f"double {name}({arguments})", "{", *body, "}"]
     return [
         f"// {_end(program.coordinates, key)}",
-        f"void {name}({given}, double *out)",
+        f"void {name}({arguments}, double *out)",
         "{",
         *body,
         "}",
@@ -70,11 +72,11 @@ def _function(program: Program, key: str) -> list[str]:
 
 
 def _end(names: Sequence[str], key: str) -> str:
-    """What a function writes into `out`."""
-    own = [f"{x}'" for x in names]
+    """Return a description of the values that a function writes into `out`."""
+    entries = [f"{x}'" for x in names]
     if key == "jacobian":
-        own = [f"d{x}'/d{y}" for x in names for y in names]
-    return f"out[{len(own)}]: {', '.join(own)}"
+        entries = [f"d{x}'/d{y}" for x in names for y in names]
+    return f"out[{len(entries)}]: {', '.join(entries)}"
 
 
 def _uses(x: sympy.Expr, name: str) -> bool:

@@ -16,14 +16,14 @@ RESERVED = frozenset(_WORDS.split())
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
-    """sympy's text form with ^ for powers."""
+    """A printer of sympy's text form with ^ for powers."""
 
     def _print_Pow(self, expr: sympy.Expr, rational: bool = False) -> str:  # noqa: N802
         return str(super()._print_Pow(expr, rational)).replace("**", "^")
 
 
-def written(program: Program) -> str:
-    """The whole file."""
+def render(program: Program) -> str:
+    """Return the whole file."""
     head = [f"# {line}" for line in program.head()]
     constants = [f"const {c.name} = {c.literal}  # {c.comment}" for c in program.constants]
     functions = [line for key in program.outputs for line in _function(program, key)]

@@ -11,8 +11,8 @@ SUFFIX = ".py"
 RESERVED = frozenset({*keyword.kwlist, "math", "float"})
 
 
-def written(program: Program) -> str:
-    """The whole module."""
+def render(program: Program) -> str:
+    """Return the whole module."""
     head = [f"# {line}" for line in program.head()]
     constants = [f"{c.name} = {c.literal}  # {c.comment}" for c in program.constants]
     functions = [line for key in program.outputs for line in _function(program, key)]

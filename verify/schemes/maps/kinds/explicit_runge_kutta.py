@@ -16,7 +16,7 @@ def build(
     name: str = "",
     standing: Fraction | None = None,
 ) -> StepMap:
-    """The map for any H.
+    """Return the map for any H.
 
     `standing`: the clock stands at t + so many h, which is wrong (see
     `verify.schemes.methods.user.wrong_clocks`); None for the right one.
@@ -26,5 +26,5 @@ def build(
 
 
 def conditions(_: RungeKutta, degrees: int) -> tuple[Condition, ...]:
-    """None: no explicit method is symplectic for every H."""
+    """Return no conditions: no explicit method is symplectic for every H."""
     return ()

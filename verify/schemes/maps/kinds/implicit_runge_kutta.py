@@ -24,26 +24,26 @@ from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau, implicit_step
 from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.conditions.tree_order import order_of
-from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.by_formulas import map_from_expressions
 from verify.schemes.maps.step_map import StepMap
 
 
 def build(coefficients: TreeConditions, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
-    """The map for any H."""
+    """Return the map for any H."""
     return implicit_map(hamiltonian, coefficients.tableau)
 
 
 @lru_cache(maxsize=64)
 def implicit_map(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
-    """The map for any H: by its equations; in closed form for a quadratic H in the plane."""
-    closed = None
+    """Return the map for any H: by its equations; in closed form for a quadratic H in the plane."""
+    closed_form = None
     if hamiltonian.planar and not hamiltonian.time_dependent:
-        closed = _linear(hamiltonian, tableau)
-    return closed or by_equations(hamiltonian, tableau)
+        closed_form = _linear(hamiltonian, tableau)
+    return closed_form or by_equations(hamiltonian, tableau)
 
 
 def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
-    """The map by its equations, for any H."""
+    """Return the map by its equations, for any H."""
     count = tableau.stages
     numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
     field, exact = canonical_field(hamiltonian, *numbers)
@@ -51,7 +51,8 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
     clocks = [sum(row, field.ring.zero) for row in rows]
 
     def known_order() -> int | None:
-        """By rooted trees, which are those of an autonomous H, by its derivatives by p and q."""
+        """Return the order by rooted trees, which are those of an autonomous H, by its derivatives
+        by p and q."""
         return order_of(tableau, field) if hamiltonian.planar and not field.timed else None
 
     return StepMap(
@@ -66,7 +67,7 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
 
 
 def conditions(coefficients: TreeConditions, degrees: int) -> tuple[Condition, ...]:
-    """Those of the module's text."""
+    """Return the conditions of the module's text."""
     return coefficients.tableau.area_conditions()
 
 
@@ -74,7 +75,7 @@ def conditions(coefficients: TreeConditions, degrees: int) -> tuple[Condition, .
 
 
 def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | None:
-    """The closed form for a quadratic H; None for another.
+    """Return the closed form for a quadratic H; None for another.
 
     f(z + d) = f(z) + M d with M² = −D, D = det Hess H, and z' = z + h ρ(hM) f(z) with
     ρ(μ) = (R(μ) − 1)/μ, R the method's stability function (Hairer, Wanner, II, IV.3). With the
@@ -88,12 +89,13 @@ def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | Non
     if any(ring.vanishes(ring.diff(x, n)) is not True for x in matrix for n in field.names):
         return None
     u, v, u_p, u_q, v_p, v_q = map(ring.expression, (u, v, *matrix))
+    # μ² = −h² D by Cayley and Hamilton, as the trace of M is 0.
     square = -(h**2) * (u_p * v_q - u_q * v_p)
     alpha, beta, gamma = (x.subs(_square(), square) for x in _of_matrix(tableau))
     more_u, more_v = u_p * u + u_q * v, v_p * u + v_q * v
     p_next = p + h * (alpha * u + beta * h * more_u) / gamma
     q_next = q + h * (alpha * v + beta * h * more_v) / gamma
-    return map_by_expressions(hamiltonian, (p_next, q_next))
+    return map_from_expressions(hamiltonian, (p_next, q_next))
 
 
 def _square() -> sympy.Symbol:
@@ -102,15 +104,16 @@ def _square() -> sympy.Symbol:
 
 @lru_cache(maxsize=64)
 def _of_matrix(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
-    """α, β and γ as polynomials in μ²; see `_linear`."""
+    """Return α, β and γ as polynomials in μ²; see `_linear`."""
     count, mu = tableau.stages, sympy.Symbol("mu")  # an eigenvalue of hM
     a, b = sympy.Matrix(tableau.rows), sympy.Matrix([tableau.weights])
-    left = sympy.eye(count) - mu * a
-    below = sympy.expand(left.det(method="berkowitz"))
-    above = sympy.expand((left + mu * sympy.ones(count, 1) * b).det(method="berkowitz"))
+    pencil = sympy.eye(count) - mu * a
+    below = sympy.expand(pencil.det(method="berkowitz"))
+    above = sympy.expand((pencil + mu * sympy.ones(count, 1) * b).det(method="berkowitz"))
     rho = sympy.expand(sympy.expand(above - below) / mu)
-    mirrored = below.subs(mu, -mu)
-    numerator, even = (sympy.Poly(sympy.expand(x * mirrored), mu) for x in (rho, below))
+    # With the denominator at −μ as a factor above and below, the new denominator is even in μ.
+    below_mirrored = below.subs(mu, -mu)
+    numerator, even = (sympy.Poly(sympy.expand(x * below_mirrored), mu) for x in (rho, below))
     parts = [sympy.S.Zero] * 2
     for (n,), c in numerator.terms():
         parts[n % 2] += c * _square() ** (n // 2)

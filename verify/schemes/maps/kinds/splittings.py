@@ -21,12 +21,12 @@ from verify.schemes.steps.step_algebra import Step, StepAlgebra
 
 
 def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepMap:
-    """The map of H = T(p) + V(q), or T(p, t) + V(q, t); InputError for another H."""
-    parts = coefficients.given
+    """Return the map of H = T(p) + V(q), or T(p, t) + V(q, t); InputError for another H."""
+    parts = coefficients.raw_parts
     field, sizes, times = _with_numbers(hamiltonian, coefficients)
     if not field.separable:
-        shown = str(hamiltonian.expression)
-        raise InputError("hamiltonian", shown, f"{name} is explicit only for H = T(p) + V(q)")
+        formula = str(hamiltonian.expression)
+        raise InputError("hamiltonian", formula, f"{name} is explicit only for H = T(p) + V(q)")
     step = _shears([kind for kind, _ in parts], sizes, times)
     return StepMap(
         hamiltonian, field, step, conditions=conditions(coefficients, hamiltonian.degrees)
@@ -36,48 +36,50 @@ def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepM
 def _with_numbers(
     hamiltonian: Hamiltonian, coefficients: Splitting
 ) -> tuple[CanonicalField, Sequence[Poly], Sequence[Poly]]:
-    """The field of H, and the sizes and times of the parts in its ring."""
-    parts = coefficients.given
-    timed = hamiltonian.time_dependent
+    """Return the field of H, and the sizes and times of the parts in its ring."""
+    parts = coefficients.raw_parts
+    is_timed = hamiltonian.time_dependent
     rational = [size for _, size in parts if isinstance(size, Fraction)]
-    if len(rational) == len(parts) and not timed:
+    # Rational sizes need no embedding, and so the field that other schemes share can be used.
+    if len(rational) == len(parts) and not is_timed:
         field = canonical_field(hamiltonian)[0]
         sizes = [field.ring.constant(size) for size in rational]
         return field, sizes, [field.ring.zero] * len(parts)
-    times = coefficients.all_times if timed else ()
+    times = coefficients.all_times if is_timed else ()
     field, numbers = canonical_field(hamiltonian, *(x for _, x in coefficients.parts), *times)
     sizes = numbers[: len(parts)]
     return field, sizes, numbers[len(parts) :] or [field.ring.zero] * len(parts)
 
 
 def _shears(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
-    """How z' is made: the sizes and times of kicks and drifts in the ring of H's field."""
+    """Return the step of kicks and drifts with these sizes and times in the ring of H's field."""
 
     def changes(algebra: StepAlgebra[Any]) -> list[Any]:
         n = algebra.size // 2
         moves = {"kick": range(n), "drift": range(n, 2 * n)}
         result = [algebra.nothing] * algebra.size
         for kind, size, time in zip(kinds, sizes, times, strict=True):
-            result = algebra.sheared(result, size, time, moves[kind])
+            result = algebra.shear(result, size, time, moves[kind])
         return result
 
     return changes
 
 
 def conditions(coefficients: Splitting, degrees: int) -> tuple[Condition, ...]:
-    """That kicks and drifts move by a gradient, whose Jacobian is symmetric, for all T and V."""
-    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.given)))
+    """Return the conditions that kicks and drifts move by a gradient, whose Jacobian is symmetric,
+    for all T and V."""
+    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.raw_parts)))
 
 
 @lru_cache(maxsize=4)
 def _of_kinds(kinds: tuple[str, ...]) -> tuple[Condition, ...]:
     jets = JetsInDegrees(("p1", "p2", "q1", "q2"), 2, separable=True)
     pairs = {"kick": ("q1", "q2"), "drift": ("p1", "p2")}
-    shown = []
+    gradient_conditions = []
     for kind in kinds:
         a, b = pairs[kind]
         gap = jets.diff(jets.first(a), b) - jets.diff(jets.first(b), a)
-        shown.append(
+        gradient_conditions.append(
             Condition(f"every {kind} is a shear by a gradient", 0, str(gap), jets.vanishes(gap))
         )
-    return tuple(shown)
+    return tuple(gradient_conditions)

@@ -10,21 +10,21 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.algebra.formula import symbol
-from verify.effort import limited
+from verify.effort import limit_effort
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.by_formulas import map_from_expressions
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap
 
 
 @lru_cache(maxsize=64)
 def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> StepMap:
-    """The map for any H. Where H = T(p) + V(q), symplectic Euler is its kick and its drift; where
-    ∂H/∂q is linear in p it is written in closed form, in the plane."""
+    """Return the map for any H. Where H = T(p) + V(q), symplectic Euler is its kick and its drift;
+    where ∂H/∂q is linear in p it is written in closed form, in the plane."""
     field, _ = canonical_field(hamiltonian)
     if all(s.at_p == 1 and s.at_q == 0 for s in coefficients.stages):
         if field.separable:
@@ -36,29 +36,33 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> 
             linear = _linear_in_p(hamiltonian, field)
             if linear is not None:
                 return linear
-    shown = conditions(coefficients, field.degrees)
-    return StepMap(hamiltonian, field, coefficients.changes, conditions=shown, implicit=True)
+    stage_conditions = conditions(coefficients, field.degrees)
+    return StepMap(
+        hamiltonian, field, coefficients.changes, conditions=stage_conditions, implicit=True
+    )
 
 
 _EULER = Stage(kick=Fraction(1), drift=Fraction(1), at_p=Fraction(1))
 
 
 def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | None:
-    """p' = p − h H_q/(1 + h H_pq) and q' = q + h H_p(p', q); None where H_q is not linear in p."""
+    """Return p' = p − h H_q/(1 + h H_pq) and q' = q + h H_p(p', q); None where H_q is not linear in
+    p."""
     ring, (force, speed) = field.ring, field.slopes
+    # Linearity in p is decided exactly: the second derivative must be the zero function.
     mixed = ring.diff(force, "p")  # −H_pq
     if ring.vanishes(ring.diff(mixed, "p")) is not True:
         return None
     h_p, h_q, h_pq = map(ring.expression, (speed, -force, -mixed))
     p, q, h = map(symbol, "pqh")
     p_next = p - h * h_q / (1 + h * h_pq)
-    with limited("hamiltonian", str(hamiltonian.expression), "to compose its stages"):
+    with limit_effort("hamiltonian", str(hamiltonian.expression), "to compose its stages"):
         q_next = q + h * h_p.subs(p, p_next)
-    return map_by_expressions(hamiltonian, (p_next, q_next))
+    return map_from_expressions(hamiltonian, (p_next, q_next))
 
 
 def conditions(coefficients: StageEquations, degrees: int) -> tuple[Condition, ...]:
-    """Those of each stage; see the module's text."""
+    """Return the conditions of each stage; see the module's text."""
     if degrees == 1:
         return coefficients.conditions()
     return tuple(map(_condition, coefficients.stages))

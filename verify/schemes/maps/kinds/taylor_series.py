@@ -8,13 +8,14 @@ from verify.schemes.maps.step_map import StepMap
 
 
 def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
-    """The map for any H."""
+    """Return the map for any H."""
     field, _ = canonical_field(hamiltonian)
+    # The Taylor polynomial is the closed form: no series has to be expanded.
     changes = field.flow_changes(coefficients.eta)
     formulas = tuple(x + y for x, y in zip(field.start, changes, strict=True))
     return StepMap(hamiltonian, field, formulas=formulas)
 
 
 def conditions(_: TaylorSeries, degrees: int) -> tuple[Condition, ...]:
-    """None: no Taylor polynomial is symplectic for every H."""
+    """Return no conditions: no Taylor polynomial is symplectic for every H."""
     return ()

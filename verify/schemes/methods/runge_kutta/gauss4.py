@@ -7,7 +7,7 @@ from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
 
 _QUARTER, _HALF, _ROOT = sympy.Rational(1, 4), sympy.Rational(1, 2), sympy.sqrt(3)
-TABLEAU = ImplicitTableau.of(
+TABLEAU = ImplicitTableau.from_numbers(
     rows=((_QUARTER, _QUARTER - _ROOT / 6), (_QUARTER + _ROOT / 6, _QUARTER)),
     weights=(_HALF, _HALF),
 )

@@ -7,7 +7,7 @@ from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
 
 _OUTER, _INNER, _ROOT = sympy.Rational(5, 36), sympy.Rational(2, 9), sympy.sqrt(15)
-TABLEAU = ImplicitTableau.of(
+TABLEAU = ImplicitTableau.from_numbers(
     rows=(
         (_OUTER, _INNER - _ROOT / 15, _OUTER - _ROOT / 30),
         (_OUTER + _ROOT / 24, _INNER, _OUTER - _ROOT / 24),

@@ -12,7 +12,7 @@ from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 
-TABLEAU = ImplicitTableau.of(rows=((sympy.Rational(1, 2),),), weights=(1,))
+TABLEAU = ImplicitTableau.from_numbers(rows=((sympy.Rational(1, 2),),), weights=(1,))
 _ONE = Fraction(1)
 ALIASES = ("gauss2",)
 SCHEME = Scheme(

@@ -1,6 +1,6 @@
 """McLachlan's symmetric scheme of order 4 with four stages, for H = T(p) + V(q), in Q(√471).
 
-Drifts (642 + √471)/3924, 121(12 − √471)/3924 and what is left to 1 in the middle, with kicks 6/11
+Drifts (642 + √471)/3924, 121(12 − √471)/3924 and the remainder to 1 in the middle, with kicks 6/11
 and −1/22. The table satisfies all conditions of order 4 exactly; per stage `mclachlan4`, of five,
 has the smaller error.
 """

@@ -6,14 +6,14 @@ is (16 + 4R + R²)/60, since (4 − R)(16 + 4R + R²) = 64 − R³. No step is l
 
 import sympy
 
-from verify.schemes.splitting import composed, splitting
+from verify.schemes.splitting import compose, splitting
 
 _R = sympy.cbrt(4)
 _S = (16 + 4 * _R + _R**2) / 60
 STEPS = (_S, _S, 1 - 4 * _S, _S, _S)
 SCHEME = splitting(
     "suzuki4",
-    composed("kick", STEPS),
+    compose("kick", STEPS),
     order=4,
     symmetric=True,
     source="Suzuki, Phys. Lett. A 146 (1990) 319–323; Hairer, Lubich, Wanner, Geometric "

@@ -7,7 +7,7 @@ element of the ring with R³ = 2. Neighbouring half kicks are one; seven shears,
 
 import sympy
 
-from verify.schemes.splitting import composed, splitting
+from verify.schemes.splitting import compose, splitting
 
 _R = sympy.cbrt(2)
 _OUTER = (4 + 2 * _R + _R**2) / 6
@@ -15,7 +15,7 @@ STEPS = (_OUTER, 1 - 2 * _OUTER, _OUTER)
 ALIASES = ("yoshida", "triple-jump4")
 SCHEME = splitting(
     "yoshida4",
-    composed("kick", STEPS),
+    compose("kick", STEPS),
     order=4,
     symmetric=True,
     source="Yoshida, Phys. Lett. A 150 (1990) 262–268; Hairer, Lubich, Wanner, "

@@ -22,26 +22,27 @@ MAX_ETA = 100
 
 
 def make(name: str) -> Scheme | None:
-    """The scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
+    """Return the scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
     eta = eta_of(name)
     return None if eta is None else lie_series(f"lie{eta}", eta, source="Eq. 2–5")
 
 
 def lie_series(name: str, eta: int, *, source: str) -> Scheme:
-    """The scheme of that name whose map is lieη's."""
+    """Return the scheme of that name whose map is lieη's."""
     return Scheme(name, order=eta, source=source, every_h=TaylorSeries(eta))
 
 
 def eta_of(name: str) -> int | None:
-    """The η of `lieη`; None for another name, InputError for η outside 1 … 100."""
+    """Return the η of `lieη`; None for another name, InputError for η outside 1 … 100."""
     match = re.fullmatch(r"lie(\d+)", name, re.ASCII)
     if match is None:
         return None
+    # The length is checked first: int() of a very long text takes quadratic time.
     if len(match[1]) > 3 or not 1 <= int(match[1]) <= MAX_ETA:
         raise InputError("scheme", name, f"η must be 1 … {MAX_ETA}")
     return int(match[1])
 
 
 def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
-    """The step map of lieη, exact, for any H."""
+    """Return the step map of lieη, exact, for any H."""
     return build(TaylorSeries(eta), hamiltonian)

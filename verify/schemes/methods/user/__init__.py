@@ -1,1 +1,1 @@
-"""What users write themselves: formulas, and a splitting's coefficients."""
+"""Schemes that users write: formulas, and a splitting's coefficients."""

@@ -18,7 +18,8 @@ EXAMPLES = ()  # its names are the users' own
 
 
 def make(name: str) -> Scheme | None:
-    """The scheme for a text with `=`; InputError unless it defines p_next and q_next, once each."""
+    """Return the scheme for a text with `=`; InputError unless it defines p_next and q_next, once
+    each."""
     if "=" not in name:
         return None
     parts = [part.partition("=") for part in name.split(";") if part.strip()]

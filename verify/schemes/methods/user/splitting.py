@@ -1,9 +1,9 @@
 """A user's own splitting, by its coefficients: `kick 1/2; drift 1; kick 1/2; order 2`.
 
-Coefficients are exact: decimals and quotients, and what they are made of by `sqrt` and powers, as
+Coefficients are exact: decimals and quotients, and expressions of them with `sqrt` and powers, as
 `drift 1/(2 - 2**(1/3))`. Those that are printed with eight digits and more stand for numbers near
-them: an order is theirs (`verify.schemes.printed.nearby_order`). `order` is what is claimed of it,
-at least; without it that is 1.
+them: the order is that of these (`verify.schemes.printed.nearby_order`). `order` is the claimed
+one, at least; without it that is 1.
 
 For an H that depends on time a part may have its own, in parts of h from the step's start, as in
 `kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is the right one.
@@ -24,19 +24,21 @@ _FORM = "write it as 'kick 1/2; drift 1; kick 1/2; order 2'"
 
 
 def make(name: str) -> Scheme | None:
-    """The scheme for a text that begins with kick or drift; InputError for a bad one."""
+    """Return the scheme for a text that begins with kick or drift; InputError for a bad one."""
     words = [part.split(maxsplit=1) for part in name.split(";") if part.strip()]
     if not words or words[0][0] not in LETTERS:
         if words and words[0][0].lower() in LETTERS:
             raise InputError("scheme", name, f"write it in small letters: {_FORM}")
         return None
+    # Each part needs a size, and long texts are refused before sympy sees them.
     if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
         raise InputError("scheme", name, _FORM)
     order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
-    written = [_part(name, *part) for part in words]
-    parts = tuple((kind, parse(size, (), source=kind)) for kind, size, _ in written)
+    part_texts = [_part(name, *part) for part in words]
+    parts = tuple((kind, parse(size, (), source=kind)) for kind, size, _ in part_texts)
     times = tuple(
-        None if time is None else parse(time, (), source=f"{kind} at") for kind, _, time in written
+        None if time is None else parse(time, (), source=f"{kind} at")
+        for kind, _, time in part_texts
     )
     # A time that is exactly the right one stays so, whatever its size's digits stand for.
     not_right = [
@@ -44,7 +46,7 @@ def make(name: str) -> Scheme | None:
     ]
     at_times = [
         (kind, size, time if keep else None)
-        for (kind, size, time), keep in zip(written, not_right, strict=True)
+        for (kind, size, time), keep in zip(part_texts, not_right, strict=True)
     ]
     return splitting(
         "; ".join(" ".join(part.split()) for part in name.split(";") if part.strip()),
@@ -53,7 +55,7 @@ def make(name: str) -> Scheme | None:
         symmetric=_palindrome(parts),
         source="the user's coefficients",
         times=times,
-        nearby=nearby_of([(kind, size, None) for kind, size, _ in written]),
+        nearby=nearby_of([(kind, size, None) for kind, size, _ in part_texts]),
         nearby_in_time=nearby_of(at_times),
     )
 
@@ -68,15 +70,16 @@ def _order(name: str, text: str) -> int:
 
 
 def _part(name: str, kind: str, text: str) -> tuple[str, str, str | None]:
-    """The part's kind, its size and its time as they are written, None where no time is."""
+    """Return the part's kind, its size and its time as they are written, None where no time is."""
     if kind not in LETTERS:
         raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
     if "," in text:
         raise InputError("scheme", name, f"a , parts nothing; {_FORM}")
-    size, at, time = text.partition(" at ")
-    return kind, size, time if at else None
+    size, separator, time = text.partition(" at ")
+    return kind, size, time if separator else None
 
 
 def _palindrome(parts: tuple[Part, ...]) -> bool:
-    """Whether it is one as it is written; a table that is one only in value does not claim it."""
+    """Return True if it is a palindrome as it is written; a table that is one only in value does
+    not claim it."""
     return parts == parts[::-1]

@@ -26,7 +26,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 from verify.schemes.conditions.splitting_conditions import Part, Splitting, sums_before
-from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.by_formulas import map_from_expressions
 from verify.schemes.maps.kinds import explicit_runge_kutta
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
@@ -38,19 +38,20 @@ _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")
 
 
 def make(name: str) -> Scheme | None:
-    """The scheme for a text `NAME, clock HOW`; InputError for what has no clocks, or no HOW."""
+    """Return the scheme for a text `NAME, clock HOW`; InputError for a scheme without clocks, or an
+    unknown HOW."""
     from verify.schemes import get
 
-    found = _NAME.fullmatch(name)
-    if found is None:
+    match = _NAME.fullmatch(name)
+    if match is None:
         return None
-    base, how = get(found["base"]), " ".join(found["clock"].split())
-    known = _CLOCKS if isinstance(base.every_h, Splitting) else _STANDING
+    base, how = get(match["base"]), " ".join(match["clock"].split())
+    clocks = _CLOCKS if isinstance(base.every_h, Splitting) else _STANDING
     if not isinstance(base.every_h, Splitting | RungeKutta | TaylorSeries):
         problem = f"{base.name} has no such clocks; splittings, explicit stages and lieη do"
         raise InputError("scheme", name, problem)
-    if how not in known:
-        raise InputError("scheme", name, f"clock {how}: unknown; allowed: {', '.join(known)}")
+    if how not in clocks:
+        raise InputError("scheme", name, f"clock {how}: unknown; allowed: {', '.join(clocks)}")
     if not isinstance(base.every_h, Splitting):
         return replace(
             base,
@@ -71,23 +72,23 @@ def make(name: str) -> Scheme | None:
 
 
 def _with_standing_clock(
-    every_h: RungeKutta | TaylorSeries, at: int, hamiltonian: Hamiltonian
+    every_h: RungeKutta | TaylorSeries, clock: int, hamiltonian: Hamiltonian
 ) -> StepMap:
-    """The map of H as it is at t + `at` h."""
+    """Return the map of H at the fixed time t + `clock` h."""
     if isinstance(every_h, RungeKutta):
-        return explicit_runge_kutta.build(every_h, hamiltonian, standing=Fraction(at))
+        return explicit_runge_kutta.build(every_h, hamiltonian, standing=Fraction(clock))
     if not hamiltonian.time_dependent:
         return lie_map(hamiltonian, every_h.eta)
     t, names = symbol("t"), hamiltonian.symbols
     instant = symbol(next(n for n in map("instant{}".format, count()) if n not in names))
     still = lie_map(Hamiltonian(hamiltonian.exact.xreplace({t: instant})), every_h.eta)
-    exact = [x.xreplace({instant: t + at * H_STEP}) for x in still.composed]
-    return map_by_expressions(hamiltonian, exact)
+    exact = [x.xreplace({instant: t + clock * H_STEP}) for x in still.composed]
+    return map_from_expressions(hamiltonian, exact)
 
 
 _STANDING = {"frozen": 0, "at the end": 1}  # and when it stands, in parts of h
 _CLOCKS: Mapping[str, Callable[[Sequence[Part]], Sequence[sympy.Expr]]] = {
     "frozen": lambda parts: (sympy.S.Zero,) * len(parts),
     "at the end": lambda parts: (sympy.S.One,) * len(parts),
-    "exchanged": lambda parts: sums_before(parts, sympy.S.Zero, own=True),
+    "exchanged": lambda parts: sums_before(parts, sympy.S.Zero, same_kind=True),
 }

@@ -2,9 +2,9 @@
 
 The float64 lines are those of the float64 kernel that `verify run` steps with: the same step is
 written, so that the same operations are rounded in the same order, and states and products agree
-with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of high precision,
-evaluate what the chain of `verify.studies.separation.separate` asks for. What is carried of them,
-and what float64 multiplies itself, is the way's (`verify.studies.separation.ways`).
+with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of high
+precision, evaluate what the chain of `verify.studies.separation.separate` needs. The way decides
+which values are carried, and which float64 multiplies itself (`verify.studies.separation.ways`).
 
 Where H depends on time, float64 has a clock, f_t ← f_t + f_h, which the wide lines at z̃_k read,
 too. Beside them a wide state of its own steps at these times (names that begin with `w_at_`).
@@ -37,25 +37,27 @@ LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # of an arithmetic of limit
 def mixed_kernel(
     way: Way, hamiltonian: Hamiltonian, scheme: str, arithmetic: Arithmetic, follow: bool
 ) -> MixedKernel:
-    """The kernel for a generic Hamiltonian; `follow`: with the step exactly at float64's states.
+    """Build the kernel for a generic Hamiltonian; `follow`: with exact steps at float64's states.
 
     Raises UnsupportedError where the arithmetic lacks a function, or cannot follow float64.
     """
-    step_map, timed = step_map_of(hamiltonian, scheme), hamiltonian.time_dependent
-    if timed and arithmetic.absolute:
+    step_map, has_time = step_map_of(hamiltonian, scheme), hamiltonian.time_dependent
+    if has_time and arithmetic.absolute:
         raise UnsupportedError(f"{arithmetic.name} follows no float64 clock")
     working = float64.make(17)
+    # Both sides compute the same step; only the arithmetic and the prefix of the names differ.
     narrow = Side(way.step(step_map, working, exactly=False), working, "f_")
     wide = Side(way.step(step_map, arithmetic, exactly=True), arithmetic, "w_")
     step, coordinates = narrow.step, narrow.step.coordinates
-    clocked = replace(wide, prefix=AT) if follow and timed else None
+    # The same step a second time, under other names, at float64's times.
+    clocked = replace(wide, prefix=AT) if follow and has_time else None
     before, inside = narrow.lines([*step.outputs.values(), *step.defect.values(), *narrow.entries])
     exact = wide.entries or [wide.step.outputs["dj"]]
     regions, sides = [f"f_{n}" for n in coordinates], list[str]()
     if follow:
         static, dynamic = wide.lines(exact)
         before += static
-        inside += [f"w_{n} = wide(f_{n})" for n in (*coordinates, *("t" * timed))] + dynamic
+        inside += [f"w_{n} = wide(f_{n})" for n in (*coordinates, *("t" * has_time))] + dynamic
     if clocked:
         static, dynamic = clocked.lines(
             [*exact, *(clocked.step.outputs[f"d{n}"] for n in coordinates)]
@@ -67,32 +69,32 @@ def mixed_kernel(
     if follow:  # the region visited, over which the rounding of the wide step is bounded
         inside += [line for name in regions for line in _box(name)]
         sides = [f"{name}_{side}" for name in regions for side in ("low", "high")]
-    inside += _moved("f_", narrow)
-    inside += _moved(AT, clocked) if clocked else []
-    inside += ["f_t = f_t + f_h"] * timed
-    moved = [f"{AT}{n}" for n in coordinates] if clocked else []
-    names = (*regions, *(["f_t"] * timed), *moved, *sides, *lines.start)
+    inside += _state_update("f_", narrow)
+    inside += _state_update(AT, clocked) if clocked else []
+    inside += ["f_t = f_t + f_h"] * has_time
+    clocked_names = [f"{AT}{n}" for n in coordinates] if clocked else []
+    names = (*regions, *(["f_t"] * has_time), *clocked_names, *sides, *lines.start)
     limits = LIMITS if arithmetic.absolute else ()
     source = assemble(_inputs(step.parameters), limits, names, before, inside)
-    function = _compiled(source, narrow, wide)
+    function = _compile(source, narrow, wide)
     return MixedKernel(
         function, names, lines.start, lines.followed, lines.closed, source, limits, wide.step
     )
 
 
 def _inputs(parameters: Sequence[str]) -> list[str]:
-    """h and the parameters by the names that the source has for them."""
+    """Return the names that the source has for h and the parameters."""
     return ["h", *(f"x{k}" for k in range(len(parameters)))]
 
 
-def _moved(prefix: str, side: Side) -> list[str]:
-    """z ← z + (z' − z)."""
+def _state_update(prefix: str, side: Side) -> list[str]:
+    """Return the lines of z ← z + (z' − z)."""
     names = side.step.coordinates
     return [f"{prefix}{n} = {prefix}{n} + ({side.output(f'd{n}')})" for n in names]
 
 
 def _box(name: str) -> list[str]:
-    """The lines that keep the least and the greatest value of a name."""
+    """Return the lines that keep the least and the greatest value of a name."""
     low, high = f"{name}_low", f"{name}_high"
     return [f"if {low} > {name}: {low} = {name}", f"if {name} > {high}: {high} = {name}"]
 
@@ -104,7 +106,7 @@ def assemble(
     before: Sequence[str],
     inside: Sequence[str],
 ) -> str:
-    """The source of a kernel."""
+    """Return the source of a kernel."""
     numbers = [prefix + name for prefix in ("f_", "w_") for name in inputs]
     kinds = {"f": ": 'float'", "w": ""}
     arguments = ["steps: 'int'", *(n + kinds[n[0]] for n in (*numbers, *limits, *state_names))]
@@ -126,10 +128,10 @@ def assemble(
     )
 
 
-def _compiled(
+def _compile(
     source: str, narrow: Side, wide: Side
 ) -> Callable[..., tuple[int, *tuple[Number, ...]]]:
-    """The kernel, with the functions that its source names, and its constants."""
+    """Compile the kernel, with the functions that its source names, and its constants."""
     arithmetic, working, constants = wide.arithmetic, narrow.arithmetic, wide.constants
     scope = {
         "wide": lambda x: arithmetic.number(Fraction(x)),
@@ -146,5 +148,5 @@ def _compiled(
 
 
 def _log1p(x: float) -> float:
-    """log1p; where 1 + x ≤ 0 it is not defined, and that is found afterwards."""
+    """Return log1p(x), or nan where 1 + x ≤ 0, which is noticed afterwards."""
     return math.log1p(x) if x > -1.0 else math.nan

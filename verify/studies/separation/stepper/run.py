@@ -1,9 +1,9 @@
 """A float64 run from checkpoint to checkpoint, with exact arithmetic beside it.
 
-What is carried becomes links at every checkpoint. How far they are known: what float64 made is
-exact. Of a wide link the way counts the rounding; where it has no bound, the link is held against a
-rerun with 15 more digits, and twice the greatest difference at any checkpoint, and what the last
-bits may hide of it, is its bound, an estimate.
+The values carried become links at every checkpoint. Their error bounds: numbers of float64 are
+exact. The way counts the rounding of a wide link; where it has no bound, the link is compared with
+a rerun with 15 more digits. Its bound, an estimate, is then twice the greatest difference at any
+checkpoint, with the part that the last bits may hide.
 """
 
 import math
@@ -25,7 +25,7 @@ from verify.lockstep import Course
 from verify.runs.estimated import digits_of
 from verify.studies.separation.stepper.kernel import AT, mixed_kernel
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links, links_of
-from verify.studies.separation.stepper.way import MixedKernel, Size, State, Stepped, Way
+from verify.studies.separation.stepper.way import MixedKernel, Size, State, SteppedRun, Way
 
 Advance = Callable[[int], None]  # called with the number of steps just done
 MORE_DIGITS = 15
@@ -34,7 +34,7 @@ RERUN = f"rerun with {MORE_DIGITS} more digits"
 
 
 class Stopped(Exception):  # noqa: N818 - no error, an answer
-    """A run of the chain that has no last value."""
+    """The end of a run of the chain that has no last value."""
 
     def __init__(
         self, status: Literal["left range", "unresolved"], step: int | None, reason: str
@@ -44,13 +44,13 @@ class Stopped(Exception):  # noqa: N818 - no error, an answer
 
 
 def marks_of(steps: int, points: int) -> tuple[int, ...]:
-    """The numbers of steps at the checkpoints, as a run of so many sections notes them."""
+    """Return the numbers of steps at the checkpoints, as a run of so many sections notes them."""
     section = -(-steps // points)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
 
 
 def rounded_inputs(run: KernelRun) -> dict[str, float]:
-    """The start and the parameters that the kernel takes, as float64; Stopped where one is not."""
+    """Return the start and the kernel's parameters as float64; Stopped where one is too large."""
     exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
     number = float64.make(17).number
     rounded: dict[str, float] = {name: number(value) for name, value in exact.items()}
@@ -91,12 +91,12 @@ class MixedRun:
         self.marks = marks_of(run.steps, way.points)
 
     def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[Working]:
-        """All steps; raises Stopped where float64 leaves its range."""
-        way, run = self.way, (yield from self.stepped(arithmetic, advance))
+        """Do all steps and return the links; raises Stopped where float64 leaves its range."""
+        way, run = self.way, (yield from self.step_all(arithmetic, advance))
         kernel, bounds, again = run.kernel, way.bounds(run), run
         if any(bounds.get(name) is None for name in kernel.followed):
             finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
-            again = yield from self.stepped(finer, lambda _: None)
+            again = yield from self.step_all(finer, lambda _: None)
         links: dict[str, Links] = {}
         for name in kernel.followed:
             bound, values = bounds.get(name), self._read(run, name)
@@ -105,60 +105,65 @@ class MixedRun:
                 continue
             fine = self._read(again, name)
             pairs = zip(values, fine, strict=True)
-            apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
-            bound = 2 * apart + way.hides(replace(again, arithmetic=arithmetic), name)
+            difference = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+            # The finer run errs less than the first, so that twice their difference bounds its
+            # error, but for digits that both have lost alike.
+            bound = 2 * difference + way.hidden_size(replace(again, arithmetic=arithmetic), name)
             links[name] = links_of(fine, bound, "estimated", RERUN)
         sizes = (way.size(state, arithmetic) for state in run.states)
         return Working(
             links.get("clock"),
             links.get("trajectory"),
             links["factors"],
-            _of_float64(map(way.plain, run.states)),
-            *self._closed(run, links),
+            _float64_links(map(way.plain, run.states)),
+            *self._closed_form_links(run, links),
             tuple(size for size in sizes if size),
         )
 
-    def _read(self, run: Stepped, name: str) -> list[Entries]:
+    def _read(self, run: SteppedRun, name: str) -> list[Entries]:
         return [self.way.read(state, name, run.arithmetic) for state in run.states]
 
-    def _closed(
-        self, run: Stepped, links: Mapping[str, Links]
+    def _closed_form_links(
+        self, run: SteppedRun, links: Mapping[str, Links]
     ) -> tuple[Links | None, Links | None]:
-        """The links of the closed form."""
+        """Return the links of the closed form."""
         if not run.kernel.closed:
             nothing = (Fraction(0),) * len(links["factors"])
             return (exact_links([nothing] * len(run.states), self.way.vanishes),) * 2
         values = list(map(self.way.closed_form, run.states))
         if not all(math.isfinite(x) for each in values for x in each):
             return None, None
-        return links["closed"], _of_float64(values)
+        return links["closed"], _float64_links(values)
 
-    def stepped(self, arithmetic: Arithmetic, advance: Advance) -> Course[Stepped]:
-        """All steps with this arithmetic beside float64."""
+    def step_all(self, arithmetic: Arithmetic, advance: Advance) -> Course[SteppedRun]:
+        """Do all steps with this arithmetic beside float64."""
         run, way, inputs = self.run, self.way, self.inputs
         kernel = mixed_kernel(way, run.hamiltonian, run.scheme, arithmetic, self.follow)
         narrow = list(kernel.inputs(inputs).values())
         wide = [arithmetic.number(Fraction(x)) for x in narrow]
-        fixed = [*narrow, *wide, *way.limits(kernel, arithmetic, inputs)]
+        constants = [*narrow, *wide, *way.limits(kernel, arithmetic, inputs)]
+        # Checkpoints are reused only for the same source, inputs and arithmetic.
         label = f"beside {arithmetic.name} {arithmetic.bits} {inputs} {kernel.source}"
-        states = self._kept(label, arithmetic)
+        states = self._load_states(label, arithmetic)
         state = states[-1] if states else self._first_state(kernel, arithmetic)
         done = self.marks[len(states) - 1] if states else 0
         # The sums of logarithms may be undefined while the orbit and the plain way go on.
         vital = [n for n in kernel.state_names if n[0] == "f" and n not in ("f_sum", "f_rest")]
-        at = {name: k for k, name in enumerate(kernel.state_names)}
+        index_of = {name: k for k, name in enumerate(kernel.state_names)}
 
         def in_range(state: State) -> bool:
             return all(math.isfinite(state[name]) for name in vital) and way.in_range(state)
 
         def states_after(every: int, stops: int = 1) -> Course[list[State]]:
-            """Those at the next stops; fewer where float64 leaves its range on the way."""
-            numbers = state.state if isinstance(state, LazyNote) else [state[n] for n in at]
-            beyond = run.steps - done - every * stops
+            """Return the states at the next stops; fewer where float64 leaves its range."""
+            numbers = state.state if isinstance(state, LazyNote) else [state[n] for n in index_of]
+            steps_beyond = run.steps - done - every * stops
             after = yield from arithmetic.states(
-                kernel.function, every, stops, fixed, numbers, beyond
+                kernel.function, every, stops, constants, numbers, steps_beyond
             )
-            notes = (LazyNote(kernel.state_names, lambda n, x, _: x[at[n]], x, 0) for x in after)
+            notes = (
+                LazyNote(kernel.state_names, lambda n, x, _: x[index_of[n]], x, 0) for x in after
+            )
             return list(takewhile(in_range, notes))
 
         arithmetic.expect(kernel.function, run.steps - done)
@@ -170,20 +175,24 @@ class MixedRun:
                 advance(every)
                 if done == self.marks[len(states)]:
                     states.append(state)
-                self._keep(label, states, arithmetic)
+                self._save_states(label, states, arithmetic)
+            # A kernel of limited range stops where either side leaves it; only an arithmetic of
+            # every range can tell which.
             if len(after) < stops and arithmetic.absolute:
                 raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
             if len(after) < stops:
+                # Bisection between the last checkpoint and the stop gives the exact step at which
+                # float64 fails.
                 done += yield from last_good(every, states_after)
                 raise Stopped("left range", done + 1, "float64 leaves its range")
-        return Stepped(kernel, arithmetic, inputs, run.steps, states)
+        return SteppedRun(kernel, arithmetic, inputs, run.steps, states)
 
-    def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
-        """So many steps to the next stop and so many stops: marks, or on the way to the next."""
-        left, section = self.marks[at] - done, self.marks[0]
-        if left == section <= chunk:
+    def _ahead(self, done: int, index: int, chunk: int) -> tuple[int, int]:
+        """Return the steps to the next stop and the number of stops, at marks or between them."""
+        remaining, section = self.marks[index] - done, self.marks[0]
+        if remaining == section <= chunk:
             return section, min(chunk, self.run.steps - done) // section
-        return min(chunk, left), 1
+        return min(chunk, remaining), 1
 
     def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
         state: dict[str, Any] = {}
@@ -196,32 +205,32 @@ class MixedRun:
             state[name] = _number(arithmetic, name, value)
         return state
 
-    def _keep(self, label: str, states: Sequence[State], arithmetic: Arithmetic) -> None:
-        """Writes the checkpoints so far, where that is due."""
+    def _save_states(self, label: str, states: Sequence[State], arithmetic: Arithmetic) -> None:
+        """Save the checkpoints so far, where that is due."""
         if self.run.keeper.due(label):
             texts = [
                 {n: fraction_text(as_rational(x, arithmetic)) for n, x in s.items()} for s in states
             ]
             self.run.keeper.save(label, {"found": texts})
 
-    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
-        """The checkpoints that an interrupted run has left."""
-        kept = self.run.keeper.load(label) or {"found": []}
+    def _load_states(self, label: str, arithmetic: Arithmetic) -> list[State]:
+        """Return the checkpoints that an interrupted run has left."""
+        checkpoints = self.run.keeper.load(label) or {"found": []}
         return [
             {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
-            for state in kept["found"]
+            for state in checkpoints["found"]
         ]
 
 
 def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
-    """What a name that begins with f or with w holds: a float64 or a wide number."""
+    """Return the value of a name as a float64, if it begins with f, or as a wide number."""
     return float(value) if name[0] == "f" else arithmetic.number(value)
 
 
 def as_rational(x: Number, arithmetic: Arithmetic) -> Fraction:
-    """The rational that a float64 or a wide number is."""
+    """Return the rational that a float64 or a wide number is."""
     return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
 
 
-def _of_float64(values: Iterable[tuple[float, ...]]) -> Links:
+def _float64_links(values: Iterable[tuple[float, ...]]) -> Links:
     return exact_links([tuple(map(Fraction, each)) for each in values], "a float64")

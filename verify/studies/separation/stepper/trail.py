@@ -15,8 +15,7 @@ Kind = Literal["enclosed", "estimated"]
 
 
 class Trail(Sequence[Fraction]):
-    """Rationals, each one of `numerators` over `denominator`; a Fraction is made where one is
-    looked at."""
+    """Rationals, each one of `numerators` over `denominator`; Fractions are made on access."""
 
     __slots__ = ("denominator", "numerators")
 
@@ -24,8 +23,8 @@ class Trail(Sequence[Fraction]):
         self.numerators, self.denominator = tuple(numerators), denominator
 
     @classmethod
-    def of(cls, values: Iterable[Fraction]) -> "Trail":
-        """These values."""
+    def from_values(cls, values: Iterable[Fraction]) -> "Trail":
+        """Return a trail of these values."""
         if isinstance(values, Trail):
             return values
         numbers = tuple(values)
@@ -46,15 +45,15 @@ class Trail(Sequence[Fraction]):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trail):
             return NotImplemented
-        mine, theirs, _ = self._beside(other)
+        mine, theirs, _ = self._over_common_denominator(other)
         return mine == theirs
 
     def __hash__(self) -> int:
         return hash(tuple(self))
 
     def __sub__(self, other: "Trail") -> "Trail":
-        """Value by value."""
-        mine, theirs, common = self._beside(other)
+        """Subtract value by value."""
+        mine, theirs, common = self._over_common_denominator(other)
         return Trail((a - b for a, b in zip(mine, theirs, strict=True)), common)
 
     def __repr__(self) -> str:
@@ -66,17 +65,19 @@ class Trail(Sequence[Fraction]):
         return Fraction(max(map(abs, self.numerators)), self.denominator)
 
     def envelope(self) -> "Trail":
-        """The greatest absolute value so far, at every checkpoint."""
+        """Return the greatest absolute value so far, at every checkpoint."""
         return Trail(accumulate(map(abs, self.numerators), max), self.denominator)
 
     def above(self, least: Fraction) -> list[int]:
-        """The places of the values that are greater than this one."""
-        # A whole number is greater than a number where it is greater than what that is rounded to.
+        """Return the places of the values that are greater than this one."""
+        # A whole number exceeds x exactly where it exceeds ⌊x⌋.
         bound = least.numerator * self.denominator // least.denominator
         return [k for k, n in enumerate(self.numerators) if n > bound]
 
-    def _beside(self, other: "Trail") -> tuple[tuple[int, ...], tuple[int, ...], int]:
-        """Both numerators over one denominator, and this."""
+    def _over_common_denominator(
+        self, other: "Trail"
+    ) -> tuple[tuple[int, ...], tuple[int, ...], int]:
+        """Return both numerators over one denominator, and the denominator."""
         common = lcm(self.denominator, other.denominator)
         return self._over(common), other._over(common), common
 
@@ -87,7 +88,7 @@ class Trail(Sequence[Fraction]):
 
 @dataclass(frozen=True)
 class Link:
-    """Λ, or an entry of W, at every checkpoint, each value within `bound` of what it stands for.
+    """Λ, or an entry of W, at every checkpoint, each value within `bound` of the exact one.
 
     Two links that a proof shows to be equal are the same object.
     """
@@ -103,10 +104,12 @@ Entries = tuple[Fraction, ...]  # the values of these at one checkpoint
 
 
 def links_of(values: Iterable[Entries], bound: Fraction, kind: Kind, method: str) -> Links:
-    """A link for each entry, from all entries at every checkpoint."""
-    return tuple(Link(Trail.of(each), bound, kind, method) for each in zip(*values, strict=True))
+    """Return a link for each entry, from all entries at every checkpoint."""
+    return tuple(
+        Link(Trail.from_values(each), bound, kind, method) for each in zip(*values, strict=True)
+    )
 
 
 def exact_links(values: Iterable[Entries], method: str) -> Links:
-    """The same of values that are exact."""
+    """Return links of exact values."""
     return links_of(values, Fraction(0), "enclosed", method)

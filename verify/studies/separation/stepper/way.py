@@ -1,4 +1,4 @@
-"""What a way of following a float64 run has to tell, and what a kernel of it consists of.
+"""The interface of a way to follow a float64 run, and the parts of its kernel.
 
 In the plane Λ is a product of determinants, in n degrees of freedom W is made of products of
 matrices (`verify.studies.separation.ways`). The two differ by definition, and so in floating point:
@@ -42,37 +42,40 @@ class Side:
     prefix: str
 
     def name(self, index: int) -> str:
-        """A value of the step's program."""
+        """Return the name of a value of the step's program."""
         return f"{self.prefix}v{index}"
 
     def output(self, name: str) -> str:
-        """One of its outputs, such as `dp`."""
+        """Return the name of one of its outputs, such as `dp`."""
         return self.name(self.step.outputs[name])
 
     @property
     def slopes(self) -> list[list[str]]:
-        """K's entries; "" where one is 0."""
+        """The names of K's entries; "" where one is 0."""
         zero = self.step.program.is_constant
-        return [["" if zero(at, 0) else self.name(at) for at in row] for row in self.step.slopes]
+        return [
+            ["" if zero(index, 0) else self.name(index) for index in row]
+            for row in self.step.slopes
+        ]
 
     @property
     def entries(self) -> list[int]:
-        """All entries of K, of a step that has it."""
-        return [at for row in self.step.slopes for at in row]
+        """The indices of all entries of K, of a step that has it."""
+        return [index for row in self.step.slopes for index in row]
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
-        """The lines before the loop and in it that make these values."""
+        """Return the lines before the loop and in it that compute these values."""
         bare = _BARE if self.prefix == "f_" else _BARE | set(self.arithmetic.functions)
 
-        def prefixed(line: str) -> str:
+        def add_prefix(line: str) -> str:
             return _NAME.sub(lambda m: m[0] if m[0] in bare else self.prefix + m[0], line)
 
         before, inside = self._lowering.lines(roots)
-        return [prefixed(line) for line in before], [prefixed(line) for line in inside]
+        return [add_prefix(line) for line in before], [add_prefix(line) for line in inside]
 
     @property
     def constants(self) -> dict[str, Number]:
-        """Those of the lines, by their names without the prefix."""
+        """The constants of the lines, by their names without the prefix."""
         number, bits = self.arithmetic.number, self.arithmetic.bits
         return {**self._lowering.named_constants(number), **newton.constants(bits, number)}
 
@@ -84,10 +87,10 @@ class Side:
 
 
 class Lines(NamedTuple):
-    """What a way adds to the lines of a step.
+    """The lines that a way adds to those of a step.
 
     `start`: the names that are carried from step to step, with their initial values. `followed`:
-    which of `FOLLOWED` they are. `closed`: whether ΔJ, or S, is not constantly 0.
+    which of `FOLLOWED` they are. `closed`: True unless ΔJ, or S, is constantly 0.
     """
 
     inside: list[str]
@@ -98,13 +101,13 @@ class Lines(NamedTuple):
 
 @dataclass(frozen=True)
 class MixedKernel:
-    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` → (steps
-    done, *state_names).
+    """A kernel that steps in float64 and in wide numbers beside it.
 
-    `state_names` names what goes from step to step, `start` has the initial values but for those
-    that are coordinates or ends of the region that they visit. `limits`: of an arithmetic of
-    limited range. `wide`: what the wide lines compute at a float64 state. `followed`, `closed` as
-    in `Lines`.
+    `function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` returns (steps
+    done, *state_names). `state_names` are carried from step to step; `start` has their initial
+    values, except of coordinates and of the ends of the region that they visit. `limits`: of an
+    arithmetic of limited range. `wide`: what the wide lines compute at a float64 state. `followed`,
+    `closed` as in `Lines`.
     """
 
     function: Callable[..., tuple[int, *tuple[Number, ...]]]
@@ -117,16 +120,16 @@ class MixedKernel:
     wide: Computation
 
     def inputs(self, rounded: Mapping[str, float]) -> dict[str, float]:
-        """h and the parameters by the names that the source has for them, in their order."""
-        named = {f"x{k}": rounded[n] for k, n in enumerate(self.wide.parameters)}
-        return {"h": rounded["h"], **named}
+        """Return h and the parameters by the names that the source has for them, in their order."""
+        parameters = {f"x{k}": rounded[n] for k, n in enumerate(self.wide.parameters)}
+        return {"h": rounded["h"], **parameters}
 
 
 class Size(NamedTuple):
-    """‖M‖² and ‖∧²M‖² in Frobenius' norm: the sum of all squares of entries, and of 2 × 2 minors.
+    """The sizes ‖M‖² and ‖∧²M‖² in the Frobenius norm: sums of squares of entries and 2 × 2 minors.
 
-    The second is how M changes areas, and so what a 2-form grows by: Σ σ_i² σ_j² of the singular
-    values, i < j, beside the Σ σ_i² of the first.
+    The second measures how M changes areas, by which a 2-form grows: it is Σ σ_i² σ_j² of the
+    singular values, i < j, and the first is Σ σ_i².
     """
 
     norm: Fraction
@@ -134,8 +137,8 @@ class Size(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Stepped:
-    """So many steps from rounded `inputs`, and what the kernel carried at every checkpoint."""
+class SteppedRun:
+    """A run of so many steps from rounded `inputs`, with the kernel's state at every checkpoint."""
 
     kernel: MixedKernel
     arithmetic: Arithmetic
@@ -145,12 +148,14 @@ class Stepped:
 
     @property
     def last(self) -> State:
-        """What it carried in the end."""
+        """The state after the last step."""
         return self.states[-1]
 
-    def visited(self, cut: Ball) -> dict[str, Rounded]:
-        """What the wide program is evaluated at, over the region that the float64 states visited,
-        each number within `cut` of its float64."""
+    def inputs_over_region(self, cut: Ball) -> dict[str, Rounded]:
+        """Return the wide program's inputs, over the region that the float64 states visited.
+
+        Each number is within `cut` of its float64.
+        """
         last = self.last
         region = {n: rational_ball(Fraction(x)) for n, x in self.kernel.inputs(self.inputs).items()}
         for name in (n.removesuffix("_low") for n in last if n.endswith("_low")):
@@ -161,20 +166,20 @@ class Stepped:
             region["t"] = first.union(end)
         return {name: Rounded(x, cut) for name, x in region.items()}
 
-    def analysed(self, roots: Sequence[int], cut: Ball) -> list[Rounded] | None:
-        """The wide program's values there, and their errors; None where one is not defined."""
+    def analyse_values(self, roots: Sequence[int], cut: Ball) -> list[Rounded] | None:
+        """Return the wide program's values there, with errors; None where one is not defined."""
         program, rounding = self.kernel.wide.program, rounding_of(self.arithmetic)
-        values = analyse(program, program.live(roots), self.visited(cut), rounding)
-        return None if values is None else [values[at] for at in roots]
+        values = analyse(program, program.live(roots), self.inputs_over_region(cut), rounding)
+        return None if values is None else [values[index] for index in roots]
 
 
 @dataclass(frozen=True)
 class Way(ABC):
-    """How the last links are evaluated in float64, and followed exactly beside it.
+    """A way to evaluate the last links in float64, and to follow them exactly beside it.
 
-    `count`: of coordinates. `result`: the model of what is told. `observable`, of `observables`:
-    what a run in exact arithmetic's stead has. `points`: its checkpoints. `parts`: of rounding, in
-    the chain's order. `cancelled`: digits that differences between links cancel, and `products`
+    `count`: of coordinates. `result`: the model of the result. `observable`, of `observables`: the
+    quantity of a run in place of exact arithmetic. `points`: its checkpoints. `parts`: of rounding,
+    in the chain's order. `cancelled`: digits that differences between links cancel, and `products`
     those that reading a product does beside them. `hidden`: so many digits further below the
     greatest quantity a part is taken for noise, if ever. `vanishes`: in words, why the closed form
     is exactly 0 where it is.
@@ -193,61 +198,63 @@ class Way(ABC):
 
     @abstractmethod
     def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Computation:
-        """What float64 computes in a step, or what is computed `exactly` at its states: ΔJ, or K.
-        UnsupportedError where that cannot be."""
+        """Return float64's computation of a step, or, `exactly`, that of ΔJ or K at its states.
+
+        Raises UnsupportedError where the arithmetic cannot do it.
+        """
 
     @abstractmethod
     def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
-        """What is carried; `wide` where it is carried exactly too, `clocked` at float64's times."""
+        """Return the lines carried; `wide`: exactly too, `clocked`: at float64's times."""
 
     def limits(
         self, kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
     ) -> list[Number]:
-        """What the kernel compares its state with."""
+        """Return the limits that the kernel compares its state with."""
         return []
 
-    # -- what is read of a state --------------------------------------------------------------
+    # -- reading a state ----------------------------------------------------------------------
 
     @abstractmethod
     def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
-        """Λ, or W's entries, as exactly as it was followed; `name` is one of `FOLLOWED`."""
+        """Return Λ, or W's entries, as exactly as it was followed; `name` is one of `FOLLOWED`."""
 
     @abstractmethod
     def plain(self, state: State) -> tuple[float, ...]:
-        """The same as float64 finds it in the plain way."""
+        """Return the same as float64 finds it in the plain way."""
 
     @abstractmethod
     def closed_form(self, state: State) -> tuple[float, ...]:
-        """The same as float64 finds it by the closed form."""
+        """Return the same as float64 finds it by the closed form."""
 
     def in_range(self, state: State) -> bool:
-        """What must hold of a state beside that its float64 numbers are finite."""
+        """Return True if a state whose float64 numbers are finite is in range."""
         return True
 
     def size(self, state: State, arithmetic: Arithmetic) -> Size | None:
-        """How large the product of Jacobians is, of W."""
+        """Return the size of the product of Jacobians, where W is followed."""
         return None
 
-    # -- how far it is known ------------------------------------------------------------------
+    # -- bounds of errors ---------------------------------------------------------------------
 
     @abstractmethod
-    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
-        """A rigorous bound of all that was followed, or None where there is none."""
+    def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
+        """Return a rigorous bound of everything that was followed, or None where there is none."""
 
     @abstractmethod
-    def hides(self, run: Stepped, name: str) -> Fraction:
-        """What the last bits may hide from two runs that are held against each other."""
+    def hidden_size(self, run: SteppedRun, name: str) -> Fraction:
+        """Return the error that the last bits may hide from two runs that are compared."""
 
-    # -- runs in exact arithmetic's stead -----------------------------------------------------
+    # -- runs in place of exact arithmetic ----------------------------------------------------
 
     @abstractmethod
-    def proved(self, run: KernelRun, exact: StepMap | None, digits: int) -> Links | None:
-        """The links that a proof gives without a run; `exact`: the map for the run's parameters."""
+    def prove_links(self, run: KernelRun, exact: StepMap | None, digits: int) -> Links | None:
+        """Return the links that a proof gives; `exact`: the map for the run's parameters."""
 
     @abstractmethod
     def values(self, run: Outcome, last: Fraction) -> list[Entries]:
-        """What a run has at its checkpoints; `last` is known of its last observable."""
+        """Return a run's values at its checkpoints; `last` is the better value of the last one."""
 
     def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:
-        """The digits beside float64 for so many of the links."""
+        """Return the digits beside float64 for so many of the links."""
         return working_digits(wanted, run.steps)

@@ -1,1 +1,1 @@
-"""What float64 multiplies along a run: determinants in the plane, matrices beyond it."""
+"""Products along a float64 run: of determinants in the plane, of matrices in more degrees."""

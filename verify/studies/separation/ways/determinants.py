@@ -8,7 +8,7 @@
     f_sum, f_rest Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
                   errors are summed apart, and Λ = expm1(f_sum + f_rest)
 
-How far Λ₂ and Λ₃ are known. They are products along given float64 states, so that nothing is
+The error bounds of Λ₂ and Λ₃. They are products along given float64 states, so that nothing is
 magnified, and their rounding is counted:
 
 Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2
@@ -30,7 +30,7 @@ from typing import ClassVar
 
 import flint
 
-from verify.arithmetic.arb import bounds, in_reach
+from verify.arithmetic.arb import bounds, is_representable
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import Number
@@ -41,7 +41,7 @@ from verify.kernels.step.computation import common_power
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.stepping import KernelRun, Outcome, limits
 from verify.runs.estimated import working_digits
-from verify.runs.run import proved
+from verify.runs.run import prove_observables
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_parts import Parts
 from verify.schemes import get
@@ -54,7 +54,7 @@ from verify.studies.separation.stepper.way import (
     MixedKernel,
     Side,
     State,
-    Stepped,
+    SteppedRun,
     Way,
 )
 
@@ -80,15 +80,16 @@ class Determinants(Way):
     observables: ClassVar = frozenset({"lambda"})
     points: ClassVar = POINTS
     parts: ClassVar = Parts.rounding
-    # Float64's 16 digits, less those by which a long run magnifies what is rounded.
+    # Float64's 16 digits, less those by which a long run magnifies its rounding.
     cancelled: ClassVar = 14
     vanishes: ClassVar = "ΔJ ≡ 0"
 
     # -- the kernel ---------------------------------------------------------------------------
 
     def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Kernel:
-        """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
+        """Return the arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
         observables = self.observables if exactly else WORKING
+        # Only the kernel's lines are needed here; they are compiled with those of the way.
         uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
         return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
 
@@ -96,11 +97,14 @@ class Determinants(Way):
         start: dict[str, int] = {}
         inside = [f"f_det = {narrow.output('det')}", f"f_dj = {narrow.output('dj')}"]
         if wide:
-            _check(wide)
-            inside += _accumulate("trajectory", wide.output("dj"), start)
+            _check_range(wide)
+            inside += _accumulate_lines("trajectory", wide.output("dj"), start)
         if clocked:
-            inside += _accumulate("clock", clocked.output("dj"), start)
-        inside += ["w_factor = wide(f_det) - w_one", *_accumulate("factors", "w_factor", start)]
+            inside += _accumulate_lines("clock", clocked.output("dj"), start)
+        inside += [
+            "w_factor = wide(f_det) - w_one",
+            *_accumulate_lines("factors", "w_factor", start),
+        ]
         start["f_plain"] = 1
         inside.append("f_plain = f_plain * f_det")
         step = narrow.step
@@ -108,7 +112,7 @@ class Determinants(Way):
         if closed:
             inside += [
                 "w_factor = wide(f_dj)",
-                *_accumulate("closed", "w_factor", start),
+                *_accumulate_lines("closed", "w_factor", start),
                 *_CLOSED_SUM,
             ]
             start |= {"f_sum": 0, "f_rest": 0}
@@ -118,7 +122,7 @@ class Determinants(Way):
     def limits(
         self, kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
     ) -> list[Number]:
-        """Of p, q and Λ; UnsupportedError where they start beyond it."""
+        """Return the limits of p, q and Λ; UnsupportedError where they start beyond them."""
         if not isinstance(kernel.wide, Kernel) or not kernel.limits:
             return []
         exact = {n: Fraction(x) for n, x in kernel.inputs(inputs).items()}
@@ -128,7 +132,7 @@ class Determinants(Way):
             raise UnsupportedError(f"a step from the start may leave the range of {name}")
         return [float(room.p), float(room.q), arithmetic.number(room.part)]
 
-    # -- what is read of its states -----------------------------------------------------------
+    # -- reading its states -------------------------------------------------------------------
 
     def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
         return (arithmetic.exact(state[f"w_{name}"]),)
@@ -144,20 +148,20 @@ class Determinants(Way):
 
     # -- how far it is known ------------------------------------------------------------------
 
-    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
-        counted: dict[str, Fraction | None] = {}
+    def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
+        bounds_by_name: dict[str, Fraction | None] = {}
         for name in run.kernel.followed:
             # What a wide state does to the steps after it is not counted.
             error: Fraction | None = None if name == "clock" else Fraction(0)
             if name == "trajectory":
                 error = _error_of_delta_j(run)
             top = run.arithmetic.exact(run.last[f"w_{name}_top"])
-            counted[name] = _accumulated(run.steps, top, error, run.arithmetic)
-        if any(bound is None for name, bound in counted.items() if name != "clock"):
-            return dict.fromkeys(counted)
-        return counted
+            bounds_by_name[name] = _bound_product(run.steps, top, error, run.arithmetic)
+        if any(bound is None for name, bound in bounds_by_name.items() if name != "clock"):
+            return dict.fromkeys(bounds_by_name)
+        return bounds_by_name
 
-    def hides(self, run: Stepped, name: str) -> Fraction:
+    def hidden_size(self, run: SteppedRun, name: str) -> Fraction:
         if run.arithmetic.absolute:
             return _unit(run.arithmetic)
         sizes = (abs(run.arithmetic.exact(state[f"w_{name}"])) for state in run.states)
@@ -165,15 +169,15 @@ class Determinants(Way):
 
     # -- runs in exact arithmetic's stead -----------------------------------------------------
 
-    def proved(self, run: KernelRun, exact: StepMap | None, digits: int) -> Links | None:
-        """Λ at every checkpoint where ΔJ is a constant."""
+    def prove_links(self, run: KernelRun, exact: StepMap | None, digits: int) -> Links | None:
+        """Return Λ at every checkpoint where ΔJ is a constant, else None."""
         h, marks = run.start["h"], marks_of(run.steps, POINTS)
         digits += len(str(run.steps))
-        if exact is None or not proved(exact, self.observables, h, 1, digits):
+        if exact is None or not prove_observables(exact, self.observables, h, 1, digits):
             return None
         if exact.preserves_area:
             return exact_links([(Fraction(0),)] * len(marks), self.vanishes)
-        values = [proved(exact, self.observables, h, n, digits)["lambda"] for n in marks]
+        values = [prove_observables(exact, self.observables, h, n, digits)["lambda"] for n in marks]
         worst = max(bound for _, bound in values)
         return links_of([(x,) for x, _ in values], worst, "enclosed", "ΔJ is constant")
 
@@ -181,7 +185,7 @@ class Determinants(Way):
         return [*((note["lambda"],) for note in run.trail[:-1]), (last,)]
 
     def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:
-        """After the point: a compiled kernel takes the longer the more there are."""
+        """Return the digits after the point: compiled kernels take longer the more there are."""
         if not compiled:
             return working_digits(wanted, run.steps)
         # Along given states only the number of roundings grows; a step's are below 10^6 units.
@@ -189,8 +193,11 @@ class Determinants(Way):
         return wanted + max(0, -magnitude(size)) + len(str(run.steps)) + 6
 
 
-def _check(wide: Side) -> None:
-    """Where the range is limited, only what stays within it by the state's limits alone."""
+def _check_range(wide: Side) -> None:
+    """Raise UnsupportedError if an operation may leave a limited range.
+
+    The state's limits alone must keep all operations within it.
+    """
     program, arithmetic = wide.step.program, wide.arithmetic
     operations = (program.ops[i] for i in program.live([wide.step.outputs["dj"]]))
     partial = {
@@ -204,8 +211,8 @@ def _check(wide: Side) -> None:
         )
 
 
-def _accumulate(name: str, factor: str, start: dict[str, int]) -> list[str]:
-    """Λ ← Λ + e + Λ e, and the greatest |Λ| on the way, which its error bound needs."""
+def _accumulate_lines(name: str, factor: str, start: dict[str, int]) -> list[str]:
+    """Return lines for Λ ← Λ + e + Λ e and for the greatest |Λ|, which the error bound needs."""
     lam, top = f"w_{name}", f"w_{name}_top"
     start |= {lam: 0, top: 0}
     return [
@@ -215,34 +222,35 @@ def _accumulate(name: str, factor: str, start: dict[str, int]) -> list[str]:
     ]
 
 
-def _error_of_delta_j(run: Stepped) -> Fraction | None:
-    """B: the error of one wide ΔJ, all over the region that the float64 states have visited."""
+def _error_of_delta_j(run: SteppedRun) -> Fraction | None:
+    """Return B, the error of one wide ΔJ over the region that the float64 states have visited."""
     with working_precision(PRECISION):
-        # A float64 goes to a fixed-point number but for what is below its last place.
+        # A float64 becomes a fixed-point number, cut below that number's last place.
         cut = flint.arb(2) ** -run.arithmetic.bits if run.arithmetic.absolute else flint.arb(0)
-        values = run.analysed([run.kernel.wide.outputs["dj"]], cut)
-        return bounds(values[0].error)[1] if values and in_reach(values[0].error) else None
+        values = run.analyse_values([run.kernel.wide.outputs["dj"]], cut)
+        return bounds(values[0].error)[1] if values and is_representable(values[0].error) else None
 
 
-def _accumulated(
+def _bound_product(
     steps: int, top: Fraction, error: Fraction | None, arithmetic: Arithmetic
 ) -> Fraction | None:
-    """The bound of the module's docstring; M = `top`, B = `error`."""
+    """Return the bound of the module's docstring; M = `top`, B = `error`."""
     if error is None or top > Fraction(1, 2):
         return None
-    rounded = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
-    bound = 4 * steps * (rounded + 2 * error)
+    rounding = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
+    # 4 N |ρ|, where |ρ| grows by 2 B for an inexact factor.
+    bound = 4 * steps * (rounding + 2 * error)
     return bound if bound <= Fraction(1, 100) else None
 
 
 def _unit(arithmetic: Arithmetic) -> Fraction:
-    """One operation's error at most: relative, and twice that of rounding to nearest; or a unit."""
+    """Return a bound of an operation's error: twice that of rounding to nearest, or a unit."""
     return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
 
 
 def _power_of_area(step_map: StepMap, scheme: str) -> int:
-    """By about which power of h Λ is small: r − 1 where ΔJ has h^r, as far as that is seen."""
+    """Return about the power of h in Λ: r − 1 where ΔJ has h^r, as far as its terms show it."""
     if step_map.preserves_area:
         return 0
-    seen = common_power(step_map)
-    return seen - 1 if seen else 1 + (get(scheme).order or 0)
+    power = common_power(step_map)
+    return power - 1 if power else 1 + (get(scheme).order or 0)

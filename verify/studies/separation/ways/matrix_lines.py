@@ -1,4 +1,4 @@
-"""What a kernel carries of matrices, at each float64 state z̃ of a run in n degrees of freedom.
+"""The matrices that a kernel carries at each float64 state z̃ of a run in n degrees of freedom.
 
 With K = J − 1 of the step, by the derivatives of the step's own operations, and the symplectic
 defect S of the step, as the float64 kernel of `verify run` has them, bit for bit:
@@ -25,15 +25,15 @@ Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
 
 
 def matrix_lines(narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
-    """The lines of the matrices; `wide` and `clocked` where K is followed exactly."""
+    """Return the lines of the matrices; `wide` and `clocked` where K is followed exactly."""
     names, closed = narrow.step.coordinates, bool(narrow.step.defect)
     sides = {"trajectory": wide, "clock": clocked}
     products = [f"w_{name}" for name, side in sides.items() if side]
-    inside = [x for n, side in sides.items() if side for x in _moved(f"w_{n}", side.slopes)]
+    inside = [x for n, side in sides.items() if side for x in _update_lines(f"w_{n}", side.slopes)]
     products += ["w_factors", *["w_m"] * closed]
-    inside += _plain(narrow.slopes) + (_closed(narrow) if closed else [])
-    watched = [name for name in products if name != "w_clock"]
-    tops, more = _watched(narrow, watched, closed)
+    inside += _plain_lines(narrow.slopes) + (_closed_form_lines(narrow) if closed else [])
+    watched_products = [name for name in products if name != "w_clock"]
+    tops, more = _watch_lines(narrow, watched_products, closed)
     matrices = [*products, "f_plain", *["f_m"] * closed]
     start = {f"{matrix}_{a}_{b}": int(a == b) for matrix in matrices for a, b in _places(names)}
     sums = ("f_closed", "w_closed") * closed
@@ -47,7 +47,7 @@ def _places(rows: Sequence[object]) -> list[tuple[int, int]]:
 
 
 def _sum(row: Sequence[str], column: Sequence[str]) -> str:
-    """The sum of products, from the left; terms that are 0 for certain are left out."""
+    """Return the sum of products, from the left, without terms that are 0 for certain."""
     pairs = zip(row, column, strict=True)
     return " + ".join(f"{a} * {b}" for a, b in pairs if a and b)
 
@@ -58,79 +58,87 @@ def _product(rows: Rows, matrix: str) -> list[list[str]]:
     return [[_sum(row, column) for column in columns] for row in rows]
 
 
-def _moved(matrix: str, slopes: Rows) -> list[str]:
-    """M ← M + K M."""
-    return _assigned(matrix, _product(slopes, matrix), "{name} + ({entry})")
+def _update_lines(matrix: str, slopes: Rows) -> list[str]:
+    """Return the lines of M ← M + K M."""
+    return _assign_lines(matrix, _product(slopes, matrix), "{name} + ({entry})")
 
 
-def _assigned(matrix: str, entries: Rows, written: str = "{entry}") -> list[str]:
-    """All entries are made before the first is assigned; those that do not change are left.
+def _assign_lines(matrix: str, entries: Rows, template: str = "{entry}") -> list[str]:
+    """Return lines that compute all entries before they assign the first.
 
-    `written`: of an entry's `name` and of what is given for it.
+    Entries that do not change are left out. `template`: of the new value, with an entry's `name`
+    and its formula `entry`.
     """
-    kind, changed = matrix[:2], [(a, b) for a, b in _places(entries) if entries[a][b]]
-    after = (written.format(name=f"{matrix}_{a}_{b}", entry=entries[a][b]) for a, b in changed)
+    # The prefix f_ or w_ of the new names follows that of the matrix: it selects the arithmetic.
+    kind, places = matrix[:2], [(a, b) for a, b in _places(entries) if entries[a][b]]
+    after = (template.format(name=f"{matrix}_{a}_{b}", entry=entries[a][b]) for a, b in places)
     return [
-        *(f"{kind}new_{a}_{b} = {x}" for (a, b), x in zip(changed, after, strict=True)),
-        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in changed),
+        *(f"{kind}new_{a}_{b} = {x}" for (a, b), x in zip(places, after, strict=True)),
+        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in places),
     ]
 
 
-def _widened(matrix: str, entries: Rows) -> tuple[list[str], list[list[str]]]:
-    """The lines that make float64's entries exact, and what the names of these are."""
+def _widen_lines(matrix: str, entries: Rows) -> tuple[list[str], list[list[str]]]:
+    """Return the lines that make float64's entries exact, and the names of the exact entries."""
     names = [[x and f"{matrix}_{a}_{b}" for b, x in enumerate(r)] for a, r in enumerate(entries)]
     places = [(a, b) for a, b in _places(entries) if entries[a][b]]
     return [f"{names[a][b]} = wide({entries[a][b]})" for a, b in places], names
 
 
-def _plain(slopes: Rows) -> list[str]:
-    """J̃ = 1 + K̃ and its products, in float64 and exactly."""
+def _plain_lines(slopes: Rows) -> list[str]:
+    """Return the lines of J̃ = 1 + K̃ and its products, in float64 and exactly."""
     entries = {(a, b): slopes[a][b] for a, b in _places(slopes) if a == b or slopes[a][b]}
     for k in range(len(slopes)):
         entries[k, k] = f"1.0 + {slopes[k][k] or '0.0'}"
     rows = [["" for _ in slopes] for _ in slopes]
     for a, b in entries:
         rows[a][b] = f"f_j_{a}_{b}"
-    lines, exact = _widened("w_j", rows)
+    lines, exact = _widen_lines("w_j", rows)
     return [
         *(f"f_j_{a}_{b} = {entry}" for (a, b), entry in entries.items()),
         *lines,
-        *_assigned("w_factors", _product(exact, "w_factors")),
-        *_assigned("f_plain", _product(rows, "f_plain")),
+        *_assign_lines("w_factors", _product(exact, "w_factors")),
+        *_assign_lines("f_plain", _product(rows, "f_plain")),
     ]
 
 
-def _closed(narrow: Side) -> list[str]:
-    """M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
+def _closed_form_lines(narrow: Side) -> list[str]:
+    """Return the lines of M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
     every, places = range(len(narrow.slopes)), _places(narrow.slopes)
-    lines, exact = _widened("w_k", narrow.slopes)
+    lines, exact = _widen_lines("w_k", narrow.slopes)
     form = [["" for _ in every] for _ in every]
-    for name, at in narrow.step.defect.items():
+    for name, index in narrow.step.defect.items():
         a, b = map(int, name.split("_")[1:])
-        if not narrow.step.program.is_constant(at, 0):
+        if not narrow.step.program.is_constant(index, 0):
             form[a][b], form[b][a] = f"w_s_{a}_{b}", f"w_s_{b}_{a}"
-            lines += [f"{form[a][b]} = wide({narrow.name(at)})", f"{form[b][a]} = -{form[a][b]}"]
+            lines += [f"{form[a][b]} = wide({narrow.name(index)})", f"{form[b][a]} = -{form[a][b]}"]
     right = _product(form, "w_m")
     lines += [f"w_r_{a}_{b} = {right[a][b]}" for a, b in places if right[a][b]]
     for a, b in combinations(every, 2):
         column = [f"w_r_{c}_{b}" if right[c][b] else "" for c in every]
-        added = _sum([f"w_m_{c}_{a}" for c in every], column)
-        lines += [f"w_closed_{a}_{b} = w_closed_{a}_{b} + ({added})"] if added else []
+        term = _sum([f"w_m_{c}_{a}" for c in every], column)
+        lines += [f"w_closed_{a}_{b} = w_closed_{a}_{b} + ({term})"] if term else []
         lines.append(f"f_closed_{a}_{b} = f_closed_{a}_{b} + ({narrow.output(f'dw_{a}_{b}')})")
-    lines += _moved("w_m", exact)
+    lines += _update_lines("w_m", exact)
     return lines + [f"f_m_{a}_{b} = f_m_{a}_{b} + ({narrow.output(f'dm_{a}_{b}')})"
                     for a, b in places]  # fmt: skip
 
 
-def _watched(narrow: Side, products: Sequence[str], closed: bool) -> tuple[list[str], list[str]]:
-    """What a bound needs of every step, in float64: the greatest ‖M‖² of each product and
-    ‖MᵀΩM − Ω‖², and the greatest ‖J̃‖², ‖K̃‖² and ‖S̃‖². The names that carry it, and lines."""
+def _watch_lines(
+    narrow: Side, products: Sequence[str], closed: bool
+) -> tuple[list[str], list[str]]:
+    """Return the names and lines of the maxima that a bound needs of every step, in float64.
+
+    They are the greatest ‖M‖² of each product and ‖MᵀΩM − Ω‖², and the greatest ‖J̃‖², ‖K̃‖² and
+    ‖S̃‖².
+    """
     names, tops, lines = narrow.step.coordinates, list[str](), list[str]()
     size, half = len(names), len(names) // 2
 
     def keep(name: str, value: str) -> None:
         tops.append(name)
         lines.append(f"f_seen = {value}")
+        # Written with `not`, so that a nan is kept and voids the bound.
         lines.append(f"if not f_seen <= {name}: {name} = f_seen")
 
     def squares(entries: Sequence[str]) -> str:
@@ -154,6 +162,6 @@ def _watched(narrow: Side, products: Sequence[str], closed: bool) -> tuple[list[
     keep("f_j_norm", squares(jacobian))
     if closed:
         keep("f_k_norm", squares([x for row in slopes for x in row]))
-        defect = [narrow.name(at) for at in narrow.step.defect.values()]
+        defect = [narrow.name(index) for index in narrow.step.defect.values()]
         keep("f_s_norm", f"2.0 * ({squares(defect)})")
     return tops, lines

@@ -21,10 +21,10 @@ def _modules() -> dict[str, ModuleType]:
 
 
 def libraries() -> dict[str, str]:
-    """The package that each peer needs, by the peer's name."""
+    """Return the package that each peer needs, by the peer's name."""
     return {name: module.LIBRARY for name, module in _modules().items()}
 
 
 def get(name: str) -> ModuleType:
-    """The module of that name."""
+    """Return the module of the peer of that name."""
     return _modules()[name]

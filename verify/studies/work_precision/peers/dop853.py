@@ -24,10 +24,10 @@ TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy takes none
 
 
 def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
-    """With rtol = atol = tolerance."""
+    """Return a solver with rtol = atol = tolerance."""
     from scipy.integrate import solve_ivp
 
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     field, _ = canonical_field(problem.hamiltonian)
     names = (*field.names, "t") if field.timed else field.names
     slopes = functions_at(
@@ -36,23 +36,23 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
     slopes(*start, *(begin,)[: field.timed])
-    compiled = time.perf_counter() - begun
+    compile_seconds = time.perf_counter() - start_time
 
     def still(_: float, z: Sequence[float]) -> tuple[float, ...]:
-        found: tuple[float, ...] = slopes(*z)
-        return found
+        slope_values: tuple[float, ...] = slopes(*z)
+        return slope_values
 
     def driven(t: float, z: Sequence[float]) -> tuple[float, ...]:
-        found: tuple[float, ...] = slopes(*z, t)
-        return found
+        slope_values: tuple[float, ...] = slopes(*z, t)
+        return slope_values
 
     def solve() -> Answer:
-        found = solve_ivp(
+        solution = solve_ivp(
             driven if field.timed else still, (begin, end), start, method="DOP853", t_eval=(end,),
             rtol=float(tolerance), atol=float(tolerance),
         )  # fmt: skip
-        if not found.success:
-            raise PeerError(found.message)
-        return Answer(tuple(map(float, found.y[:, -1])), None, int(found.nfev))
+        if not solution.success:
+            raise PeerError(solution.message)
+        return Answer(tuple(map(float, solution.y[:, -1])), None, int(solution.nfev))
 
-    return Solver(solve, compiled)
+    return Solver(solve, compile_seconds)

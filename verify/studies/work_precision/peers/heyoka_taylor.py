@@ -26,19 +26,19 @@ TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 16))
 
 
 def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
-    """Raises PeerError for an H that heyoka does not take."""
+    """Return a solver of that tolerance. Raises PeerError for an H that heyoka does not take."""
     import heyoka as hy
 
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     names = tuple(problem.point)
     variables, n = hy.make_vars(*names), len(names) // 2
-    h = _translated(problem.hamiltonian.exact)
+    h = _translate(problem.hamiltonian.exact)
     start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
     pairs = list(zip(variables[:n], variables[n:], strict=True))
     field = [(p, -hy.diff(h, q)) for p, q in pairs] + [(q, hy.diff(h, p)) for p, q in pairs]
     taylor = hy.taylor_adaptive(field, list(start), tol=float(tolerance))
-    compiled = time.perf_counter() - begun
+    compile_seconds = time.perf_counter() - start_time
 
     def solve() -> Answer:
         taylor.time = begin
@@ -48,15 +48,15 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
             raise PeerError(f"heyoka stopped: {outcome}")
         return Answer(tuple(map(float, taylor.state)), int(steps), None)
 
-    return Solver(solve, compiled)
+    return Solver(solve, compile_seconds)
 
 
-def _translated(expression: sympy.Expr) -> Any:
+def _translate(expression: sympy.Expr) -> Any:
     import heyoka as hy
 
     numbers = (x for x in expression.atoms(sympy.Rational) if x.q & (x.q - 1))
-    known = {x: hy.expression(float(x)) for x in numbers}
+    numbers_by_value = {x: hy.expression(float(x)) for x in numbers}
     try:
-        return hy.from_sympy(expression, {**known, symbol("t"): hy.time})
+        return hy.from_sympy(expression, {**numbers_by_value, symbol("t"): hy.time})
     except (ValueError, TypeError) as error:
         raise PeerError(f"heyoka does not take this H: {error}") from None

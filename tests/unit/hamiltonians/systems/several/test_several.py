@@ -8,7 +8,7 @@ import sympy
 import verify
 from verify.algebra.formula import symbol
 from verify.hamiltonians import systems
-from verify.hamiltonians.coordinates import numbered
+from verify.hamiltonians.coordinates import numbered_names
 from verify.hamiltonians.start import check_start
 from verify.proof.proof import Proof
 
@@ -29,7 +29,7 @@ def test_a_system_explains_itself_and_its_examples_are_points(name: str) -> None
     assert system.title
     assert system.source
     assert system.regimes
-    assert system.hamiltonian().coordinates == numbered(system.degrees)
+    assert system.hamiltonian().coordinates == numbered_names(system.degrees)
     for regime in system.regimes.values():
         assert set(regime) == {"p", "q", *system.parameters}
         values = {name: regime[name] for name in system.parameters}

@@ -1,4 +1,4 @@
-"""What small ΔJ make of Λ."""
+"""The bound of Λ by small ΔJ."""
 
 from verify.proof.checked.in_theory.applies import Applies
 

@@ -1,4 +1,4 @@
-"""That kicks and drifts in turn are symplectic."""
+"""Kicks and drifts in turn are symplectic."""
 
 from verify.proof.checked.in_theory.applies import Applies
 from verify.schemes.conditions.splitting_conditions import Splitting

@@ -1,4 +1,4 @@
-"""That a Runge–Kutta method with b_i a_ij + b_j a_ji = b_i b_j is symplectic."""
+"""A Runge–Kutta method with b_i a_ij + b_j a_ji = b_i b_j is symplectic."""
 
 from verify.proof.checked.in_theory.applies import Applies
 from verify.schemes.conditions.tree_conditions import TreeConditions
@@ -7,8 +7,8 @@ from verify.structures import AREA, SYMPLECTIC
 _KEPT = {AREA: "det J = 1", SYMPLECTIC: "S = 0"}
 
 
-def fulfilled(every_h: object) -> bool:
-    """Whether the theorem's condition on the coefficients holds, exactly."""
+def fulfils(every_h: object) -> bool:
+    """Return True if the theorem's condition on the coefficients holds exactly."""
     if not isinstance(every_h, TreeConditions):
         return False
     conditions = every_h.area_conditions()
@@ -17,7 +17,7 @@ def fulfilled(every_h: object) -> bool:
 
 APPLIES = Applies(
     about="defect",
-    applies=lambda proved: fulfilled(proved.scheme.every_h),
+    applies=lambda proved: fulfils(proved.scheme.every_h),
     theorems=("Theorems.runge_kutta_is_symplectic",),
     says=lambda proved: (
         f"{_KEPT[proved.structure]} for every twice differentiable H wherever the stages have a "

@@ -1,4 +1,4 @@
-"""That the leading coefficient of lieη does not telescope for odd η: the oscillator shows it."""
+"""The leading coefficient of lieη does not telescope for odd η: the oscillator shows it."""
 
 from verify.proof.checked.in_theory.applies import Applies, eta_of
 

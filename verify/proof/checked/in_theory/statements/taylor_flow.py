@@ -1,4 +1,4 @@
-"""That lieη follows the motion up to h^η."""
+"""The step of lieη agrees with the flow up to h^η."""
 
 from verify.proof.checked.in_theory.applies import Applies, eta_of, for_every
 

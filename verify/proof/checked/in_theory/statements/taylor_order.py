@@ -8,11 +8,11 @@ from verify.proof.checked.in_theory.applies import (
     first_term,
     is_lie,
 )
-from verify.proof.checked.proved import Proved
+from verify.proof.checked.proved import ProvedStatement
 from verify.structures import AREA, SYMPLECTIC
 
 
-def _says(proved: Proved) -> str:
+def _says(proved: ProvedStatement) -> str:
     last = (eta_of(proved) or 0) + 1
     by = f"{by_flow(proved)}^{last}"
     parts = f"d(`{by}` `p_i`)∧d`q_i` + d`p_i`∧d(`{by}` `q_i`)"

@@ -1,13 +1,15 @@
-"""That the leading coefficient of lieη telescopes for even η."""
+"""The leading coefficient of lieη telescopes for even η."""
 
 from verify.proof.checked.in_theory.applies import Applies, by_flow, eta_of, for_every
-from verify.proof.checked.proved import Proved
+from verify.proof.checked.proved import ProvedStatement
 from verify.structures import AREA, SYMPLECTIC
 
 
-def _says(proved: Proved) -> str:
-    known = {AREA: f"{by_flow(proved)}·G, G", SYMPLECTIC: "a Lie derivative,"}[proved.structure]
-    return f"{for_every(proved)} the leading coefficient is {known} in closed form"
+def _says(proved: ProvedStatement) -> str:
+    telescoped = {AREA: f"{by_flow(proved)}·G, G", SYMPLECTIC: "a Lie derivative,"}[
+        proved.structure
+    ]
+    return f"{for_every(proved)} the leading coefficient is {telescoped} in closed form"
 
 
 APPLIES = Applies(

@@ -1,4 +1,4 @@
-"""What is asked of a table: conditions on its entries, as polynomials that any numbers can take."""
+"""The conditions on a table's entries, as polynomials that any numbers can be put into."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ import flint
 import sympy
 
 from verify.algebra.embedding import embed
-from verify.algebra.enclosure import enclosed
+from verify.algebra.enclosure import enclose_defined
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.number import E
 
@@ -18,7 +18,7 @@ BITS = 320  # of the balls in which all is decided
 
 
 class Equation(Protocol):
-    """One condition: what it is called, and the power of h that needs it."""
+    """One condition: its name, and the power of h that needs it."""
 
     @property
     def name(self) -> str: ...
@@ -28,7 +28,7 @@ class Equation(Protocol):
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedEquation:
     """A condition that is known by its name alone."""
 
     name: str
@@ -36,7 +36,8 @@ class Named:
 
 
 class Residues(Protocol):
-    """Left side − right side of every condition, from the entries; `one` is the ring's.
+    """The residuals, left side − right side, of every condition from the entries; `one` is the
+    ring's.
 
     `bound`: with every sign plus, so that at |entries| it is a bound of all of them.
     """
@@ -45,12 +46,12 @@ class Residues(Protocol):
 
 
 @dataclass(frozen=True)
-class Asked:
-    """`entries`: polynomials in the numbers that are rounded. `by_form`: how many conditions more
-    there are, that hold by the form of the table alone. `shares`: with which each counts in an
-    error constant, as 1/σ(t) of a tree; 1 where none are given. `labels`: what the entries are
-    called, where one is looked for that alone is wrong. `some`: the residues of the conditions at
-    these places alone, where they are made with less work than all of them."""
+class ConditionSet:
+    """Conditions on a table. `entries`: polynomials in the numbers that are rounded. `by_form`: the
+    number of further conditions that hold by the form of the table alone. `shares`: the factors of
+    the conditions in an error constant, as 1/σ(t) of a tree; 1 where there are none. `labels`:
+    names of the entries, for the search of one that alone is wrong. `some`: the residuals of the
+    conditions at these places alone, where they take less work than all of them."""
 
     entries: tuple[sympy.Expr, ...]
     equations: tuple[Equation, ...]
@@ -61,14 +62,14 @@ class Asked:
     some: Callable[[Sequence[int]], Residues] | None = None
 
     def residues_of(self, rows: Sequence[int], entries: Sequence[E], one: E) -> dict[int, E]:
-        """Those of the conditions at these places, by them."""
+        """Return the residuals of the conditions at these places, by place."""
         if self.some is not None:
             return dict(zip(rows, self.some(rows)(entries, one), strict=True))
-        found = self.residues(entries, one)
-        return {k: found[k] for k in rows}
+        residues = self.residues(entries, one)
+        return {k: residues[k] for k in rows}
 
     def up_to(self, order: int) -> list[int]:
-        """The places of the conditions of that order, and of lower ones."""
+        """Return the places of the conditions of that order, and of lower ones."""
         return [k for k, each in enumerate(self.equations) if each.order <= order]
 
 
@@ -76,22 +77,23 @@ class Asked:
 Pairs = Callable[[Sequence[Any], Any, int], Iterable[tuple[Any, Any]]]
 
 
-def of_pairs(
+def conditions_of_pairs(
     entries: tuple[sympy.Expr, ...], names: Iterable[str], pairs: Pairs,
     labels: tuple[str, ...] = (), by_form: int = 0,
-) -> Asked:  # fmt: skip
-    """That the sides of each pair are equal, which has the name that stands in its place."""
+) -> ConditionSet:  # fmt: skip
+    """Return the conditions that the sides of each pair are equal, with the names in the same
+    order."""
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         minus = 1 if bound else -1
         return [x + y * minus for x, y in pairs(entries, one, minus)]
 
-    equations = tuple(Named(name, 1) for name in names)
-    return Asked(entries, equations, residues, by_form, labels=labels)
+    equations = tuple(NamedEquation(name, 1) for name in names)
+    return ConditionSet(entries, equations, residues, by_form, labels=labels)
 
 
-def both(first: Asked, second: Asked) -> Asked:
-    """The conditions of both, the first ones on the first of the second's entries."""
+def join_conditions(first: ConditionSet, second: ConditionSet) -> ConditionSet:
+    """Return the conditions of both, the first ones on the first of the second's entries."""
     count = len(first.entries)
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
@@ -108,13 +110,13 @@ Number = Callable[[sympy.Expr], E]
 
 @lru_cache(maxsize=4096)
 def ball_of(x: sympy.Expr) -> Ball:
-    """A constant, at flint's present precision, which is `BITS` wherever this is called."""
+    """Return a constant, at flint's present precision, which is `BITS` wherever this is called."""
     if x.is_Rational:
         return flint.arb(flint.fmpq(int(x.p), int(x.q)))
     ring, (element,) = embed([x], ())
-    return enclosed(ring, element, {}, 2 * BITS)
+    return enclose_defined(ring, element, {}, 2 * BITS)
 
 
 def size_of(x: sympy.Expr) -> Ball:
-    """Its absolute value."""
+    """Return the absolute value of a constant."""
     return abs(ball_of(x))

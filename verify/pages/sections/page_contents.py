@@ -1,9 +1,9 @@
-"""What the sections of the page are given: a report, its claims and scenes with their places."""
+"""The input of the page's sections: a report, its claims and scenes with their places."""
 
 from dataclasses import dataclass
 
 from verify.pages.sections.claim_view import Anchors, ClaimGroup, ClaimView
-from verify.pages.sections.section import Shown
+from verify.pages.sections.section import VisibleSection
 from verify.scenes.results.report import Report, SceneResult
 
 
@@ -14,13 +14,13 @@ class SceneView:
     result: SceneResult
     anchor: str
     symbols: tuple[str, ...]  # parameters without a value
-    floors: str  # a sentence on the step sizes that do not divide the time
-    sections: tuple[Shown, ...]
+    rounding_note: str  # a sentence on the step sizes that do not divide the time
+    sections: tuple[VisibleSection, ...]
 
 
 @dataclass(frozen=True)
-class Given:
-    """`anchors`: those that are taken already."""
+class PageContents:
+    """A report with its claims, groups and scenes; `anchors` holds those in use already."""
 
     report: Report
     anchors: Anchors

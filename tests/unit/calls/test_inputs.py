@@ -11,7 +11,7 @@ import pytest
 import verify
 from tests.helpers.maps import by_formulas
 from verify import Hamiltonian, InputError
-from verify.calls.given import hamiltonian_from, scheme_name
+from verify.calls.inputs import hamiltonian_from, scheme_name
 from verify.schemes import get
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})

@@ -1,0 +1,196 @@
+"""Arguments of callers in their several forms: a system, a scheme, exact numbers, lists.
+
+A system is a `Hamiltonian`, a `System`, the name of one in any case, or a formula such as
+"p**2/2 - cos(q)". A scheme is a name or an alias, formulas 'p_next = …; q_next = …', a splitting
+'kick 1/2; drift 1; kick 1/2', a `Scheme`, or a `StepMap` of the same Hamiltonian. Numbers are read
+as `verify.arithmetic.exact` tells; numpy's are read like Python's.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from numbers import Integral
+from typing import Any
+
+from verify import schemes
+from verify.algebra.expressions.formula_text import to_text
+from verify.arithmetic.exact import Exact, whole
+from verify.errors import InputError, unknown_name
+from verify.execution.execute import Store, execute
+from verify.execution.executors import Placement
+from verify.execution.study import Need, plan_of
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.named_system import System
+from verify.scenes.frozen import Frozen
+from verify.scenes.scene import Scene, scene_from
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.scheme import Scheme
+
+SystemLike = Hamiltonian | System | str
+SchemeLike = Scheme | StepMap | str
+ParametersLike = Mapping[str, Exact | None] | None
+
+_NAME = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")  # no formula: a word, or words with dashes
+_SOURCE = "arguments"
+_LEAST = 3  # letters of what is taken for a name; `p` is a formula
+_SYSTEM = "is no system; allowed: a name such as duffing, a formula in p and q, a Hamiltonian"
+_SCHEME = (
+    "is no scheme; allowed: a name such as lie2, 'p_next = …; q_next = …', a Scheme, a StepMap"
+)
+
+
+def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> Hamiltonian:
+    """Return the Hamiltonian of a system, with these parameter values beside those that it has.
+
+    Raises InputError for what is no system, an unknown name, a bad formula or parameter.
+
+    >>> hamiltonian_from("Duffing", {"delta": 0.1}).texts
+    {'hamiltonian': 'delta*q**4/4 + p**2/2 + q**2/2', 'parameters': {'delta': '0.1'}}
+    """
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise InputError("parameters", parameters, "is not a mapping of names to values")
+    if isinstance(system, Hamiltonian):
+        values = {**dict(system.values), **(parameters or {})}
+        return system.with_values(values) if parameters else system
+    if isinstance(system, System):
+        return system.hamiltonian(parameters)
+    if not isinstance(system, str):
+        raise InputError("system", system, _SYSTEM)
+    name = systems.canonical(system)
+    if name in systems.names():
+        return systems.get(name).hamiltonian(parameters)
+    # A longer word that is no name is a mistyped one; as a formula it would be one parameter.
+    if len(system.strip()) >= _LEAST and _NAME.fullmatch(system.strip()):
+        raise unknown_name("system", system, systems.names(), "; or a formula in p and q")
+    return Hamiltonian.parse(system, parameters)
+
+
+def scheme_from(scheme: SchemeLike) -> Scheme | StepMap:
+    """Return the scheme, or the step map as it is; InputError for what is neither."""
+    if isinstance(scheme, Scheme | StepMap):
+        return scheme
+    if not isinstance(scheme, str):
+        more = "; verify.check takes a step function" if callable(scheme) else ""
+        raise InputError("scheme", scheme, _SCHEME + more)
+    return schemes.get(scheme)
+
+
+def scheme_name(scheme: SchemeLike, hamiltonian: Hamiltonian) -> str:
+    """Return a text by which `schemes.get` finds the scheme; that of a map has its formulas.
+
+    Raises InputError for a step map of another H, or without a closed form.
+    """
+    scheme_or_map = scheme_from(scheme)
+    if isinstance(scheme_or_map, Scheme):
+        try:
+            registered = schemes.get(scheme_or_map.name)
+        except InputError:
+            registered = None
+        # A user's Scheme may bear a catalogue's name with other formulas; then the formulas count.
+        if registered == scheme_or_map:
+            return scheme_or_map.name
+    step_map = step_map_from(scheme_or_map, hamiltonian)
+    return f"p_next = {to_text(step_map.p_next)}; q_next = {to_text(step_map.q_next)}"
+
+
+def step_map_from(scheme: Scheme | StepMap, hamiltonian: Hamiltonian) -> StepMap:
+    """Return the scheme's map of H. Raises InputError for a step map of another H."""
+    if isinstance(scheme, Scheme):
+        return scheme.step_map(hamiltonian)
+    map_hamiltonian = scheme.hamiltonian
+    if map_hamiltonian.exact != hamiltonian.exact:
+        problem = "is that of the step map, and not the one that is asked for"
+        raise InputError("hamiltonian", to_text(map_hamiltonian.exact), problem)
+    return scheme
+
+
+def schemes_from(values: object, hamiltonian: Hamiltonian) -> list[str]:
+    """Return the names of one scheme or of several."""
+    return [scheme_name(each, hamiltonian) for each in as_list("scheme", values)]
+
+
+def is_list(value: object) -> bool:
+    """Return True if the value holds several: a list, a tuple, a range, an array."""
+    # By the name of its module: numpy is not imported for a caller who does not use it.
+    return (isinstance(value, Sequence | range) and not isinstance(value, str | bytes)) or (
+        type(value).__module__ == "numpy" and getattr(value, "ndim", 0) == 1
+    )
+
+
+def as_list(name: str, value: Any) -> list[Any]:
+    """Return several values as a list, and one as a list of one. InputError for an empty list."""
+    values = list(value) if is_list(value) else [value]
+    if not values:
+        raise InputError(name, "[]", "is empty; give one at least")
+    return values
+
+
+def plain_values(value: Any) -> Any:
+    """Return the value with Python's own numbers and lists, as a scene takes them."""
+    if isinstance(value, Mapping):
+        return {key: plain_values(x) for key, x in value.items()}
+    if is_list(value):
+        return [plain_values(x) for x in value]
+    is_whole = isinstance(value, Integral) and not isinstance(value, bool)
+    return int(value) if is_whole else value
+
+
+def scene_of(
+    system: SystemLike,
+    scheme: object,
+    parameters: ParametersLike,
+    *,
+    t0: Exact | None = None,
+    name: str = "",
+    system_name: str | None = None,
+    **sections: Any,
+) -> Scene:
+    """Return a scene of the system and one scheme or several, with these sections and this name.
+
+    `t0`: when its runs start, which an H without t does not look at. `known_as`: the name of the
+    system, where it has one.
+    """
+    exact = hamiltonian_from(system, parameters)
+    # A family such as `fput` is one system for each n; a scene names its member by the parameter
+    # n.
+    of_family = system_name is not None and systems.get(system_name).family is not None
+    data = {
+        **({"system": system_name} if system_name else {"hamiltonian": exact.formula}),
+        "parameters": dict[str, Fraction](exact.values)
+        | ({"n": Fraction(exact.degrees)} if of_family else {}),
+        "schemes": schemes_from(scheme, exact),
+        **({"t0": plain_values(t0)} if t0 is not None and exact.time_dependent else {}),
+    }
+    sections = {key: plain_values(_drop_none(section)) for key, section in sections.items()}
+    try:
+        return scene_from({**data, **sections}, _SOURCE, default_name=name)
+    except InputError as error:
+        # The error names a key of the scene; the caller has passed an argument.
+        raise type(error)(_argument_name(error.name), error.value, error.problem) from None
+
+
+def _argument_name(key: str) -> str:
+    """Return the argument that a scene's key is made of.
+
+    >>> _argument_name("arguments: flow.0.step_size: step_size")
+    'step_size'
+    >>> _argument_name("arguments: flow.0.scale")
+    'scale'
+    """
+    path, _, field = key.removeprefix(f"{_SOURCE}: ").partition(": ")
+    last = [part for part in path.split(".") if not part.isdecimal()][-1]
+    return field if field and field != "number" else last
+
+
+def _drop_none(value: Any) -> Any:
+    """Return the sections without their keys of the value None."""
+    if isinstance(value, Mapping):
+        return {key: x for key, x in value.items() if x is not None}
+    return [_drop_none(each) for each in value] if isinstance(value, list) else value
+
+
+def perform(scene: Scene, need: Need, workers: int) -> dict[str, Frozen]:
+    """Compute the scene's results by their keys, in so many processes; 1 is this one."""
+    where = Placement(whole("workers", workers, 1))
+    return execute(plan_of([scene], need), Store(None), where=where)
