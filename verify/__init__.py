@@ -130,4 +130,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_NAMES, "__version__"})
+    return sorted({*_NAMES, *(name for name in globals() if name.startswith("__")), "__version__"})

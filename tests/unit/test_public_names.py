@@ -32,6 +32,7 @@ def test_a_public_name_is_there_and_says_what_it_is(name: str) -> None:
 
 
 def test_there_is_no_other_name() -> None:
+    assert {name for name in dir(verify) if not name.startswith("__")} == set(verify.__all__)
     with pytest.raises(AttributeError, match="no attribute 'runn'"):
         _ = verify.runn  # type: ignore[attr-defined]
 

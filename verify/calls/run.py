@@ -15,7 +15,6 @@ from verify.calls.inputs import (
 from verify.calls.progress import Progress, progress_of
 from verify.calls.run_result import RunResult
 from verify.errors import InputError
-from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.start import Given, check_start
 from verify.lockstep import Course, run_alone
 from verify.runs.run import RequestedRun
@@ -41,7 +40,6 @@ def run(
     observables: Sequence[str] | None = None,
     points: int = 0,
     progress: Progress = None,
-    keeper: Keeper = NOTHING,
 ) -> RunResult:
     """Run a scheme from (q, p), and give p, q and the observables, each with its error bound.
 
@@ -82,7 +80,7 @@ def run(
         run_in_turn(
             system, scheme, q=q, p=p, step_size=step_size, steps=steps, time=time, t0=t0,
             parameters=parameters, arithmetic=arithmetic, digits=digits, observables=observables,
-            points=points, progress=progress, keeper=keeper,
+            points=points, progress=progress,
         )
     )  # fmt: skip
 
@@ -91,7 +89,7 @@ def run_in_turn(
     system: SystemLike, scheme: SchemeLike, *, q: Given, p: Given, step_size: Exact,
     steps: int | None, time: Exact | None, t0: Exact = 0, parameters: ParametersLike,
     arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
-    points: int = 0, progress: Progress, keeper: Keeper = NOTHING,
+    points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
     """Return the run as a course, which can be stepped together with others."""
     exact = hamiltonian_from(system, parameters)
@@ -108,7 +106,7 @@ def run_in_turn(
         request = RequestedRun(
             exact, name, q=q, p=p, step_size=step_size, steps=count, t0=t0, arithmetic=arithmetic,
             digits=digits or _DIGITS, observables=_observable_names(observables),
-            points=int(points), keeper=keeper,
+            points=int(points),
         )  # fmt: skip
         result = yield from request.result(report)
     return RunResult.from_result(result).with_points(int(points))

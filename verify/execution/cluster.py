@@ -26,9 +26,6 @@ def connect(address: str) -> Iterator["Cluster"]:
 
     Raises InputError where `distributed` is missing, where nothing or something else answers, where
     there is no worker, and where one of them or the scheduler lacks this code or these libraries.
-
-    InputError where `distributed` is missing, where nothing or something else answers, where there
-    is no worker, and where one of them or the scheduler has not this code and these libraries.
     """
     try:
         import distributed

@@ -3,10 +3,6 @@
 Each result is written by itself, atomically, as soon as it exists, under a name made of the task
 and of this package's own source: an interrupted run goes on from there, and no result of other code
 is mistaken for one of this.
-
-Each result is written by itself, atomically, as soon as it is there, under a name made of the task
-and of this package's own source: an interrupted run goes on from there, and no result of other
-code is taken for one of this.
 """
 
 import os
@@ -52,8 +48,6 @@ class Store:
     """Finished results in a folder, one JSON file each; None keeps them in memory only.
 
     A file that is damaged, or of another version of the format, is ignored: its task is done again.
-
-    A file that is damaged, or of another version of the format, is none: its task is done again.
     """
 
     def __init__(self, folder: Path | None) -> None:
@@ -74,8 +68,6 @@ class Store:
 
         Raises InputError where the path is occupied by something that could not be replaced once
         the task is done.
-
-        Raises InputError where what is there instead could not be replaced once the task is done.
         """
         path = self.path(name)
         if path is None:
@@ -118,12 +110,6 @@ def execute(
     checkpoints, since its machine need not have the store's folder. Times are measured when no
     other task is under way: in this process, or on a cluster by the worker that has the task. What
     such a task prepares is computed before, beside the others, where there are workers here. Raises
-    PlaceError where the workers fail a task again and again.
-
-    On an interruption what is finished is in the store already. A task on a cluster keeps no
-    checkpoints, since its machine need not have the store's folder. Times are measured when no
-    other task is under way: in this process, or on a cluster by the worker that has the task. What
-    such a task prepares is found before, beside the others, where there are workers here.
     PlaceError where the workers fail a task again and again.
     """
     results: dict[str, Frozen] = {}

@@ -104,12 +104,6 @@ def open_place(
 
     Processes are started as they are needed. Raises InputError where the cluster does not answer,
     has no workers, or has other code than this.
-
-    `modules`: what processes have imported before their first call; of several places, the first
-    says it for all. `after_end` hears the numbers of processes here that were ended.
-
-    Processes are started as they are needed. InputError where the cluster does not answer, has no
-    workers, or has other code than this.
     """
     if where.cluster is not None:
         from verify.execution.cluster import connect

@@ -107,8 +107,6 @@ class Keeper:
         another format.
 
         Raises InputError where the path is occupied by something that could not be replaced.
-
-        Raises InputError where what is there instead could not be replaced.
         """
         path = self._path(label)
         if path is None:

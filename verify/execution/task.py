@@ -1,8 +1,6 @@
 """A task: all that a result depends on, its cost, and how it is computed.
 
 A kind of task is one class, in a file of the study it belongs to.
-
-A kind of task is one class, in a file of the study whose it is.
 """
 
 import hashlib

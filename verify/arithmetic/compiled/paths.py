@@ -62,8 +62,6 @@ def choose_path() -> Path | None:
     """Choose the way; None is one orbit after the other.
 
     Raises InputError where VERIFY_LANES names a way that is unknown, or not available.
-
-    Raises InputError where VERIFY_LANES asks for what is unknown, or not there.
     """
     name = forced_path()
     if name == OFF:

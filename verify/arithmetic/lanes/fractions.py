@@ -56,9 +56,6 @@ class Fractions:
 
         Within 2 m units for m limbs of x, and not negative: of the column below the lowest kept one
         only the high halves are added.
-
-        Within 2 m units for m limbs of x, and not negative: of the column below the lowest that is
-        kept the high halves alone are added.
         """
         columns = Columns(self.multiply_add, 0, len(x) - 1)
         u, v = ([self.multiply_add.factor(b, limb) for limb in limbs] for limbs in (t, x))

@@ -252,8 +252,6 @@ def _round(b: ir.IRBuilder, value: Pair, room: Value) -> tuple[Value, Value]:
     """Round to the nearest float64, and tell where that holds with `room` times the remainder, too.
 
     The condition is false for a power of two, and for the number below one: there units change.
-
-    It is never said of a power of two, or of the number below one: there units change.
     """
     nearest = exact_sum(b, *value)
     same = b.fcmp_ordered("==", multiply_add(b, nearest.low, room, nearest.high), nearest.high)

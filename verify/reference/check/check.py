@@ -3,8 +3,6 @@ of the data is computed again.
 
 A file that cannot be read is an InputError. One that can be read and is not as it must be is a
 difference.
-
-What cannot be read is an InputError. What can be read and is not as it must be is a difference.
 """
 
 import math
@@ -92,12 +90,6 @@ def check(
     many steps are computed again at most; runs that need more are named. `done` is called with the
     number of finished recomputations and the number of all. Raises InputError where a file cannot
     be read: it is missing, too large, of another format or version, not UTF-8, not JSON or not CSV.
-
-    `share`: from 0 to 1, of all runs, flows and proofs; `seed` chooses which.
-    `own`: the folder of the scenes that it must have been made from, where that is known.
-    `most_steps`: how many are done again at most; the runs that want more are named. `done`
-    is called with how many recomputations are finished, of how many. InputError where a file cannot
-    be read: it is missing, too large, of another format or version, no UTF-8, no JSON, no CSV.
     """
     findings = CheckResult(seed=seed)
     units = []

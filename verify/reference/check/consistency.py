@@ -4,14 +4,6 @@ way only.
 Nothing is computed again here. Since a value is the correct rounding of its number, its radius
 follows from it; since the scene says what is requested, every name and input follows from that; and
 since the same data always give the same bytes, every file follows from its scene's JSON.
-
-Nothing is computed again here. Since a value is the correct rounding of its number, its radius
-follows from it; since the scene says what is requested, every name and input follows from that; and
-since the same data always give the same bytes, every file follows from its scene's JSON.
-
-Here nothing is computed again. Since a value is the correct rounding of its number, its radius
-follows from it; since the scene says what is asked for, every name and input follows from that; and
-since the same data always give the same bytes, every file follows from its scene's JSON.
 """
 
 import ast
@@ -53,8 +45,6 @@ def check_data(data: AnyData, scene: Scene, file: Place) -> None:
     """Report what in the data differs from the scene's request, or is not printed as it must be.
 
     The rows are checked only where their inputs are those of the scene, and so of bounded size.
-
-    The rows are looked at only where their inputs are those of the scene, and so of bounded size.
     """
     before = len(file.findings.differences)
     _check_inputs(data, scene, file)
@@ -255,8 +245,6 @@ def compare_csv(expected: Sequence[Row], content: bytes, file: Place) -> None:
     """Compare a CSV file with the scene's JSON, cell by cell, then character by character.
 
     Raises InputError where it is not CSV.
-
-    InputError where it is not CSV.
     """
     before = len(file.findings.differences)
     compare_tables(expected, rows_of(content, file.file), file)

@@ -120,8 +120,6 @@ def _check_escape(orbit: Orbit, row: OrbitRow, place: Place, final: bool) -> int
     neither.
 
     A ball that is not finite may merely be too wide: it is not taken for an answer before `final`.
-
-    A ball that is not finite may be too wide only: that is not taken for an answer before `final`.
     """
     limit = flint.arb(2) ** _ESCAPED
     while orbit.done < (row.failed_step or 0):
@@ -157,8 +155,6 @@ def _compare_cell(
     """Check that the printed number is the one to which every number of the ball rounds.
 
     An exact number must be met to some more digits; 0 to twice the digits, or to `places`.
-
-    An exact number must be met to some digits more; 0 to twice the digits, or to `places`.
     """
     if cell is None:
         place.differs(name, format_ball(ball, digits), "null")

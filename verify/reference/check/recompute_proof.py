@@ -2,9 +2,6 @@
 
 The step is done with power series in h for z and the Jacobian, whose coefficients are balls. In the
 plane, S = JᵀΩJ − Ω has one entry, which is ΔJ.
-
-The step is done with power series in h for z and the Jacobian: their coefficients are balls. Of
-S = JᵀΩJ − Ω there is one entry in the plane, which is ΔJ.
 """
 
 from collections.abc import Iterator, Mapping
@@ -36,8 +33,6 @@ def recompute_proof(field: Field, data: AnyData, proof: AnyProof, file: Place) -
 
     Values at points cannot show that a coefficient vanishes for every z, but they show where it
     does not.
-
-    That a coefficient vanishes for every z is not seen so, but that it does not is.
     """
     order, convergence = proof.order, proof.convergence_order
     row = file.at_row(f"proof of {proof.scheme}")

@@ -212,8 +212,6 @@ def _yoshida() -> list[tuple[str, Number]]:
     again.
 
     H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262.
-
-    H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262.
     """
     outer = 1 / (2 - flint.arb(2).root(3))
     steps = outer, 1 - 2 * outer, outer

@@ -3,10 +3,6 @@
 A few roundings of the state in each step happen in any case. What comes from earlier steps is
 followed where a difference is larger (`verify.reference.compare.scatter`). A program that computes
 ΔJ as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
-
-A few roundings of the state in each step are there in any case. What comes from earlier steps is
-followed where a difference is larger (`verify.reference.compare.scatter`). A program that finds ΔJ
-as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
 """
 
 import math

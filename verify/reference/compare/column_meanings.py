@@ -1,8 +1,6 @@
 """Other meanings that a column may have than ΔJ, MSE, Λ, … as they are defined here.
 
 Each is another reading of numbers of the same run. Adding one is adding an entry at the end.
-
-Each is another reading of numbers of the same run. Adding one is adding an entry at the end.
 """
 
 import math

@@ -86,9 +86,6 @@ def compare(
     Verdicts are of columns, over all runs together; mistakes are looked for where one differs by
     more than rounding. Raises InputError where the table has no row, or no cell, that the data
     have.
-
-    Verdicts are of columns, over all runs together; mistakes are looked for where one differs by
-    more than rounding. InputError where the table has no row, or no cell, that the data have.
     """
     kept_rows = theirs.all_rows()
     how = {name: printing(row.cells[name] for row in kept_rows) for name in theirs.columns}

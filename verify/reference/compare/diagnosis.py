@@ -3,10 +3,6 @@
 One is named where it fits and the right setting is off by many times more; where several fit,
 nothing tells them apart. A mistake of the state is looked for in its columns, where the table has
 them; then what is wrong with the others, such as Λ, in the one setting that fits the state.
-
-One is named where it fits and the right setting is off by many times more; where several fit,
-nothing tells them apart. A mistake of the state is looked for in its columns, where they are given;
-then what is wrong with the others, such as Λ, in the one setting that the state has.
 """
 
 import math

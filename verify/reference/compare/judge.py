@@ -9,15 +9,6 @@ not.
 
 It does where the toolkit's own step does in doubles; and another program may where a number of the
 run, or a product of its determinants, is not far from the largest double.
-
-A setting fits where all numbers of the run are within what rounding may do of those that it
-foretells. The right one is tried in the precision that their numbers are printed with, and in
-doubles. `verify.reference.compare.diagnosis` tries others where it does not fit.
-
-Whether a program in doubles may leave their range on a run, where the reference data do not.
-
-It does where the toolkit's own step does in doubles; and another program may where a number of the
-run, or a product of its determinants, is not far from the largest double.
 """
 
 import math
@@ -143,8 +134,6 @@ class Judge:
         """Judge how well a setting foretells the columns; unless `wholly`, stop where it fails.
 
         `read` returns what a column is foretold to hold, where that is not the setting's number.
-
-        `read` gives what a column is foretold to hold, where that is not the setting's own.
         """
         allowance = Allowance(setting.orbit, unit, self._scatters)
         names = tuple(names)

@@ -2,9 +2,6 @@
 
 Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
 Mistakes in a column other than the state are in `verify.reference.compare.column_meanings`.
-
-Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
-What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

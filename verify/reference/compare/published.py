@@ -138,9 +138,6 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
     Raises InputError for a folder that does not exist or has no such reference data, and for a file
     of another format, or not as it must be.
 
-    InputError for a folder that is not there or has no such reference data, and for a file that is
-    of another format, or not as it must be.
-
     >>> from verify.reference.make.make import PUBLISHED
     >>> load(PUBLISHED, "duffing").values_of("duffing", "q0")
     ['0.1', '0.5', '1.5', '0']

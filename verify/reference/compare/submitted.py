@@ -47,10 +47,6 @@ def read(
     `options`: what holds for all rows, by column: the scene, and the inputs, of which q0 and p0 may
     be lists. `names`: what the table calls a column, by our name. Raises InputError where the table
     cannot be read, or does not tell which run a row belongs to.
-
-    `given`: what holds for all rows, by column: scene, and the inputs, of which q0 and p0 may be
-    lists. `names`: what the table calls a column, by ours. InputError where it cannot be read, or
-    does not tell which run a row is of.
     """
     table = SubmittedTable()
     with open_table(path) as lines:

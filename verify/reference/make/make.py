@@ -177,8 +177,6 @@ def write(folder: Path, files: Mapping[str, bytes], manifest: Manifest) -> None:
     """Write the files, each atomically, and the manifest last.
 
     An old manifest is removed first: an interruption leaves no manifest of other files behind.
-
-    An old manifest goes first: an interruption leaves no manifest of other files behind.
     """
     # A folder without a manifest is refused by a check; one with a stale manifest might be
     # believed.

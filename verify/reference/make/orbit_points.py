@@ -4,11 +4,6 @@ Each chosen step is a run of its own, so that the numbers are those that `verify
 with a rigorous bound wherever there is one. ΔJ at the state, or H in several degrees of freedom, is
 enclosed by balls over all states within that bound. The number of digits is raised until all
 numbers round to one decimal.
-
-Each step that is chosen is a run of its own, so that what is known of it is what `verify.runs.run`
-reports, with a rigorous bound wherever one can be had. ΔJ at the state, or H in several degrees of
-freedom, is enclosed by balls over all states within that bound. More digits are asked for until all
-numbers round to one decimal.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -52,9 +52,6 @@ def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
 
     A few bytes may stand for very many cells, or for one long text in all of them: so columns are
     read as dictionaries, and their size is computed before they are expanded.
-
-    A few bytes may stand for very many cells, or for one long text in all of them: so columns are
-    read as dictionaries, and it is looked how large they will be before they are.
     """
     import pyarrow.compute
     from pyarrow import parquet

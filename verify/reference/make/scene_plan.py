@@ -20,8 +20,6 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
     """Plan the reference data that the scenes request, and nothing else of them.
 
     One task for a proof, a run and a flow; those that two scenes share are one.
-
-    One task a proof, a run and a flow; those that two scenes share are one.
     """
     plan = Plan()
     for scene in scenes:
