@@ -103,7 +103,7 @@ def clock() -> float:
     return time.perf_counter() - _THREAD_STATE.away
 
 
-class Outcome(Generic[T]):
+class CourseOutcome(Generic[T]):
     """The value of a course that has ended, or its error."""
 
     __slots__ = ("_error", "_value")
@@ -118,7 +118,9 @@ class Outcome(Generic[T]):
         return self._value  # type: ignore[return-value]  # T may be None
 
 
-def run_together(courses: Iterator[Course[T]], max_active: int) -> Iterator[tuple[int, Outcome[T]]]:
+def run_together(
+    courses: Iterator[Course[T]], max_active: int
+) -> Iterator[tuple[int, CourseOutcome[T]]]:
     """Run the courses, and yield the number and the outcome of each as it ends.
 
     At most `max_active` are under way at a time; the next is taken from the iterator as there is
@@ -172,7 +174,7 @@ class _Member(Generic[T]):
 
     def __init__(self, number: int, course: Course[T]) -> None:
         self.number, self.course = number, course
-        self.outcome: Outcome[T] | None = None
+        self.outcome: CourseOutcome[T] | None = None
         self.pending: Pending | None = None
         self.away = self.since = 0.0  # seconds for which others ran; when it began to wait
 
@@ -191,9 +193,9 @@ class _Member(Generic[T]):
         try:
             self.pending = next(self.course)
         except StopIteration as stop:
-            self.outcome = Outcome(stop.value)
+            self.outcome = CourseOutcome(stop.value)
         except Exception as error:
-            self.outcome = Outcome(None, error)
+            self.outcome = CourseOutcome(None, error)
         finally:
             _THREAD_STATE.away = outer
             self.since = time.perf_counter()

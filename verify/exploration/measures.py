@@ -12,7 +12,7 @@ from typing import Any
 
 from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Sample
-from verify.kernels.stepping import Outcome
+from verify.kernels.stepping import RunOutcome
 from verify.lockstep import run_alone
 from verify.studies.separation.links import separate_chains
 from verify.studies.separation.stepper.run import Stopped
@@ -85,7 +85,7 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     return None if outcome.done < sample.steps else _lost(sample, exact, outcome)
 
 
-def _lost(sample: Sample, exact: Outcome, outcome: Outcome) -> float | None:
+def _lost(sample: Sample, exact: RunOutcome, outcome: RunOutcome) -> float | None:
     names = tuple(sample.point)
     size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
     error = max(abs(outcome.values[n] - exact.values[n]) for n in names)
@@ -125,7 +125,7 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     return [(sample.point["q"], sample.point["p"]), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: Sample, digits: int, *observables: str) -> Outcome | None:
+def _stays(sample: Sample, digits: int, *observables: str) -> RunOutcome | None:
     """Run with so many digits; None if the orbit goes far.
 
     In n degrees of freedom it is also None if the kernel is long, or if the observables vanish

@@ -16,7 +16,7 @@ from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of, start_texts
 from verify.kernels.run_inputs import SECTIONS
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.proof.order import prove
 from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
@@ -228,7 +228,7 @@ class Sample:
 
     def run(
         self, number_system: str, digits: int, *observables: str, sections: int = SECTIONS
-    ) -> Outcome:
+    ) -> RunOutcome:
         """Run it in a kernel, with a trail of so many sections."""
         run = KernelRun(*self.kernel_inputs, frozenset(observables), 0, sections=sections)
         return run.run(number_systems.get(number_system, digits))

@@ -24,7 +24,7 @@ def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
     """
     if not hamiltonian.time_dependent:
         return
-    same = _is_same(hamiltonian, "t", sympy.Rational(period.numerator, period.denominator))
+    same = _is_invariant(hamiltonian, "t", sympy.Rational(period.numerator, period.denominator))
     if same is not True:
         relation = "is not known to be" if same is None else "is not"
         problem = f"H {relation} the same at t + {text(period)} as at t"
@@ -37,12 +37,12 @@ def is_angle(hamiltonian: Hamiltonian) -> bool:
     >>> is_angle(Hamiltonian.parse("p**2/2 - cos(q)")), is_angle(Hamiltonian.parse("p**2 + q**2"))
     (True, False)
     """
-    return _is_same(hamiltonian, "q", 2 * sympy.pi) is True
+    return _is_invariant(hamiltonian, "q", 2 * sympy.pi) is True
 
 
-def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | None:
-    """Return True if H is the same function with that added to q or t; None where it is not
-    decided."""
+def _is_invariant(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | None:
+    """Return True if H does not change when the shift is added to the variable; None where that is
+    not decided."""
     x = symbol(name)
     shifted = answer_unless_long(
         lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None
@@ -57,7 +57,7 @@ def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | N
 def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     """Return a period of H in p, q or t, shown by algebra: a rational number, or one times π.
 
-    None where H is not known to have such a one. The parameters have their values.
+    None where no period is found. Parameters have their values; the period need not be the least.
 
     >>> period_in(Hamiltonian.parse("p**2/2 + q**2*(2 + cos(2*pi*t/3) + sin(pi*t))"), "t")
     6
@@ -65,14 +65,17 @@ def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     4*pi/3
     """
     variable = symbol(name)
-    functions = waves_in(hamiltonian.exact)
-    rates = {sympy.expand(f.args[0]).diff(variable) for f in functions} - {sympy.S.Zero}
+    periodic_functions = waves_in(hamiltonian.exact)
+    rates = {sympy.expand(f.args[0]).diff(variable) for f in periodic_functions} - {sympy.S.Zero}
     for unit in (sympy.S.One, sympy.pi):
-        parts = [rate / unit for rate in rates]
-        if parts and all(part.is_Rational for part in parts):
-            # With rates a_i/b_i the period is 2π · lcm(b_i)/gcd(a_i): a multiple of each function's
-            # own.
-            common = math.lcm(*(int(x.q) for x in parts)), math.gcd(*(int(x.p) for x in parts))
+        rational_rates = [rate / unit for rate in rates]
+        if rational_rates and all(part.is_Rational for part in rational_rates):
+            # With the rates unit·a_i/b_i a common period is (2π/unit)·lcm(b_i)/gcd(a_i), which is a
+            # multiple of the period of each function.
+            common = (
+                math.lcm(*(int(x.q) for x in rational_rates)),
+                math.gcd(*(int(x.p) for x in rational_rates)),
+            )
             period = 2 * sympy.pi / unit * sympy.Rational(*common)
-            return period if _is_same(hamiltonian, name, period) is True else None
+            return period if _is_invariant(hamiltonian, name, period) is True else None
     return None

@@ -27,10 +27,13 @@ from verify.integrators.user_code.step import StepError, limit_time, why
 from verify.prose import Prose, join_prose, prose
 from verify.verdict import Verdict
 
-_PROOF, _CLOCK_SECONDS = 1 / 3, 10.0  # of the time that is left; seconds
-_LISTED = 3  # of what is not pure
-_MOST_PROOF, _MOST_OF_MANY = 20.0, 6.0  # seconds; and of three degrees of freedom and more
-_KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
+_SHARE_FOR_PROOF = 1 / 3  # of the time that is left
+_CLOCK_SECONDS = 10.0
+_MAX_LISTED = 3  # of what is not pure
+_MAX_PROOF_SECONDS = 20.0
+# With three degrees of freedom and more algebra seldom ends in time.
+_MAX_PROOF_SECONDS_IN_MANY_DEGREES = 6.0
+_SHARE_FOR_FLOATS = 0.4  # of the time that is left, for floats after dual numbers, which are slow
 
 
 def examine(trial: Trial, provable: bool) -> Finding:
@@ -41,8 +44,10 @@ def examine(trial: Trial, provable: bool) -> Finding:
     try:
         # In many degrees of freedom algebra seldom ends in time, and the time is needed for
         # measuring.
-        time_limit = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
-        with limit_time(min(time_limit, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
+        time_limit = _MAX_PROOF_SECONDS if step.degrees < 3 else _MAX_PROOF_SECONDS_IN_MANY_DEGREES
+        with limit_time(
+            min(time_limit, max(step.left, 0.1) * _SHARE_FOR_PROOF), "its proof takes too long"
+        ):
             trace = trace_of(step)
             _must_be_pure(trace)
             if provable:
@@ -63,7 +68,7 @@ def _must_be_pure(trace: Trace) -> None:
     """Raise StepError where the code reaches something that may change from call to call."""
     impure = trace.tape.outside.texts
     if impure:
-        names = join_prose(", ", map(prose, impure[:_LISTED]))
+        names = join_prose(", ", map(prose, impure[:_MAX_LISTED]))
         raise StepError(prose("what it reaches may change from call to call: ", names))
 
 
@@ -167,7 +172,7 @@ def _measure(trial: Trial, notes: list[Prose]) -> Finding:
     step = trial.step
     # Dual numbers are slow: some of the time is held back for floats, and given back before these
     # begin.
-    reserve = 0.0 if step.foreign else _KEPT * max(step.left, 0)
+    reserve = 0.0 if step.foreign else _SHARE_FOR_FLOATS * max(step.left, 0)
     for how in step.ways:
         step.hold_back(reserve if how == "duals" else -reserve)
         try:

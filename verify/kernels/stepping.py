@@ -166,7 +166,7 @@ def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
 
 
 @dataclass(frozen=True)
-class Outcome(Reached):
+class RunOutcome(Reached):
     """The end of a run, by a `kernel`.
 
     `radii`: how far from the last values the true ones may be, where numbers are enclosures.
@@ -197,7 +197,7 @@ class Outcome(Reached):
 
 
 _FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
-_NOWHERE = Outcome(reason="an operation of the first step may leave the range of ")
+_NOWHERE = RunOutcome(reason="an operation of the first step may leave the range of ")
 
 
 class KernelRun(RunInputs):
@@ -219,7 +219,7 @@ class KernelRun(RunInputs):
         kernel = kernel_for(*kernel_key)
         return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
-    def run(self, arithmetic: Arithmetic, **options: Any) -> Outcome:
+    def run(self, arithmetic: Arithmetic, **options: Any) -> RunOutcome:
         """Run alone: the same as `run_in_turn`."""
         return run_alone(self.run_in_turn(arithmetic, **options))
 
@@ -230,8 +230,8 @@ class KernelRun(RunInputs):
         compensated: bool = False,
         tangent: bool = False,
         progress: Progress | None = None,
-        enough: Callable[[Outcome], bool] | None = None,
-    ) -> Course[Outcome]:
+        enough: Callable[[RunOutcome], bool] | None = None,
+    ) -> Course[RunOutcome]:
         """Make all steps in this arithmetic; the series only where the kernel collects extremes.
 
         `tangent` carries the tangent map along. `enough` is called at the first checkpoint and
@@ -277,13 +277,13 @@ class KernelRun(RunInputs):
 
 
 def _outcome(
-    loop: ChunkedLoop, progress: Progress | None, enough: Callable[[Outcome], bool] | None
-) -> Course[Outcome]:
+    loop: ChunkedLoop, progress: Progress | None, enough: Callable[[RunOutcome], bool] | None
+) -> Course[RunOutcome]:
     """Run the loop to its end; a checkpoint is written where it is interrupted."""
 
-    def outcome() -> Outcome:
+    def outcome() -> RunOutcome:
         fields = vars(loop.current) | {"done": loop.done, "seconds": loop.seconds}
-        return Outcome(**fields, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
+        return RunOutcome(**fields, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
 
     was_asked = False
 

@@ -12,7 +12,7 @@ from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
 from verify.pages.sections.claim_view import COLOURS, ClaimView
 from verify.pages.sections.scene.stability import MEANINGS
-from verify.pages.sections.section import Place, Tile, VisibleSection, walk
+from verify.pages.sections.section import SectionPlace, Tile, VisibleSection, walk
 from verify.pages.sections.section import sections as found_sections
 from verify.pages.text.signs import SIGNS
 from verify.pages.text.typography import join_and, superscript, whole
@@ -74,7 +74,7 @@ class FirstScreen:
     answers: tuple[Answer, ...]
     refutation: Refutation | None
     plot: Plot | None
-    place: Place | None
+    place: SectionPlace | None
     wrong: Wrong | None = None
 
 
@@ -261,7 +261,7 @@ def _select_refutation(claims: Sequence[ClaimView]) -> Refutation | None:
     return Refutation(claim, tuple(same))
 
 
-def _select_picture(sections: Sequence[VisibleSection]) -> tuple[Plot | None, Place | None]:
+def _select_picture(sections: Sequence[VisibleSection]) -> tuple[Plot | None, SectionPlace | None]:
     """Return the picture of the least rank: the cost in area comes first, then stability."""
     pictures = (picture for each in walk(sections) for picture in each.pictures)
     _, plot, place = min(pictures, key=lambda each: each[0], default=((), None, None))

@@ -24,7 +24,7 @@ from verify.pages.sections import scene as of_scene
 from verify.pages.sections import scheme_plots
 from verify.pages.sections.claim_view import Anchors, ClaimGroup, ClaimView, groups
 from verify.pages.sections.page_contents import PageContents, SceneView
-from verify.pages.sections.section import Place, VisibleSection, select_sections, terms, walk
+from verify.pages.sections.section import SectionPlace, VisibleSection, select_sections, terms, walk
 from verify.pages.text import mathml, notation, prose, typography, words
 from verify.pages.text.signs import SIGNS
 from verify.pages.text.typography import join_and, whole
@@ -44,19 +44,19 @@ class PageView(PageContents):
         """Return the groups of claims that have a claim on this scene."""
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
 
-    def keeping_place(self, plot: Plot) -> Place | None:
+    def keeping_place(self, plot: Plot) -> SectionPlace | None:
         """Return the only place where the plot stands, or None where no section keeps it."""
         return next((place for kept_plot, place in self._kept_plots if kept_plot is plot), None)
 
     @cached_property
-    def _kept_plots(self) -> Sequence[tuple[Plot, Place]]:
+    def _kept_plots(self) -> Sequence[tuple[Plot, SectionPlace]]:
         return [each for s in walk(self.sections) for each in s.section.keeps(s.view)]
 
 
 def page_view(report: Report) -> PageView:
     """Return the view of the report; pictures are drawn here."""
     contents = _contents_of(report)
-    sections = select_sections(of_page.FILES, Place("", ""), contents)
+    sections = select_sections(of_page.FILES, SectionPlace("", ""), contents)
     return PageView(
         **vars(contents),
         first=first_screen(report, contents.claims, sections),
@@ -129,7 +129,7 @@ def _build_scene_view(scene: SceneResult, anchor: str) -> SceneView:
         anchor=anchor,
         symbols=tuple(n for n in names if n not in decided_names),
         rounding_note=_describe_floors(scene),
-        sections=select_sections(of_scene.FILES, Place(anchor, scene.title), scene, anchor),
+        sections=select_sections(of_scene.FILES, SectionPlace(anchor, scene.title), scene, anchor),
     )
 
 

@@ -17,7 +17,7 @@ _MAX_NAMED = 6
 
 
 @dataclass(frozen=True)
-class Mistake:
+class MistakeKind:
     """One kind of mistake in one library: some of the claims, and how many more there are."""
 
     severity: str
@@ -30,7 +30,7 @@ class WrongLibrary:
     """The mistakes of one library; `name` is the title of its section."""
 
     name: str
-    mistakes: tuple[Mistake, ...]
+    mistakes: tuple[MistakeKind, ...]
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ def _name(section: str) -> str:
     return section.removesuffix(", printed tables")
 
 
-def _mistakes(claims: Sequence[ClaimView]) -> tuple[Mistake, ...]:
+def _mistakes(claims: Sequence[ClaimView]) -> tuple[MistakeKind, ...]:
     mistakes = []
     for severity in dict.fromkeys(c.result.severity for c in claims):
         # Of several claims with one source and severity the first is named.
         first = {c.result.source: c for c in reversed(claims) if c.result.severity == severity}
         sources = [c for c in claims if c is first.get(c.result.source)]
         mistakes.append(
-            Mistake(severity, tuple(sources[:_MAX_NAMED]), max(len(sources) - _MAX_NAMED, 0))
+            MistakeKind(severity, tuple(sources[:_MAX_NAMED]), max(len(sources) - _MAX_NAMED, 0))
         )
     return tuple(mistakes)

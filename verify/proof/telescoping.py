@@ -1,21 +1,23 @@
-"""The test whether the leading coefficient of ΔJ, or S, is a derivative along the flow.
+"""The test whether the leading coefficient of ΔJ, or of S, is a derivative along the flow.
 
-Such a coefficient telescopes. In the plane it is X·G, whose sum along an orbit is [G]₀ᵀ; in n
-degrees of freedom it is the Lie derivative of a 2-form, and M_kᵀ (S_k/h) M_k adds up to the
-difference of that form at the ends.
+Such a coefficient telescopes. In the plane it is X·G, whose sum along an orbit is G at the end
+minus G at the start. In n degrees of freedom it is the Lie derivative of a 2-form, and the sum of
+M_kᵀ (S_k/h) M_k is the difference of that form between the ends; M_k is the product of the
+Jacobians of the first k steps.
 
 Let [a, b] = Σ_i d(Xᵃp_i)∧d(X^b q_i). The Lie derivative L commutes with d, so that L[a, b] =
 [a+1, b] + [a, b+1], and L[0, 0] = LΩ = 0. S of `lieη` begins with −h^(η+1)/(η+1)! ([η+1, 0] +
 [0, η+1]), which in the plane is −div(X^η f)/(η + 1)! dp∧dq, f = (−H_q, H_p).
 
-Even η: it is Lβ for every smooth H, β = −1/(η+1)! Σ_k (−1)^k [η−k, k], k = 0 … η, in whose
-alternating sum all but the ends cancel. In the plane β = G dp∧dq, and L(G dp∧dq) = (X G) dp∧dq,
-since the flow preserves dp∧dq. ∎
+Even η: it is Lβ for every smooth H, β = −1/(η+1)! Σ_k (−1)^k [η−k, k], k = 0 … η: all terms of the
+alternating sum Lβ cancel but the first and the last. In the plane β = G dp∧dq, and L(G dp∧dq) =
+(X G) dp∧dq, since the flow preserves dp∧dq. ∎
 
-Odd η: it is none, of any smooth form, where H has an equilibrium at which that has a divergence.
+Odd η: if H has an equilibrium at which the coefficient has a divergence other than 0, then it is
+the Lie derivative of no smooth form.
 Where f vanishes, L of a form B is AᵀB + BA, A = f'. From AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any
-B. So where that trace of a coefficient of S, which is twice its divergence, is not 0 at an
-equilibrium, it is no Lie derivative of a smooth form. In the plane X·G vanishes where f does, and
+B. For a coefficient of S that trace is twice its divergence; if it is not 0 at an equilibrium, the
+coefficient is no Lie derivative of a smooth form. In the plane X·G vanishes where f does, and
 there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2). ∎
 """
 
@@ -45,14 +47,14 @@ def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
     n, ring = flow.degrees, flow.ring
-    rows = [[flow.gradient(x) for x in flow.power(k)] for k in range(eta + 1)]
+    gradients = [[flow.gradient(x) for x in flow.power(k)] for k in range(eta + 1)]
     factor = ring.constant(Fraction(-1, math.factorial(eta + 1)))
 
     def entry(a: int, b: int) -> Poly:
         total = ring.zero
         for k in range(eta + 1):
-            both = (wedge(rows[eta - k][i], rows[k][n + i], a, b) for i in range(n))
-            total += (-1) ** k * sum(both, ring.zero)
+            wedges = (wedge(gradients[eta - k][i], gradients[k][n + i], a, b) for i in range(n))
+            total += (-1) ** k * sum(wedges, ring.zero)
         return factor * total
 
     return TwoForm.from_entries(ring, flow.names, entry)
@@ -61,7 +63,8 @@ def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
 def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
     """Decide whether the leading coefficient of lieη's S is a Lie derivative, with β as a formula.
 
-    None, and an empty formula, where neither answer is shown.
+    The decision is None where neither answer can be proved; the formula is empty but where it is
+    True.
     """
     if eta % 2 == 0:
         potential = potential_of_lie(flow, eta)
@@ -73,7 +76,7 @@ def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple
 def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
     """Return True if the origin is an equilibrium at which the divergence is not 0."""
     ring = flow.ring
-    if flow.timed:  # f vanishes at all times where D of what does not depend on t is X of it
+    if flow.timed:  # the argument is made for equilibria of an H without t
         return False
     origin = {symbol(name): sympy.S.Zero for name in flow.names}
     elements = [*flow.slopes, leading.divergence]
@@ -94,7 +97,7 @@ def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
 class Telescoping:
     """The answer whether L = X·G for every H.
 
-    `holds`: it is, with `potential` G; False: for some H it is not, as `reason` says.
+    If it `holds`, `potential` is G; else there is an H without such a G, as `reason` says.
     """
 
     holds: bool

@@ -55,7 +55,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import PRECISION, Ball
 from verify.kernels.statements import needs_of
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import form_bound
 from verify.runs.derivatives import Derivatives, norm
 from verify.runs.step_rounding import StepErrors, StepRounding
@@ -95,7 +95,7 @@ METHOD = "a-posteriori bound with the tangent map carried along"
 
 
 def certify(
-    run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int = -1
+    run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int = -1
 ) -> dict[str, Fraction] | None:
     """Return rigorous bounds of the errors of a run's final values; None where there is none.
 
@@ -115,7 +115,9 @@ class _Certificate:
     error: Ball
     error_sum: Ball
 
-    def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
+    def __init__(
+        self, run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int
+    ) -> None:
         self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
         self.rounding = StepRounding(run, arithmetic, outcome, note)
         self.steps, self.records = self.rounding.steps, self.rounding.records

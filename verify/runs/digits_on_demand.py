@@ -19,7 +19,7 @@ from verify import arithmetic as number_systems
 from verify import observables
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, UnsupportedError
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
 from verify.runs.a_posteriori import METHOD, certify
 from verify.runs.estimated import (
@@ -50,7 +50,7 @@ class Measurement:
 
     bounds: Bounds
     arithmetic: str
-    outcome: Outcome
+    outcome: RunOutcome
     fallback: str = ""  # why an arithmetic other than the requested one was taken
 
 
@@ -110,7 +110,7 @@ def measure(
 
 def run_in_balls(
     kernel_run: KernelRun, arithmetic: Arithmetic, digits: int, progress: Progress | None = None
-) -> tuple[Bounds, Outcome]:
+) -> tuple[Bounds, RunOutcome]:
     """Do the run in ball arithmetic; return its values with the radii of their balls, and the run.
 
     Where requested digits are missing, it is done again with so many more. Where the balls have
@@ -181,7 +181,7 @@ def certify_run(
 
 
 def difference_of_w(
-    kernel_run: KernelRun, arithmetic: Arithmetic, outcome: Outcome
+    kernel_run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome
 ) -> Course[Fraction | None]:
     """Return a bound of W's error by a run with more digits and its certificate.
 
@@ -240,7 +240,7 @@ class _Foresight:
         self.digits = digits
         self.missing = 0
 
-    def __call__(self, outcome: Outcome) -> bool:
+    def __call__(self, outcome: RunOutcome) -> bool:
         errors = certify(self.kernel_run, self.arithmetic, outcome, 0)
         if errors is None:  # let it run: what follows is for estimates
             return True

@@ -17,7 +17,7 @@ from verify import observables
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.coordinates import PLANE
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
 
 BoundedValues = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
@@ -45,7 +45,7 @@ def working_digits(digits: int, steps: int) -> int:
     return digits + 10 + 2 * len(str(steps))
 
 
-def spread(first: Outcome, second: Outcome, least: Fraction = Fraction(0)) -> Fraction:
+def spread(first: RunOutcome, second: RunOutcome, least: Fraction = Fraction(0)) -> Fraction:
     """Return the greatest difference of a coordinate at any checkpoint, by the orbit's size.
 
     The size is that in all coordinates of its kind, momenta or positions, and at least `least`.
@@ -61,7 +61,7 @@ def spread(first: Outcome, second: Outcome, least: Fraction = Fraction(0)) -> Fr
     return spread
 
 
-def _noise(arithmetic: Arithmetic, *runs: Outcome) -> Fraction:
+def _noise(arithmetic: Arithmetic, *runs: RunOutcome) -> Fraction:
     """Return the size below which p or q may be nothing but rounding, as p at an equilibrium.
 
     Such a coordinate has no digit that a higher precision confirms.
@@ -71,7 +71,7 @@ def _noise(arithmetic: Arithmetic, *runs: Outcome) -> Fraction:
 
 
 def resolve(
-    kernel_run: KernelRun, arithmetic: Arithmetic, first: Outcome, digits: int
+    kernel_run: KernelRun, arithmetic: Arithmetic, first: RunOutcome, digits: int
 ) -> Course[Bounds]:
     """Return the values to so many digits, raising the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):

@@ -19,7 +19,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measurement, certify_run, choose
 from verify.runs.estimated import LINEAR, BoundedValues, Bounds, resolve, spread, working_digits
@@ -32,7 +32,7 @@ _FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at
 _RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
 
 
-def bound_errors(run: KernelRun, first: Outcome, proved_values: BoundedValues) -> Course[Bounds]:
+def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues) -> Course[Bounds]:
     """Return the values of the float64 run `first` of `run` with their bounds.
 
     `proved_values`: those that a proof gives for observables that were not run.
@@ -55,7 +55,7 @@ def bound_errors(run: KernelRun, first: Outcome, proved_values: BoundedValues) -
     return replace(bounds, values={n: x for n, x in values.items() if n in first.values})
 
 
-def _compare_with_certified(run: KernelRun, first: Outcome) -> Course[Bounds]:
+def _compare_with_certified(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
     """Compare with a certified run; else with an estimated one, or a compensated one."""
     exact = run.with_observables(_comparable_observables(run.observables))
     name = choose(exact, _CERTIFIED_DIGITS)
@@ -74,14 +74,14 @@ def _comparable_observables(observables: frozenset[str]) -> frozenset[str]:
     return (observables - {"lambda_plain", "extremes"}) | plain
 
 
-def _distances(first: Outcome, true: BoundedValues) -> BoundedValues:
+def _distances(first: RunOutcome, true: BoundedValues) -> BoundedValues:
     """Return the values with their distances from the true ones; for the plain product from Λ."""
     if "lambda" in true:
         true = {**true, "lambda_plain": true["lambda"]}
     return {n: (x, abs(x - true[n][0]) + true[n][1]) for n, x in first.values.items() if n in true}
 
 
-def _compare_with_rerun(run: KernelRun, first: Outcome) -> Course[Bounds]:
+def _compare_with_rerun(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
     reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
     second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
@@ -99,7 +99,7 @@ def _compare_with_rerun(run: KernelRun, first: Outcome) -> Course[Bounds]:
     return Bounds(_distances(first, _add_floor(values, run.steps)), method)
 
 
-def _compare_with_compensated(run: KernelRun, first: Outcome) -> Bounds:
+def _compare_with_compensated(run: KernelRun, first: RunOutcome) -> Bounds:
     method = "four times the difference from a compensated run"
     second = run.run(number_systems.get("float64", 17), compensated=True)
     if second.done < run.steps:

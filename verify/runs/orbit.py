@@ -29,7 +29,7 @@ from verify.kernels.chunked_loop import Note, Progress
 from verify.kernels.clock import clock_inputs
 from verify.kernels.kernel import kernel_for
 from verify.kernels.step.computation import step_map_of
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
 from verify.runs.start import Start
@@ -148,14 +148,14 @@ def _confirm_states(run: KernelRun, digits: int, progress: Progress | None) -> R
     raise InputError("scheme", run.scheme, f"{_ATTEMPTS} reruns of its orbit did not agree")
 
 
-def _difference(first: Outcome, second: Outcome) -> Fraction | None:
+def _difference(first: RunOutcome, second: RunOutcome) -> Fraction | None:
     """Return the relative difference of two runs; None where they end at different steps."""
     if first.done != second.done:
         return None
     return spread(first, second) if second.trail else Fraction(0)
 
 
-def _differences(first: Outcome, second: Outcome) -> Iterator[Note]:
+def _differences(first: RunOutcome, second: RunOutcome) -> Iterator[Note]:
     for a, b in zip(first.trail, second.trail, strict=True):
         yield {name: abs(a[name] - b[name]) for name in b}
 

@@ -31,7 +31,7 @@ from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.step.computation import step_map_of
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course, run_alone
 from verify.runs.digits_on_demand import Measurement, choose, measure
 from verify.runs.estimated import BoundedValues, Bounds
@@ -47,7 +47,7 @@ from verify.schemes.maps.step_map import StepMap
 _MOST = 64  # states that are checked
 
 
-def describe_departure(hamiltonian: Hamiltonian, run: KernelRun, outcome: Outcome) -> str:
+def describe_departure(hamiltonian: Hamiltonian, run: KernelRun, outcome: RunOutcome) -> str:
     """Describe by which step a run has left H's domain, and what then no longer holds.
 
     Empty where no noted state is outside the domain.
@@ -160,7 +160,7 @@ class RequestedRun:
         if not self.observables or not set(self.observables) <= set(self.proved_values):
             return None
         bounds = Bounds({}, "a proof, and no run", rigorous=True)
-        return self._build_result(Measurement(bounds, ball.NAME, Outcome()))
+        return self._build_result(Measurement(bounds, ball.NAME, RunOutcome()))
 
     def _build_result(self, measurement: Measurement, departure: str = "") -> RunResult:
         """Build the result from the measured values and those that a proof gives."""

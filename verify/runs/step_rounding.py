@@ -14,7 +14,7 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.clock import error_of_time
 from verify.kernels.rounding import FLOAT, Ball, Rounded, analyse, rounding_of
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import form_bound
 from verify.runs.derivatives import norm
 
@@ -37,7 +37,9 @@ class StepRounding:
     The run must have carried the tangent map.
     """
 
-    def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
+    def __init__(
+        self, run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int
+    ) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.run, self.arithmetic, self.kernel = run, arithmetic, outcome.kernel
         self.last = outcome.trail[note]

@@ -15,7 +15,7 @@ from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.processor import LANES
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 
 OBSERVABLES = frozenset({"lambda", "mse", "delta_j_max", "extremes"})
 H = {
@@ -44,7 +44,7 @@ def runs(
 
 def done(
     all_runs: Sequence[KernelRun], digits: int, *, in_lockstep: bool, tangent: bool = True
-) -> list[Outcome]:
+) -> list[RunOutcome]:
     own = arithmetic.get("fixed", digits)
     courses = [run.run_in_turn(own, tangent=tangent) for run in all_runs]
     if not in_lockstep:
@@ -53,7 +53,7 @@ def done(
     return [ended[k].result() for k in range(len(courses))]
 
 
-def told(outcome: Outcome) -> Any:
+def told(outcome: RunOutcome) -> Any:
     """All but times, and what is made anew for each path."""
     own = replace(outcome, seconds=0.0, kernel=None, state=tuple(outcome.state))
     return own, [dict(x) for x in own.trail], [dict(x) for x in own.tangents]

@@ -22,7 +22,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import stepping
 from verify.kernels.kernel import Writer, kernel_for
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.a_posteriori import certify
 from verify.runs.run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
@@ -31,7 +31,7 @@ from verify.scenes.results.run import RunResult
 FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at_bits(500)
 
 
-def check_kernel_run(kernel_run: KernelRun) -> Outcome:
+def check_kernel_run(kernel_run: KernelRun) -> RunOutcome:
     """The run in fixed: what finishes agrees with mpfr, within the bounds that are certified.
 
     Where there is no certificate it is about as near as mpfr is in as many bits.

@@ -17,7 +17,7 @@ from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.reference.check.check import CheckResult, check
 from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import Verdict
+from verify.reference.compare.findings import ColumnVerdict
 from verify.reference.compare.published import load
 from verify.reference.compare.submitted import has_degrees, read
 from verify.reference.make.make import PUBLISHED, data_of
@@ -281,7 +281,10 @@ def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path)
     found = compared(folder, program(tmp_path / "mine.csv"))
     assert found.agrees
     assert found.rows == 3
-    assert {x.name: x.verdict for x in found.columns}["p1"] in (Verdict.AGREES, Verdict.ROUNDING)
+    assert {x.name: x.verdict for x in found.columns}["p1"] in (
+        ColumnVerdict.AGREES,
+        ColumnVerdict.ROUNDING,
+    )
     assert len(found.columns) == 8
     assert min(x.digits for x in found.columns if x.name[0] in "pq") > 14
 

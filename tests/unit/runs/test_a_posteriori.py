@@ -25,7 +25,7 @@ from tests.paths import vectors
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import ball, fixed, mpfr, mpmath
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.a_posteriori import certify
 
 VECTORS = vectors()
@@ -34,7 +34,9 @@ SYSTEMS = [fixed.at_bits(112), mpfr.at_bits(24), mpfr.at_bits(120), mpmath.at_bi
 systems = pytest.mark.parametrize("arithmetic", SYSTEMS, ids=lambda a: f"{a.name}-{a.bits}")
 
 
-def certified(kernel_run: KernelRun, arithmetic: Arithmetic) -> tuple[Outcome, dict[str, Fraction]]:
+def certified(
+    kernel_run: KernelRun, arithmetic: Arithmetic
+) -> tuple[RunOutcome, dict[str, Fraction]]:
     """A run to its end, and its certificate."""
     run = kernel_run.run(arithmetic, tangent=True)
     assert run.done == kernel_run.steps

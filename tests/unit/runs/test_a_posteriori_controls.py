@@ -30,7 +30,7 @@ from verify.kernels import rounding
 from verify.kernels.kernel import kernel_for
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step import tangent_map as tangent
-from verify.kernels.stepping import Outcome
+from verify.kernels.stepping import RunOutcome
 from verify.runs import step_rounding
 from verify.runs.a_posteriori import _Certificate, certify
 from verify.runs.derivatives import Derivatives
@@ -45,15 +45,15 @@ class Orbit:
     arithmetic: Arithmetic
 
     @cache  # noqa: B019 - a few orbits
-    def run(self) -> Outcome:
+    def run(self) -> RunOutcome:
         return self.again()
 
-    def again(self) -> Outcome:
+    def again(self) -> RunOutcome:
         run = self.case.kernel_run().run(self.arithmetic, tangent=True)
         assert run.done == self.case.steps
         return run
 
-    def outside(self, run: Outcome | None = None) -> set[str]:
+    def outside(self, run: RunOutcome | None = None) -> set[str]:
         """The names of values that are not within what is certified; of none without one."""
         run = run or self.run()
         errors = certify(self.case.kernel_run(), self.arithmetic, run) or {}

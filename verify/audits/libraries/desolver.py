@@ -10,9 +10,9 @@ from verify.audits.methods.tabled import table_integrator
 
 TITLE = "desolver"
 LIBRARY = "desolver"
-_HIGHEST = 8
+_MAX_ORDER = 8
 LEFT_OUT = (
-    ("RK1412Solver, RK108Solver", f"are of orders that are not looked at, above {_HIGHEST}"),
+    ("RK1412Solver, RK108Solver", f"are of orders that are not looked at, above {_MAX_ORDER}"),
     ("RadauIIA19", "is of order 19, and its numbers are floats"),
     ("generate_richardson_integrator", "makes methods of variable order"),
 )
@@ -44,7 +44,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             yield _splitting(method, name, order, source)
             plain = TWO_WAVES, HENON_HEILES
             yield from drive_problems(f"{name}, as a step", _STEP, name, source, order, True, plain)
-        elif order <= _HIGHEST:
+        elif order <= _MAX_ORDER:
             yield _tableau(method, name, order, source)
 
 
@@ -59,7 +59,7 @@ def _methods() -> Iterator[Any]:
 
 
 def _splitting(method: Any, name: str, order: int, source: str) -> ReleasedIntegrator:
-    """Read each row as a drift or a kick, the first not 0 of its last two numbers."""
+    """Read each row as a kick by its last number; if that is 0, as a drift by the one before."""
     rows = [(float(drift), float(kick)) for _, drift, kick in method.tableau_intermediate]
     parts = [("kick", kick) if kick else ("drift", drift) for drift, kick in rows]
     driven = "its class's tableau_intermediate: columns 1 and 2, of drifts and kicks"

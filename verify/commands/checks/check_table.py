@@ -10,7 +10,7 @@ from verify.commands.checks.failing import allow_undecided_option, is_failure, p
 from verify.commands.shared.answer import Answer, answering, pick
 
 if TYPE_CHECKING:
-    from verify.integrators.tables.check import Judgement
+    from verify.integrators.tables.check import TableJudgement
     from verify.integrators.tables.cost import Cost
 
 
@@ -58,7 +58,7 @@ def check_table(tables: Path, allow_undecided: bool) -> Answer:
     )
 
 
-def _json(judgement: "Judgement") -> dict[str, Any]:
+def _json(judgement: "TableJudgement") -> dict[str, Any]:
     claim = judgement.claim
     return {
         **pick(judgement, "id", "table", "line"),
@@ -77,7 +77,7 @@ def _cost_json(cost: "Cost") -> dict[str, Any]:
     }
 
 
-def _print(judgements: "list[Judgement]") -> None:
+def _print(judgements: "list[TableJudgement]") -> None:
     width = max(len(each.id) for each in judgements)
     for each in judgements:
         claim = each.claim

@@ -20,12 +20,14 @@ from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import read_prose
 
-_PARTS = 8, 64  # of a place's largest step
-_AGREES = 1e-12
-_ROUNDED, _BEYOND = 2.0**-46, 8  # what is allowed at least, and times the bound to first order
-_SCATTERED = 20  # further places around each, up to a quarter of a unit away
-_ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may with duals
-_LOOSEST = 0.1  # a bound that a loop may end at
+_STEP_DIVISORS = 8, 64  # the steps that are tried are such parts of a place's largest one
+_RELATIVE_TOLERANCE = 1e-12
+# A distance is allowed up to the tolerance, and up to so many times the first-order bound.
+_LEAST_TOLERANCE, _BOUND_FACTOR = 2.0**-46, 8
+_SCATTERED_PLACES = 20  # further places around each, up to a quarter of a unit away
+# Where the code compares values, since a loop may then stop at another iteration.
+_BRANCHING_TOLERANCE = 1e-6
+_MAX_LOOP_TOLERANCE = 0.1  # the largest limit in a comparison that is taken for a loop's tolerance
 _EPSILON = 2.0**-52
 BoundedValue = tuple[float, float]  # a value, and a bound of its error to first order
 BoundedEnd = tuple[list[Fraction], list[float]]  # z', and how far it may be from the floats' end
@@ -37,48 +39,57 @@ def must_agree(probe: DualProbe, places: Sequence[Place]) -> None:
     So it is where the code keeps a state, or takes another branch with floats.
     """
 
-    def theirs(place: Place, h: Fraction, mine: State) -> BoundedEnd:
-        end, near = probe.end(place, h), _AGREES
+    def end_of_ours(place: Place, h: Fraction, floats_end: State) -> BoundedEnd:
+        end, near = probe.end(place, h), _RELATIVE_TOLERANCE
         if probe.opaque:
             limits = [abs(float(x.limit)) for x in probe.comparisons if x.limit]
             # A loop may end elsewhere with 200 bits than with 53: both ends are then within a few
             # tolerances of each other.
-            near = max([_ENDS_ELSEWHERE, *(4 * x for x in limits if x < _LOOSEST)])
+            near = max([_BRANCHING_TOLERANCE, *(4 * x for x in limits if x < _MAX_LOOP_TOLERANCE)])
         units = map(float, place.units)
-        return end, [near * (u + abs(x)) for u, x in zip(units, mine, strict=True)]
+        return end, [near * (u + abs(x)) for u, x in zip(units, floats_end, strict=True)]
 
-    _must_agree(probe.step, places, theirs)
+    _must_agree(probe.step, places, end_of_ours)
 
 
 def trace_must_agree(step: UserMap, roots: Sequence[Node], places: Sequence[Place]) -> None:
     """Check a trace as `must_agree` does, at many places, and as closely as rounding lets it."""
     nodes, kind = in_order(*roots), Duals()
 
-    def theirs(place: Place, h: Fraction, mine: State) -> BoundedEnd | None:
+    def end_of_ours(place: Place, h: Fraction, floats_end: State) -> BoundedEnd | None:
         start = dict(zip(step.names, place.z, strict=True))
         start |= {"h": DOUBLE.round_number(h), "t": DOUBLE.round_number(place.t)}
         end = _replay_trace(kind, nodes, roots, start)
-        return None if end is None else (end, _bound_difference(nodes, roots, start, mine, place))
+        return (
+            None
+            if end is None
+            else (end, _bound_difference(nodes, roots, start, floats_end, place))
+        )
 
     with kind.running():
         _must_agree(
-            step, [*places, *(x for place in places[:6] for x in _scatter_places(place))], theirs
+            step,
+            [*places, *(x for place in places[:6] for x in _scatter_places(place))],
+            end_of_ours,
         )
 
 
 def _must_agree(
     step: UserMap, places: Sequence[Place],
-    theirs: Callable[[Place, Fraction, State], BoundedEnd | None],
+    end_of_ours: Callable[[Place, Fraction, State], BoundedEnd | None],
 ) -> None:  # fmt: skip
-    """Compare calls with floats with `theirs`: the end that is computed for such a call, and how
-    far it may be from what the floats end at; None where it is not known."""
+    """Compare the user's calls with floats with ours; raise UntraceableError where they differ.
+
+    `end_of_ours` returns our end of such a call with its distance allowed from the floats' end, or
+    None where that is not known.
+    """
     compared = 0
     for place, h in _calls(places):
         rounded_place = place.with_rounded_state(DOUBLE.round_number)
         floats_end = unless_it_fails(
             partial(step.at_place, rounded_place, h)
         )  # other places may do
-        bounded = None if floats_end is None else theirs(rounded_place, h, floats_end)
+        bounded = None if floats_end is None else end_of_ours(rounded_place, h, floats_end)
         if floats_end is not None and bounded is not None:
             compared += 1
             if any(abs(Fraction(x) - y) > z for x, y, z in zip(floats_end, *bounded, strict=True)):
@@ -89,7 +100,7 @@ def _must_agree(
 
 def _calls(places: Sequence[Place]) -> Iterator[tuple[Place, Fraction]]:
     for place in places:
-        for part in _PARTS if place.step else _PARTS[:1]:
+        for part in _STEP_DIVISORS if place.step else _STEP_DIVISORS[:1]:
             yield place, place.step / part
 
 
@@ -103,7 +114,7 @@ def _scatter_places(place: Place) -> list[Place]:
                 for x, u in zip(place.z, place.reach, strict=True)
             ),
         )
-        for _ in range(_SCATTERED)
+        for _ in range(_SCATTERED_PLACES)
     ]
 
 
@@ -121,17 +132,17 @@ def _replay_trace(
 
 
 def _bound_difference(
-    nodes: Sequence[Node], roots: Sequence[Node], start: dict[str, Fraction], mine: State,
+    nodes: Sequence[Node], roots: Sequence[Node], start: dict[str, Fraction], floats_end: State,
     place: Place,
 ) -> list[float]:  # fmt: skip
     """Bound, by component, the distance that rounding alone may leave between trace and floats."""
     try:
         noise = _rounding_noise(nodes, {name: float(x) for name, x in start.items()})
     except (ArithmeticError, ValueError):  # beyond what floats can do
-        return [math.inf] * len(mine)
+        return [math.inf] * len(floats_end)
     return [
-        _ROUNDED * (float(u) + abs(x)) + _BEYOND * noise[root.number]
-        for u, x, root in zip(place.units, mine, roots, strict=True)
+        _LEAST_TOLERANCE * (float(u) + abs(x)) + _BOUND_FACTOR * noise[root.number]
+        for u, x, root in zip(place.units, floats_end, roots, strict=True)
     ]
 
 

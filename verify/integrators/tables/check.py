@@ -29,7 +29,7 @@ _ROOT = ("table", "title", "about", "left_out")
 
 
 @dataclass(frozen=True)
-class Judgement:
+class TableJudgement:
     """One claim of one table. `id`: the table's name and the claim's kind; `line`: of the table."""
 
     id: str
@@ -49,13 +49,13 @@ class TableFile:
     lines: Lines
     left_out: tuple[tuple[str, str], ...] = ()
 
-    def judge(self) -> Iterator[Judgement]:
+    def judge(self) -> Iterator[TableJudgement]:
         """Yield every claim of every table. Raises InputError, with the line, for what is no
         table."""
         for index, (entry, line) in enumerate(self.entries):
             try:
                 for claim in kinds.get(entry.kind).claims(entry):
-                    yield Judgement(f"{entry.name}/{claim.kind}", entry.name, line, claim)
+                    yield TableJudgement(f"{entry.name}/{claim.kind}", entry.name, line, claim)
             except InputError as error:
                 raise locate_error(self.name, self.lines, index, entry.name, error) from None
 
@@ -128,7 +128,7 @@ def locate_error(name: str, lines: Lines, index: int, table: str, error: InputEr
     return type(error)(f"{where}: {message}" if message else where, error.value, error.problem)
 
 
-def check_table(path: str | PathLike[str]) -> list[Judgement]:
+def check_table(path: str | PathLike[str]) -> list[TableJudgement]:
     """Each claim of each `[[table]]` of a TOML file, with its verdict, evidence and cost.
 
     Raises InputError, one line with the file, the line and the table, for what is none.

@@ -51,9 +51,10 @@ def pure_things() -> dict[int, tuple[str, Any]]:
 
 @functools.lru_cache(1)
 def _pure_in(homes: tuple[str, ...]) -> dict[int, tuple[str, Any]]:
+    # Of two modules that have the same function the first names it: scipy.special has numpy's sinc.
     return {
         id(x): (f"{home}.{name}", x)
-        for home in homes
+        for home in reversed(homes)
         for name, x in vars(sys.modules[home]).items()
         if name in _PURE[home].split() or _is_pure(home, x)
     }

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Place
+from verify.pages.sections.section import Picture, SectionPlace
 from verify.pages.text.typography import whole
 from verify.scenes.results.orbit_sections import PoincareOrbit, StroboscopicOrbit
 
@@ -27,7 +27,7 @@ class OrbitsView:
 def pictures(views: Sequence[OrbitsView], rank: int) -> Iterator[Picture]:
     """Yield the picture of each view, for the first screen."""
     for each in views:
-        yield Picture((rank,), each.plot, Place(each.anchor, each.title))
+        yield Picture((rank,), each.plot, SectionPlace(each.anchor, each.title))
 
 
 def title_from(source: str, title: str) -> str:

@@ -21,7 +21,7 @@ Counts = tuple[tuple[Verdict, int], ...]
 
 
 @dataclass(frozen=True)
-class Place:
+class SectionPlace:
     """A place on the page: its anchor and its name."""
 
     anchor: str
@@ -51,7 +51,7 @@ class Picture:
 
     rank: tuple[int, ...]
     plot: Plot
-    place: Place | None = None
+    place: SectionPlace | None = None
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,9 @@ class Section:
     is_numbered: bool = False  # its entries are numbers
     inner: Callable[[Any], Iterable["VisibleSection"]] = _nothing  # the sections within it
     pictures: Callable[[Any], Iterable[Picture]] = _nothing
-    keeps: Callable[[Any], Iterable[tuple[Plot, Place]]] = _nothing  # plots that stand only here
+    keeps: Callable[[Any], Iterable[tuple[Plot, SectionPlace]]] = (
+        _nothing  # plots that stand only here
+    )
     # Of all views of the section in a report.
     terms: Callable[[Sequence[Any]], Mapping[str, Markup]] = lambda _: {}
     # For a paper's figure that `shows` this: the plots of that label, each with a finding or "".
@@ -104,7 +106,7 @@ class VisibleSection:
     section: Section
     template: str
     view: Any
-    place: Place
+    place: SectionPlace
 
     @property
     def anchor(self) -> str:
@@ -136,9 +138,9 @@ class VisibleSection:
         return (Entry(self.anchor, self.section.title, inner=inner, is_numbered=numbered),)
 
     @property
-    def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, Place]]:
+    def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, SectionPlace]]:
         """Its pictures for the first screen, each with its rank and the place that says more."""
-        place = Place(self.anchor, self.place.name) if self.anchor else self.place
+        place = SectionPlace(self.anchor, self.place.name) if self.anchor else self.place
         for each in self.section.pictures(self.view):
             yield each.rank, each.plot, each.place or place
 
@@ -152,7 +154,9 @@ def sections(files: Catalogue) -> list[tuple[str, Section]]:
     return sorted(templates, key=lambda each: each[1].order)
 
 
-def select_sections(files: Catalogue, place: Place, *subject: object) -> tuple[VisibleSection, ...]:
+def select_sections(
+    files: Catalogue, place: SectionPlace, *subject: object
+) -> tuple[VisibleSection, ...]:
     """Return the sections in these files that have something to show of the subject."""
     views = ((s, template, s.view(*subject)) for template, s in sections(files))
     return tuple(VisibleSection(s, template, view, place) for s, template, view in views if view)

@@ -30,7 +30,7 @@ from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_bytes, text_of
 from verify.formats import check_format
 from verify.reference.check import consistency
-from verify.reference.check.difference import Findings, Place
+from verify.reference.check.difference import DataFindings, DataPlace
 from verify.reference.check.recompute import recompute_unit
 from verify.reference.make.models import (
     MANIFEST_FORMAT,
@@ -63,7 +63,7 @@ _NO_MORE = ("numba",)  # what data may name that were made with it, and is not u
 
 
 @dataclass
-class CheckResult(Findings):
+class CheckResult(DataFindings):
     """The result of a check. `rows` counts those of all data; `not_compared` names files, each with
     the reason."""
 
@@ -102,7 +102,7 @@ def check(
         return findings
     chosen = _select_affordable(_choose(units, share, seed), most_steps, findings)
     calls = [FunctionCall(str(k), recompute_unit, unit) for k, unit in enumerate(chosen)]
-    parts: dict[str, Findings] = {}
+    parts: dict[str, DataFindings] = {}
     serial = where == ANYWHERE and len(calls) < _WORTH_A_POOL
     with open_place(THIS_PROCESS if serial else where, [recompute_unit.__module__]) as place:
         for name, part in results_of(place, calls):
@@ -136,7 +136,7 @@ def _select_affordable(
             steps = run.rows[-1].step
             if steps > steps_left:
                 why = f"with it, more than {most_steps} steps; see --most-steps"
-                Place(findings, file, f"{run.label}, step {steps}").is_left_out(why)
+                DataPlace(findings, file, f"{run.label}, step {steps}").is_left_out(why)
                 continue
             steps_left -= steps
         selected.append(unit)
@@ -177,11 +177,11 @@ def _check_files(
             actual = describe_file(each.name, contents[each.name])
             for column in ("bytes", "sha256"):
                 stated, actual_value = str(getattr(each, column)), str(getattr(actual, column))
-                place = Place(findings, each.name)
+                place = DataPlace(findings, each.name)
                 place.require(stated == actual_value, column, f"{stated} (manifest)", actual_value)
     for name in SCHEMAS.keys() & contents.keys():
         text = text_of(contents[name], name)
-        consistency.compare_texts(schema_text(name), text, Place(findings, name))
+        consistency.compare_texts(schema_text(name), text, DataPlace(findings, name))
     scenes = _read_scenes(manifest, scenes_folder, findings)
     _check_provenance(manifest, scenes, findings)
     _check_completeness(manifest, scenes, findings)
@@ -194,18 +194,20 @@ def _check_files(
 def _check_scene(
     data: AnyData, file: str, scene: Scene, contents: dict[str, bytes], findings: CheckResult
 ) -> Iterator[tuple[AnyData, str]]:
-    consistency.check_data(data, scene, Place(findings, file))
+    consistency.check_data(data, scene, DataPlace(findings, file))
     for name, rows in tables(data).items():
         content = contents.get(f"{name}.csv")
         if content is not None:
-            consistency.compare_csv(rows, content, Place(findings, f"{name}.csv"))
+            consistency.compare_csv(rows, content, DataPlace(findings, f"{name}.csv"))
         content = contents.get(f"{name}.parquet")
         if content is not None:
             from verify.reference.make.parquet import is_installed, parquet_rows
 
             if is_installed():
                 parquet_table = parquet_rows(content, f"{name}.parquet")
-                consistency.compare_tables(rows, parquet_table, Place(findings, f"{name}.parquet"))
+                consistency.compare_tables(
+                    rows, parquet_table, DataPlace(findings, f"{name}.parquet")
+                )
             else:
                 findings.not_compared.append(f"{name}.parquet: pyarrow is not installed")
     yield data, file
@@ -223,9 +225,9 @@ def _parse_model(
         first_error = error.errors(include_url=False)[0]
         where = ".".join(map(str, first_error["loc"]))
         what = f"as the schema says ({first_error['msg']})"
-        Place(findings, name, where).differs("", what, str(first_error["input"]))
+        DataPlace(findings, name, where).differs("", what, str(first_error["input"]))
         return None
-    consistency.compare_texts(json_text(parsed), text_of(content, name), Place(findings, name))
+    consistency.compare_texts(json_text(parsed), text_of(content, name), DataPlace(findings, name))
     return parsed
 
 
@@ -235,11 +237,11 @@ def _list_present_files(folder: Path, manifest: Manifest, findings: CheckResult)
     names = [each.name for each in manifest.files]
     for name in sorted({*present, *names}):
         if name not in present:
-            Place(findings, name).differs("", "a file", "missing")
+            DataPlace(findings, name).differs("", "a file", "missing")
         elif name not in names:
-            Place(findings, name).differs("", "in the manifest, or not there", "extra")
+            DataPlace(findings, name).differs("", "in the manifest, or not there", "extra")
         elif names.count(name) > 1:
-            Place(findings, MANIFEST, name).differs("", "listed once", "listed twice")
+            DataPlace(findings, MANIFEST, name).differs("", "listed once", "listed twice")
         else:
             findings.files += 1
             yield name
@@ -251,7 +253,7 @@ def _read_scenes(
     """Return the manifest's scenes by name, each read from its own text."""
     scenes = {}
     for each in manifest.scenes:
-        place = Place(findings, MANIFEST, f"scene {each.name}")
+        place = DataPlace(findings, MANIFEST, f"scene {each.name}")
         actual = digest(each.toml.encode())
         place.require(each.sha256 == actual, "sha256", actual, each.sha256)
         try:
@@ -270,7 +272,9 @@ def _read_scenes(
         manifest_scenes = {each.name: each.toml for each in manifest.scenes}
         for name in sorted({*expected_scenes, *manifest_scenes}):
             mine, theirs = expected_scenes.get(name, ""), manifest_scenes.get(name, "")
-            consistency.compare_texts(mine, theirs, Place(findings, f"{MANIFEST}: scene {name}"))
+            consistency.compare_texts(
+                mine, theirs, DataPlace(findings, f"{MANIFEST}: scene {name}")
+            )
     return scenes
 
 
@@ -278,8 +282,8 @@ def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], findings: Ch
     """Check the command and the versions, as far as they can be shown to be wrong."""
     expected = _expected_command(manifest, scenes)
     if expected is not None:
-        Place(findings, MANIFEST, "command").differs("", expected, manifest.command)
-    place = Place(findings, MANIFEST, "versions")
+        DataPlace(findings, MANIFEST, "command").differs("", expected, manifest.command)
+    place = DataPlace(findings, MANIFEST, "versions")
     names = [name for name in manifest.versions if name not in _NO_MORE]
     place.require(names == list(versions()), "", ", ".join(versions()), ", ".join(names))
     for name, version in manifest.versions.items():
@@ -313,8 +317,8 @@ def _check_completeness(
     expected = names_of(formats, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     one_each = len(scenes) == len(manifest.scenes)
-    Place(findings, MANIFEST, "scenes").require(one_each, "", "one of each name", "two")
-    files = Place(findings, MANIFEST, "files")
+    DataPlace(findings, MANIFEST, "scenes").require(one_each, "", "one of each name", "two")
+    files = DataPlace(findings, MANIFEST, "files")
     for name in sorted(expected ^ set(names)):
         states = ("listed", "not listed") if name in expected else ("not listed", "listed")
         files.differs(name, *states)

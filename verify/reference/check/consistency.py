@@ -18,7 +18,7 @@ from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
 from verify.files import text_of
 from verify.hamiltonians.coordinates import coordinates_in
-from verify.reference.check.difference import Place
+from verify.reference.check.difference import DataPlace
 from verify.reference.make.columns import (
     AFTER_A_STEP,
     MAY_LACK,
@@ -41,7 +41,7 @@ _NUMBER = re.compile(r"-?([1-9](?:\.[0-9]+)?)e([+-][0-9]{2,9})")
 # -- one scene's data -----------------------------------------------------------------------------
 
 
-def check_data(data: AnyData, scene: Scene, file: Place) -> None:
+def check_data(data: AnyData, scene: Scene, file: DataPlace) -> None:
     """Report what in the data differs from the scene's request, or is not printed as it must be.
 
     The rows are checked only where their inputs are those of the scene, and so of bounded size.
@@ -65,7 +65,7 @@ def check_data(data: AnyData, scene: Scene, file: Place) -> None:
             _check_row(row, values, start, item.digits, place)
 
 
-def _check_inputs(data: AnyData, scene: Scene, file: Place) -> None:
+def _check_inputs(data: AnyData, scene: Scene, file: DataPlace) -> None:
     """Compare names and inputs with those of the scene."""
     fields = heading(scene.exact_hamiltonian())
     expected: dict[str, Any] = {"name": scene.name, **fields}
@@ -96,7 +96,7 @@ def _inputs_of(item: AnyRun | AnyFlow) -> tuple[Any, ...]:
     return tuple(getattr(item, name) for name in names if hasattr(item, name))
 
 
-def _check_proof(data: AnyData, proof: AnyProof, row: Place) -> None:
+def _check_proof(data: AnyData, proof: AnyProof, row: DataPlace) -> None:
     """Report where statements on S contradict each other or are not written as they must be; in the
     plane S is ΔJ."""
     plane, state = data.degrees == 1, coordinates_in(data.degrees)
@@ -119,7 +119,7 @@ def _names_in_formulas(data: AnyData) -> list[str]:
     return [*coordinates_in(data.degrees), *(["t"] if data.timed else []), *data.parameters]
 
 
-def check_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
+def check_formula(formula: str, names: Sequence[str], column: str, row: DataPlace) -> None:
     """Report a text that is no formula in these names, or is not written as it must be."""
     try:
         parse(formula, names)
@@ -142,7 +142,7 @@ def _check_row(
     values: Mapping[str, Rounded | None],
     start: Mapping[str, Fraction],
     digits: int,
-    place: Place,
+    place: DataPlace,
 ) -> None:
     """Report errors of a row, from its values and from its run's initial values by column."""
     size = max(map(abs, start.values()))
@@ -167,7 +167,7 @@ def _check_row(
                 place.require(value.value == rounded.value, name, rounded.value, value.value)
 
 
-def _check_failed_step(row: OrbitRow, place: Place) -> None:
+def _check_failed_step(row: OrbitRow, place: DataPlace) -> None:
     escaped, step = row.status == "left range", row.failed_step
     place.require(
         (step is not None) == escaped, "failed_step", "a step" if escaped else "null", str(step)
@@ -176,7 +176,7 @@ def _check_failed_step(row: OrbitRow, place: Place) -> None:
     place.require(in_range, "failed_step", f"1 … {row.step}", str(step))
 
 
-def _check_cell(name: str, cell: Rounded, digits: int, size: Fraction, place: Place) -> None:
+def _check_cell(name: str, cell: Rounded, digits: int, size: Fraction, place: DataPlace) -> None:
     """Report a value that is not printed as it must be, and a radius that is not the value's."""
     radius = cell.radius
     if re.fullmatch(r"-?0(\.0*)?(e.*)?", cell.value):
@@ -209,7 +209,7 @@ def _check_cell(name: str, cell: Rounded, digits: int, size: Fraction, place: Pl
 # -- the same in another form ---------------------------------------------------------------------
 
 
-def compare_tables(expected: Sequence[Row], actual: Sequence[Row], file: Place) -> None:
+def compare_tables(expected: Sequence[Row], actual: Sequence[Row], file: DataPlace) -> None:
     """Report cells of a table that differ from the scene's JSON, up to a line of another length."""
     names = expected[0]
     for k, (mine, theirs) in enumerate(zip_longest(expected, actual), start=1):
@@ -227,7 +227,7 @@ def _join_cells(row: Row | None) -> str:
     return "no line" if row is None else ",".join(row)
 
 
-def compare_texts(expected: str, actual: str, file: Place) -> None:
+def compare_texts(expected: str, actual: str, file: DataPlace) -> None:
     """Report the first line in which two texts differ."""
     if expected == actual:
         return
@@ -241,7 +241,7 @@ def compare_texts(expected: str, actual: str, file: Place) -> None:
     file.at_row(f"line {k}").differs(f"character {column + 1}", *excerpts)
 
 
-def compare_csv(expected: Sequence[Row], content: bytes, file: Place) -> None:
+def compare_csv(expected: Sequence[Row], content: bytes, file: DataPlace) -> None:
     """Compare a CSV file with the scene's JSON, cell by cell, then character by character.
 
     Raises InputError where it is not CSV.

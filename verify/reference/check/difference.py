@@ -32,7 +32,7 @@ def _short(text: str) -> str:
 
 
 @dataclass
-class Findings:
+class DataFindings:
     """The findings of a check: the number of rows `recomputed`, the differences, and what could not
     be recomputed, with the reason."""
 
@@ -40,7 +40,7 @@ class Findings:
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
 
-    def add(self, other: "Findings") -> None:
+    def add(self, other: "DataFindings") -> None:
         """Add the findings of another check to these."""
         self.recomputed += other.recomputed
         self.differences += other.differences
@@ -48,16 +48,16 @@ class Findings:
 
 
 @dataclass(frozen=True)
-class Place:
+class DataPlace:
     """A file, or a row of it; differences in it are added to `findings`."""
 
-    findings: Findings
+    findings: DataFindings
     file: str
     row: str = ""
 
-    def at_row(self, row: str) -> "Place":
+    def at_row(self, row: str) -> "DataPlace":
         """Return the place of a row of the file."""
-        return Place(self.findings, self.file, row)
+        return DataPlace(self.findings, self.file, row)
 
     def require(self, right: object, column: str, expected: str, actual: str) -> None:
         """Add a difference unless `right` is true."""

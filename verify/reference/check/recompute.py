@@ -16,7 +16,7 @@ import flint
 
 from verify.arithmetic.exact import magnitude
 from verify.reference.check.ball_orbit import Orbit, TooWideError
-from verify.reference.check.difference import Findings, Place
+from verify.reference.check.difference import DataFindings, DataPlace
 from verify.reference.check.exact_flow import BlowsUpError, states_at
 from verify.reference.check.recompute_proof import format_ball, recompute_proof
 from verify.reference.check.tape import NotReadError
@@ -32,9 +32,9 @@ _ESCAPED = 4000  # bits of |z| at which an orbit is said to have left
 _FLOW_DIGITS = (8, 40, 100)  # beyond those printed, in turn
 
 
-def recompute_unit(data: AnyData, file: str, kind: str, index: int) -> Findings:
+def recompute_unit(data: AnyData, file: str, kind: str, index: int) -> DataFindings:
     """Recompute one run, flow or proof of the data, and return the differences."""
-    findings = Findings()
+    findings = DataFindings()
     try:
         parameters = {name: Fraction(value) for name, value in data.parameters.items()}
         field = Field(data.hamiltonian, parameters, data.degrees)
@@ -43,9 +43,9 @@ def recompute_unit(data: AnyData, file: str, kind: str, index: int) -> Findings:
         elif kind == "flow":
             _check_flow(field, data.flow[index], file, findings)
         else:
-            recompute_proof(field, data, data.proofs[index], Place(findings, file))
+            recompute_proof(field, data, data.proofs[index], DataPlace(findings, file))
     except (UnknownSchemeError, NotReadError) as error:
-        Place(findings, file, f"{kind} no. {index + 1}").is_left_out(error)
+        DataPlace(findings, file, f"{kind} no. {index + 1}").is_left_out(error)
     return findings
 
 
@@ -57,24 +57,24 @@ def _size_of_start(item: AnyRun | AnyFlow) -> Fraction:
 # -- a scheme's orbit -----------------------------------------------------------------------------
 
 
-def _check_run(field: Field, run: AnyRun, file: str, findings: Findings) -> None:
+def _check_run(field: Field, run: AnyRun, file: str, findings: DataFindings) -> None:
     step = step_of(run.scheme, field)
     bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
     # Balls widen along the orbit at a rate that is not known in advance: the working precision is
     # doubled until every row is decided. Findings of an undecided attempt are discarded.
     for attempt in range(_DOUBLINGS):
-        attempt_findings = Findings()
+        attempt_findings = DataFindings()
         with suppress(TooWideError), flint.ctx.workprec(bits << attempt):
             _check_orbit(
-                field, step, run, Place(attempt_findings, file), final=attempt == _DOUBLINGS - 1
+                field, step, run, DataPlace(attempt_findings, file), final=attempt == _DOUBLINGS - 1
             )
             findings.add(attempt_findings)
             return
-    last = Place(findings, file, f"{run.label}, step {run.rows[-1].step}")
+    last = DataPlace(findings, file, f"{run.label}, step {run.rows[-1].step}")
     last.is_left_out(f"{bits << (_DOUBLINGS - 1)} bits do not tell")
 
 
-def _check_orbit(field: Field, step: Step, run: AnyRun, file: Place, *, final: bool) -> None:
+def _check_orbit(field: Field, step: Step, run: AnyRun, file: DataPlace, *, final: bool) -> None:
     """Compare every row of a run; TooWideError where a ball does not decide. `final`: the last
     attempt."""
     orbit = Orbit(field, step, run)
@@ -115,7 +115,7 @@ def _check_orbit(field: Field, step: Step, run: AnyRun, file: Place, *, final: b
             _compare_cell(name, cell, values[name], run.digits, scale, place)
 
 
-def _check_escape(orbit: Orbit, row: OrbitRow, place: Place, final: bool) -> int | None:
+def _check_escape(orbit: Orbit, row: OrbitRow, place: DataPlace, final: bool) -> int | None:
     """Return the step after which the orbit is beyond 2^4000, or undefined; None where it is
     neither.
 
@@ -149,7 +149,7 @@ def _compare_cell(
     ball: Number,
     digits: int,
     size: Fraction,
-    place: Place,
+    place: DataPlace,
     places: int = 0,
 ) -> None:
     """Check that the printed number is the one to which every number of the ball rounds.
@@ -181,30 +181,30 @@ def _compare_cell(
 # -- the exact flow -------------------------------------------------------------------------------
 
 
-def _check_flow(field: Field, flow: AnyFlow, file: str, findings: Findings) -> None:
+def _check_flow(field: Field, flow: AnyFlow, file: str, findings: DataFindings) -> None:
     rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
-            Place(findings, file, f"{flow.label}, step {row.step}").is_left_out("has no values")
+            DataPlace(findings, file, f"{flow.label}, step {row.step}").is_left_out("has no values")
     times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
-        attempt_findings, digits = Findings(), flow.digits + more
+        attempt_findings, digits = DataFindings(), flow.digits + more
         states, why = states_at(field, flow.start, times, digits)
         with suppress(TooWideError), flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
             for row, state in zip_longest(rows, states):
-                place = Place(attempt_findings, file, f"{flow.label}, step {row.step}")
+                place = DataPlace(attempt_findings, file, f"{flow.label}, step {row.step}")
                 if state is None:
                     _check_unreached_row(field, flow, row, why, place)
                 else:
                     _check_reached_row(field, flow, row, state, place)
             findings.add(attempt_findings)
             return
-    last = Place(findings, file, f"{flow.label}, step {flow.rows[-1].step}")
+    last = DataPlace(findings, file, f"{flow.label}, step {flow.rows[-1].step}")
     last.is_left_out("more digits do not tell")
 
 
 def _check_reached_row(
-    field: Field, flow: AnyFlow, row: FlowRow, state: Vector, place: Place
+    field: Field, flow: AnyFlow, row: FlowRow, state: Vector, place: DataPlace
 ) -> None:
     """Compare a row whose time was reached."""
     place.findings.recomputed += 1
@@ -218,7 +218,7 @@ def _check_reached_row(
 
 
 def _check_unreached_row(
-    field: Field, flow: AnyFlow, row: FlowRow, why: Exception | None, place: Place
+    field: Field, flow: AnyFlow, row: FlowRow, why: Exception | None, place: DataPlace
 ) -> None:
     """Check a row whose time was not reached: the solution may blow up; if not, H must be
     conserved."""

@@ -11,7 +11,7 @@ from typing import Any
 import flint
 
 from verify.arithmetic.flint_precision import length_of_series
-from verify.reference.check.difference import Place
+from verify.reference.check.difference import DataPlace
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
 from verify.reference.make.models import AnyData, AnyProof
@@ -28,7 +28,7 @@ _MOVES = (  # factors of p and of q, and how much later
 _AREA = ""  # the name of the only entry of S in the plane
 
 
-def recompute_proof(field: Field, data: AnyData, proof: AnyProof, file: Place) -> None:
+def recompute_proof(field: Field, data: AnyData, proof: AnyProof, file: DataPlace) -> None:
     """Compute the powers of h in S and in the map, at points near the initial values.
 
     Values at points cannot show that a coefficient vanishes for every z, but they show where it
@@ -51,7 +51,7 @@ def recompute_proof(field: Field, data: AnyData, proof: AnyProof, file: Place) -
 class _Examination:
     """The coefficients of one proof at one point after another."""
 
-    def __init__(self, field: Field, proof: AnyProof, row: Place, most: int) -> None:
+    def __init__(self, field: Field, proof: AnyProof, row: DataPlace, most: int) -> None:
         self.field, self.proof, self.row, self.most = field, proof, row, most
         self.step = step_of(proof.scheme, field)
         self.leading = {name: field.tape.read(x) for name, x in proof.entries.items()}

@@ -9,7 +9,12 @@ from fractions import Fraction
 from verify.errors import InputError
 from verify.reference.compare.agreement import printing
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import ColumnFindings, NamedMistake, RunFindings, Verdict
+from verify.reference.compare.findings import (
+    ColumnFindings,
+    ColumnVerdict,
+    NamedMistake,
+    RunFindings,
+)
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import state_mistakes
 from verify.reference.compare.published import Published, PublishedRun
@@ -74,7 +79,7 @@ class Comparison:
     @property
     def agrees(self) -> bool:
         """True if rounding explains every difference."""
-        return not self.diagnoses and all(x.verdict is not Verdict.MORE for x in self.columns)
+        return not self.diagnoses and all(x.verdict is not ColumnVerdict.MORE for x in self.columns)
 
 
 def compare(
@@ -115,7 +120,9 @@ def compare(
         runs=len(theirs.runs),
         columns=[_summarize_column(name, findings) for name in theirs.columns if name in compared],
         diagnoses=_diagnoses(findings),
-        unexplained=[x.label for x in findings if x.verdict is Verdict.MORE and not x.mistakes],
+        unexplained=[
+            x.label for x in findings if x.verdict is ColumnVerdict.MORE and not x.mistakes
+        ],
         lost={x.label: x.lost_from for x in findings if x.lost_from is not None},
         overflows={x.label: x.overflow_from for x in findings if x.overflow_from is not None},
         separated=_separate_worst(off),
@@ -128,7 +135,7 @@ _Off = tuple[bool, Fraction, int, str, Start]
 
 def _off_by_rounding(judge: Judge, findings: RunFindings) -> Iterator[_Off]:
     lam = findings.columns.get("lambda")
-    if lam is None or lam.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
+    if lam is None or lam.verdict not in (ColumnVerdict.ROUNDING, ColumnVerdict.PERHAPS):
         return
     orbit = judge.ours.orbit
     most = _MOST_SEPARATED[orbit.hamiltonian.structure]
@@ -164,7 +171,7 @@ class _Search:
         findings.mistakes = Diagnosis(judge, findings, frozenset(self.names)).mistakes()
         if not findings.mistakes and self.in_vain < _MOST_SEARCHES:
             findings.mistakes = Diagnosis(judge, findings).mistakes()
-            self.in_vain += findings.verdict is Verdict.MORE and not findings.mistakes
+            self.in_vain += findings.verdict is ColumnVerdict.MORE and not findings.mistakes
         before = len(self.names)
         self.names |= {name for group in findings.mistakes for name, _ in group}
         return len(self.names) > before

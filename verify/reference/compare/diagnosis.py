@@ -16,10 +16,10 @@ from verify.reference.compare.column_meanings import readings
 from verify.reference.compare.findings import (
     DOUBLE,
     SINGLE,
+    ColumnVerdict,
     Fit,
     NamedMistake,
     RunFindings,
-    Verdict,
 )
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import (
@@ -62,7 +62,7 @@ class Diagnosis:
         return [group for group in groups if group]
 
     def _are_off(self, names: Sequence[str]) -> bool:
-        return any(self.findings.columns[n].verdict >= Verdict.PERHAPS for n in names)
+        return any(self.findings.columns[n].verdict >= ColumnVerdict.PERHAPS for n in names)
 
     def _is_finer_than_doubles(self) -> bool:
         """Return True if doubles explain numbers that are printed in a finer precision."""

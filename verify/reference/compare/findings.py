@@ -9,7 +9,7 @@ NamedMistake = tuple[str, str]  # a mistake's name, and what it says
 DOUBLE, SINGLE = Fraction(1, 2**53), Fraction(1, 2**24)  # unit roundoffs
 
 
-class Verdict(IntEnum):
+class ColumnVerdict(IntEnum):
     """The verdict on a column, or on a run, from best to worst."""
 
     AGREES = 0  # in all digits that are printed
@@ -39,7 +39,7 @@ class ColumnFindings:
     `parts_at`: the first step at which it differs by more than rounding.
     """
 
-    verdict: Verdict
+    verdict: ColumnVerdict
     rows: int
     digits: float
     step: int
@@ -61,9 +61,9 @@ class RunFindings:
     overflow_from: int | None = None
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> ColumnVerdict:
         """The worst verdict of its columns."""
-        return max((x.verdict for x in self.columns.values()), default=Verdict.AGREES)
+        return max((x.verdict for x in self.columns.values()), default=ColumnVerdict.AGREES)
 
 
 @dataclass
@@ -71,7 +71,7 @@ class Fit:
     """The fit of a setting to some columns: a verdict of each, the first place of a column at
     which it fails, and its distance at each place, as far as was looked."""
 
-    verdicts: dict[str, Verdict]
+    verdicts: dict[str, ColumnVerdict]
     parts: dict[str, int] = field(default_factory=dict)
     distances: dict[tuple[int, str], Fraction] = field(default_factory=dict)
     lost_from: int | None = None
@@ -80,15 +80,15 @@ class Fit:
     @property
     def fits(self) -> bool:
         """True if rounding explains all of it."""
-        return max(self.verdicts.values(), default=Verdict.AGREES) <= Verdict.ROUNDING
+        return max(self.verdicts.values(), default=ColumnVerdict.AGREES) <= ColumnVerdict.ROUNDING
 
     @property
     def place(self) -> tuple[int, str] | None:
         """The first place at which rounding does not usually explain it."""
         return min(((step, name) for name, step in self.parts.items()), default=None)
 
-    def take(self, step: int, name: str, verdict: Verdict) -> None:
+    def take(self, step: int, name: str, verdict: ColumnVerdict) -> None:
         """Add a verdict on one number, in the order of steps."""
-        if verdict >= Verdict.PERHAPS:
+        if verdict >= ColumnVerdict.PERHAPS:
             self.parts.setdefault(name, step)
         self.verdicts[name] = max(self.verdicts[name], verdict)

@@ -21,7 +21,13 @@ from verify.arithmetic.systems import float64
 from verify.reference.compare.agreement import Cell, Printing, cell_of
 from verify.reference.compare.allowance import Allowance, products
 from verify.reference.compare.column_meanings import Prediction
-from verify.reference.compare.findings import DOUBLE, ColumnFindings, Fit, RunFindings, Verdict
+from verify.reference.compare.findings import (
+    DOUBLE,
+    ColumnFindings,
+    ColumnVerdict,
+    Fit,
+    RunFindings,
+)
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters, run_of
@@ -104,14 +110,14 @@ class Judge:
         compared."""
         every = {step: cell for (step, n), cell in self.cells.items() if n == name}
         cells = {n: x for n, x in every.items() if fit.lost_from is None or n < fit.lost_from}
-        verdict = fit.verdicts[name] if cells else Verdict.LOST
+        verdict = fit.verdicts[name] if cells else ColumnVerdict.LOST
         if not any(cell.differs for cell in every.values()):
-            verdict, cells = Verdict.AGREES, every
+            verdict, cells = ColumnVerdict.AGREES, every
         if not cells:
             return ColumnFindings(verdict, 0, math.inf, min(every), None)
         # The place of the fewest digits that agree is the one that a report shows.
         step = min(cells, key=lambda n: cells[n].digits)
-        parts_at = fit.parts.get(name) if verdict is Verdict.MORE else None
+        parts_at = fit.parts.get(name) if verdict is ColumnVerdict.MORE else None
         return ColumnFindings(verdict, len(cells), cells[step].digits, step, parts_at)
 
     def units(self) -> list[Fraction]:
@@ -137,9 +143,9 @@ class Judge:
         """
         allowance = Allowance(setting.orbit, unit, self._scatters)
         names = tuple(names)
-        result = Fit(dict.fromkeys(names, Verdict.AGREES))
+        result = Fit(dict.fromkeys(names, ColumnVerdict.AGREES))
         for (step, name), cell in self.cells.items():
-            if name not in names or result.verdicts[name] is Verdict.MORE:
+            if name not in names or result.verdicts[name] is ColumnVerdict.MORE:
                 continue
             bounded = self.numbers(setting, step, unit)
             inner_values = {setting.inner(n): x for n, x in bounded.items()}
@@ -148,7 +154,7 @@ class Judge:
                 result.overflow_from = (
                     step if result.overflow_from is None else result.overflow_from
                 )
-                result.verdicts[name] = max(result.verdicts[name], Verdict.ROUNDING)
+                result.verdicts[name] = max(result.verdicts[name], ColumnVerdict.ROUNDING)
                 continue
             foretold = (
                 predict(step)
@@ -157,7 +163,7 @@ class Judge:
                 if name in bounded
                 else None
             )
-            verdict: Verdict | None = Verdict.MORE
+            verdict: ColumnVerdict | None = ColumnVerdict.MORE
             if foretold is not None and name in bounded:
                 if cell.theirs is None:
                     verdict = verdict if allowance.after_steps(inner, after, inner_values) else None
@@ -192,16 +198,16 @@ class Judge:
 
 def _decide(
     allowance: Allowance, name: str, step: int, bounded: dict[str, Bounded], distance: Fraction
-) -> Verdict | None:
+) -> ColumnVerdict | None:
     """Return the verdict on one number; None where rounding may have taken every digit."""
     if distance == 0:
-        return Verdict.AGREES
+        return ColumnVerdict.AGREES
     # The cheap bound is tried first: following the earlier roundings takes a scatter of many runs.
     if distance <= allowance.at_once(name, step, bounded):
-        return Verdict.ROUNDING
+        return ColumnVerdict.ROUNDING
     spread = allowance.after_steps(name, step, bounded)
     if spread is None:
         return None
     if distance <= spread.usual:
-        return Verdict.ROUNDING
-    return Verdict.PERHAPS if distance <= spread.worst else Verdict.MORE
+        return ColumnVerdict.ROUNDING
+    return ColumnVerdict.PERHAPS if distance <= spread.worst else ColumnVerdict.MORE

@@ -92,8 +92,11 @@ def conditions_of_pairs(
     return ConditionSet(entries, equations, residues, by_form, labels=labels)
 
 
-def join_conditions(first: ConditionSet, second: ConditionSet) -> ConditionSet:
-    """Return the conditions of both, the first ones on the first of the second's entries."""
+def prepend_conditions(first: ConditionSet, second: ConditionSet) -> ConditionSet:
+    """Return both sets as one on the second's entries, of which the first set reads the first ones.
+
+    The second set has no `some`, and no conditions that its form fulfils.
+    """
     count = len(first.entries)
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:

@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.schemes.conditions.splitting_conditions import sums_before
 from verify.schemes.conditions.words.equations import equations_of
 from verify.schemes.conditions.words.kinetic import Kinetic
-from verify.schemes.printed.condition_set import ConditionSet, NamedEquation, join_conditions
+from verify.schemes.printed.condition_set import ConditionSet, NamedEquation, prepend_conditions
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
@@ -41,7 +41,7 @@ def judge_order(table: PrintedTable, order: int) -> Judged:
     # With right clocks the conditions without time suffice: see `splitting_conditions`.
     if right and table.kinetic is not Kinetic.MASS:
         plain = table.condition_set(order)
-        judged = judge(table.printed, join_conditions(plain, _clock_conditions(table)), order)
+        judged = judge(table.printed, prepend_conditions(plain, _clock_conditions(table)), order)
         if judged.verdict is not Verdict.REFUTED:
             return judged
     most = min(order, _MOST_ORDER)

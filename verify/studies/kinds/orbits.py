@@ -91,13 +91,13 @@ def _collect(scene: Scene, results: Results) -> dict[str, Any]:
     }
 
 
-def _needs_period_section(scene: Scene) -> bool:
-    """Return True if the scene has such sections, or an H without time, which needs none."""
+def _has_period_sections(scene: Scene) -> bool:
+    """Return True if the scene has stroboscopic sections, or H does not depend on t."""
     return bool(scene.stroboscopic) or not scene.exact_hamiltonian().time_dependent
 
 
-def _needs_surface_section(scene: Scene) -> bool:
-    """Return True if the scene has such sections, or an H that needs none."""
+def _has_surface_sections(scene: Scene) -> bool:
+    """Return True if the scene has Poincaré sections, or an H that has no surface of its own."""
     exact = scene.exact_hamiltonian()
     return bool(scene.poincare) or exact.degrees < 2 or exact.time_dependent
 
@@ -106,9 +106,9 @@ _WITHOUT = "the scene has no "
 _AT_PERIODS = (
     "orbits at multiples of a period",
     f"{_WITHOUT}[[stroboscopic]]",
-    _needs_period_section,
+    _has_period_sections,
 )
-_AT_SURFACE = "orbits where they pass a surface", f"{_WITHOUT}[[poincare]]", _needs_surface_section
+_AT_SURFACE = "orbits where they pass a surface", f"{_WITHOUT}[[poincare]]", _has_surface_sections
 STUDY = Study(
     11,
     (Section(11, *_AT_PERIODS), Section(12, *_AT_SURFACE)),

@@ -15,7 +15,7 @@ from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.digits_on_demand import choose
 from verify.scenes.results.orbit_sections import SchemeSections, StroboscopicOrbit
 from verify.studies.orbits.passes import Passes, count_agreeing
@@ -68,7 +68,7 @@ def sections_of(
 
 def _follow(run: KernelRun, name: str, digits: int, steps: int) -> Passes:
     """Return the states at the start and after each period."""
-    outcome: Outcome | None = None
+    outcome: RunOutcome | None = None
     with contextlib.suppress(UnsupportedError):
         outcome = run.run(number_systems.get(name, digits))
     if outcome is None or (outcome.done < run.steps and name != float64.NAME):

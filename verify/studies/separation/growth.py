@@ -63,7 +63,7 @@ _SHORT = "too few checkpoints above noise for a fit"
 
 
 @dataclass(frozen=True)
-class Fit:
+class GrowthFit:
     """A fit size ~ N^exponent with its name; the exponent is None where nothing was fitted."""
 
     exponent: float | None
@@ -79,7 +79,7 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class Growth(Fit):
+class Growth(GrowthFit):
     """The growth of |rounding|, from `first` to `last` steps."""
 
     name: Name
@@ -89,7 +89,7 @@ class Growth(Fit):
 
 
 @dataclass(frozen=True)
-class PowerLaw(Fit):
+class PowerLaw(GrowthFit):
     """The growth of a greatest size."""
 
     name: Law

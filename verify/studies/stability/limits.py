@@ -25,7 +25,7 @@ from verify.studies.stability.exact_motion import exact_motion
 from verify.studies.stability.nearby_linear import linear_stability
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run, State
-from verify.studies.stability.verdict_on_run import Judgement, judge
+from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), the ratio of the step sizes that are tried first
@@ -95,7 +95,7 @@ class _RunsFromState:
             return False
         return self.symplectic_defect is None or _keeps_form(motion.run, self.symplectic_defect)
 
-    def judge_run(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+    def judge_run(self, scheme: str, h: Fraction, steps: int) -> RunJudgement:
         """Return the verdict on the run."""
         return judge(self._motion(scheme, h, steps))
 

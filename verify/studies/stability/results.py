@@ -11,7 +11,7 @@ from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.limits import linear_limit, round_to_text
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
-from verify.studies.stability.verdict_on_run import Judgement, judge
+from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
 
 def run_result(run: Run) -> StabilityResult:
@@ -35,7 +35,7 @@ def run_result(run: Run) -> StabilityResult:
     )
 
 
-def _theory_fields(motion: RunMotion, judgement: Judgement) -> dict[str, Any]:
+def _theory_fields(motion: RunMotion, judgement: RunJudgement) -> dict[str, Any]:
     """Return the fields of linear theory.
 
     In n degrees of freedom the rate at which neighbours part.
@@ -52,7 +52,9 @@ def _theory_fields(motion: RunMotion, judgement: Judgement) -> dict[str, Any]:
     }
 
 
-def _compare_with_theory(judgement: Judgement, h_omega: Fraction, limit: Fraction | None) -> Prose:
+def _compare_with_theory(
+    judgement: RunJudgement, h_omega: Fraction, limit: Fraction | None
+) -> Prose:
     """Compare a scheme that is to blame with its linear theory."""
     if judgement.kind != "unstable: scheme" or limit is None or not h_omega:
         return Prose()

@@ -59,7 +59,7 @@ _KEPT = 1  # energy scales: what has not lost more has kept its energy
 
 
 @dataclass(frozen=True)
-class Judgement:
+class RunJudgement:
     """A verdict with its evidence; see `StabilityResult`."""
 
     kind: Kind
@@ -69,16 +69,16 @@ class Judgement:
     energy_error: Fraction | None = None
 
 
-def judge(motion: RunMotion) -> Judgement:
+def judge(motion: RunMotion) -> RunJudgement:
     """Return the verdict on one run."""
     orbit = motion.orbit
     if orbit.kind == "escapes":
-        return Judgement("escapes", prose("the exact solution ", orbit.summary))
+        return RunJudgement("escapes", prose("the exact solution ", orbit.summary))
     # A run that stays is judged even where the exact orbit was followed only to a part of the time.
     stays = orbit.kind != "not followed" and motion.stays(motion.precise)
     if not stays and orbit.kind in ("unknown", "not followed"):
         unknown = "the exact solution, to be held against, is not known: "
-        return Judgement("undecided", prose(unknown, orbit.summary))
+        return RunJudgement("undecided", prose(unknown, orbit.summary))
     if not stays:
         return _judge_leaving(motion)
     together = motion.stay_together(motion.float64_as_far, motion.precise)
@@ -88,23 +88,25 @@ def judge(motion: RunMotion) -> Judgement:
     return _judge_within_range(motion) if together else _judge_by_digits(motion)
 
 
-def _judge_leaving(motion: RunMotion) -> Judgement:
+def _judge_leaving(motion: RunMotion) -> RunJudgement:
     digits = 2 * motion.digits
     again = follow_precisely(motion.run, digits)
     step = find_first_step(again, motion.is_beyond)
     if step is None:
         detail = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
-        return Judgement("undecided", detail)
+        return RunJudgement("undecided", detail)
     where = f"at step {step}, in {motion.digits} and in {digits} digits"
     if not isinstance(motion.orbit, ExactMotion):
-        return Judgement("unstable: scheme", _describe_end(motion, again, step, where), step=step)
+        return RunJudgement(
+            "unstable: scheme", _describe_end(motion, again, step, where), step=step
+        )
     detail = prose(f"the scheme leaves the bounds {where}")
     errors = motion.energy_errors(again)[: sum(x.step < step for x in again.points)]
     worst = fraction(max((abs(x) for x in errors if x is not None), default=0))
     if not motion.orbit.is_sensitive or worst > _KEPT:
-        return Judgement("unstable: scheme", detail, step=step)
+        return RunJudgement("unstable: scheme", detail, step=step)
     detail += prose(", its energy kept; the exact solution ", motion.orbit.summary)
-    return Judgement("sensitive", detail, step=step, energy_error=worst)
+    return RunJudgement("sensitive", detail, step=step, energy_error=worst)
 
 
 def _describe_end(motion: RunMotion, again: Trail, step: int, where: str) -> Prose:
@@ -132,7 +134,7 @@ def _describe_parting(motion: RunMotion, precise: Trail, where: str) -> tuple[Pr
     return prose(f"float64 parts {when} from the same scheme in {where} digits"), step
 
 
-def _judge_by_neighbours(motion: RunMotion, exact: ExactMotion) -> Judgement:
+def _judge_by_neighbours(motion: RunMotion, exact: ExactMotion) -> RunJudgement:
     """Judge a run that float64 and high precision part in, as exact neighbours may, too."""
     detail, step = _describe_parting(motion, motion.precise, str(motion.digits))
     kind: Kind = "unstable: arithmetic"
@@ -146,28 +148,28 @@ def _judge_by_neighbours(motion: RunMotion, exact: ExactMotion) -> Judgement:
         kind, rate = "unstable: scheme", f"{motion.sensitivity.exponent:.2g}"
         detail += read_prose(f"; so do neighbours of its own orbit (`{rate}` in a unit of time)")
     detail += prose("; the exact solution ", exact.summary)
-    return Judgement(kind, detail, step=step, energy_error=motion.worst(motion.precise))
+    return RunJudgement(kind, detail, step=step, energy_error=motion.worst(motion.precise))
 
 
-def _judge_by_digits(motion: RunMotion) -> Judgement:
+def _judge_by_digits(motion: RunMotion) -> RunJudgement:
     """Judge a run that stays in high precision, which float64 leaves or parts from."""
     here, confirmation = motion.float64_as_far, _confirm_run(motion)
     if confirmation is None:
         detail = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
-        return Judgement("undecided", detail)
+        return RunJudgement("undecided", detail)
     digits, precise = confirmation
     which = f"{digits // 2} and in {digits}"
     if not motion.stays(precise):  # fewer digits did, by rounding
         step = find_first_step(precise, motion.is_beyond)
         detail = prose(f"the scheme leaves the bounds, in {which} digits")
-        return Judgement("unstable: scheme", detail, step=step)
+        return RunJudgement("unstable: scheme", detail, step=step)
     if _is_range_to_blame(motion):
         return _judge_out_of_range(motion, here)
     detail, step = _describe_parting(motion, precise, which)
     detail += describe_rounded_start(motion.run)
     if motion.orbit.kind == "driven":
         detail += _describe_sensitivity(motion, digits, precise)
-    return Judgement("unstable: arithmetic", detail, step=step or here.done + 1)
+    return RunJudgement("unstable: arithmetic", detail, step=step or here.done + 1)
 
 
 def _describe_sensitivity(motion: RunMotion, digits: int, precise: Trail) -> Prose:
@@ -217,17 +219,17 @@ def _is_range_to_blame(motion: RunMotion) -> bool:
     return all(motion.stay_together(run, precise) for run in wide)
 
 
-def _judge_out_of_range(motion: RunMotion, here: Trail) -> Judgement:
+def _judge_out_of_range(motion: RunMotion, here: Trail) -> RunJudgement:
     if here.is_finished:
         detail = _describe_underflow(motion) or prose(
             "numbers vanish in float64 that wider exponents keep"
         )
-        return Judgement("underflow", detail)
+        return RunJudgement("underflow", detail)
     detail = prose(
         "a number is beyond float64's range; with 53 bits and wider exponents the run stays within "
         "its bounds"
     )
-    return Judgement("overflow", detail, step=here.done + 1)
+    return RunJudgement("overflow", detail, step=here.done + 1)
 
 
 def _describe_underflow(motion: RunMotion) -> Prose:
@@ -252,22 +254,22 @@ def _describe_underflow(motion: RunMotion) -> Prose:
     return Prose()
 
 
-def _judge_within_range(motion: RunMotion) -> Judgement:
+def _judge_within_range(motion: RunMotion) -> RunJudgement:
     """Judge a run that agrees with high precision as far as that was followed."""
     if not motion.stays(motion.float64):
         bounds_end = f"the {motion.precise.steps} steps of the run it is held to"
-        return Judgement("undecided", prose(f"float64 leaves its bounds beyond {bounds_end}"))
+        return RunJudgement("undecided", prose(f"float64 leaves its bounds beyond {bounds_end}"))
     lost = _describe_underflow(motion)
     if lost:
-        return Judgement("underflow", lost, energy_error=motion.worst(motion.float64))
+        return RunJudgement("underflow", lost, energy_error=motion.worst(motion.float64))
     return _judge_bounded(motion)
 
 
-def _judge_bounded(motion: RunMotion) -> Judgement:
+def _judge_bounded(motion: RunMotion) -> RunJudgement:
     rate = find_drift(motion)
     detail = _describe_bounded(motion, drifts=rate is not None)
     kind: Kind = "stable" if rate is None else "drifts"
-    return Judgement(kind, detail, rate=rate, energy_error=motion.worst(motion.precise))
+    return RunJudgement(kind, detail, rate=rate, energy_error=motion.worst(motion.precise))
 
 
 def _describe_bounded(motion: RunMotion, drifts: bool) -> Prose:

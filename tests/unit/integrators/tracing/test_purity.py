@@ -1,12 +1,15 @@
 """What a trace reached is named where it is not pure, and nothing is where all of it is."""
 
 import sys
+import types
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
+from verify.integrators.tracing import purity
 from verify.integrators.tracing.functions import copy_function
 from verify.integrators.tracing.trace import Tape
 
@@ -82,3 +85,15 @@ def test_a_state_that_comes_back_after_several_calls_is_seen_after_one() -> None
         return p * turns[0], q
 
     assert impure(step) == ["turns is changed"]
+
+
+def test_a_function_that_two_modules_have_is_named_by_the_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """scipy.special has numpy's sinc, which is replaced in a trace by its name."""
+    special = types.ModuleType("scipy.special")
+    special.sinc = np.sinc  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "scipy.special", special)
+    purity._pure_in.cache_clear()
+    assert purity.pure_things()[id(np.sinc)][0] == "numpy.sinc"
+    purity._pure_in.cache_clear()

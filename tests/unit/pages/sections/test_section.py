@@ -7,7 +7,7 @@ import pytest
 from verify.discovery import Catalogue
 from verify.pages.page import TEMPLATES
 from verify.pages.sections import page, scene, scheme
-from verify.pages.sections.section import Place, sections, select_sections, terms
+from verify.pages.sections.section import SectionPlace, sections, select_sections, terms
 
 _PLANTED = """
 from markupsafe import Markup
@@ -35,7 +35,7 @@ def test_a_file_is_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     (folder / "another.py").write_text(_PLANTED.format(order=1))
     monkeypatch.syspath_prepend(tmp_path)
     files = Catalogue("planted_sections", [str(folder)])
-    found = select_sections(files, Place("mine", "Mine"), "view")
+    found = select_sections(files, SectionPlace("mine", "Mine"), "view")
     assert [each.template for each in found] == [
         "planted_sections/another.html",
         "planted_sections/one_file.html",
@@ -43,6 +43,6 @@ def test_a_file_is_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert (found[0].anchor, found[0].name) == ("a-of-mine", "T, Mine")
     assert [entry.anchor for each in found for entry in each.entries] == ["a-of-mine"] * 2
     assert list(terms(found)) == ["1", "2"]
-    assert select_sections(files, Place("mine", "Mine"), "") == (), (
+    assert select_sections(files, SectionPlace("mine", "Mine"), "") == (), (
         "what has nothing to show is left out"
     )

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.reference import SCENES, changed, made
-from verify.reference.check.difference import Difference, Findings
+from verify.reference.check.difference import DataFindings, Difference
 from verify.reference.check.recompute import recompute_unit
 from verify.reference.make.models import Data
 
@@ -55,7 +55,7 @@ def units(of: Data) -> Iterator[tuple[str, int]]:
         yield from ((kind, k) for k in range(len(getattr(of, field))))
 
 
-def again(of: Data, kind: str, index: int) -> Findings:
+def again(of: Data, kind: str, index: int) -> DataFindings:
     return recompute_unit(of, "file", kind, index)
 
 

@@ -12,7 +12,7 @@ import pytest
 from tests.unit.reference.compare.test_compare import named
 from verify.errors import InputError
 from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import Verdict
+from verify.reference.compare.findings import ColumnVerdict
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED
@@ -97,7 +97,7 @@ def test_a_right_clock_is_never_accused(
 ) -> None:
     found = of(ours, tmp_path, table(step, (-0.5, 0.5), 0, adds), scheme=scheme, **WELL)
     assert found.agrees
-    assert all(x.verdict is not Verdict.MORE and x.digits > 12 for x in found.columns)
+    assert all(x.verdict is not ColumnVerdict.MORE and x.digits > 12 for x in found.columns)
 
 
 @pytest.mark.left_to_ci

@@ -22,7 +22,7 @@ from tests.helpers.programs.submitted_programs import (
 )
 from verify.reference.compare.column_meanings import readings
 from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import Verdict
+from verify.reference.compare.findings import ColumnVerdict
 from verify.reference.compare.mistakes import state_mistakes
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.setting import Points, Setting
@@ -75,7 +75,7 @@ def test_a_right_program_differs_by_rounding(
     found = of(ours, tmp_path, program, table, scheme=name, step_size=h)
     assert found.agrees
     assert not found.diagnoses
-    assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.ROUNDING}
     assert all(x.digits > 11 for x in found.columns)
 
 
@@ -85,7 +85,7 @@ def test_a_plain_area_differs_by_rounding_and_its_separation_is_told(
     found = of(ours, tmp_path, ORIGIN.changed(**ALL_AREAS))
     assert found.agrees
     assert len(found.columns) == 5
-    assert all(x.verdict is Verdict.ROUNDING for x in found.columns)
+    assert all(x.verdict is ColumnVerdict.ROUNDING for x in found.columns)
     assert found.separated is not None
     parts = found.separated.result.plain
     assert parts is not None
@@ -99,7 +99,7 @@ def test_a_program_that_prints_few_digits_agrees_in_all_of_them(
 ) -> None:
     for form in (f"{{:.{digits}f}}", f"{{:.{digits}e}}"):
         found = of(ours, tmp_path, CORNER.changed(number=form.format))
-        assert [x.verdict for x in found.columns] == [Verdict.AGREES] * 2
+        assert [x.verdict for x in found.columns] == [ColumnVerdict.AGREES] * 2
 
 
 def test_the_last_printed_digit_is_looked_at(ours: Published, tmp_path: Path) -> None:
@@ -115,19 +115,19 @@ def test_the_last_printed_digit_is_looked_at(ours: Published, tmp_path: Path) ->
 def test_forty_digits_agree_where_h_is_exact(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, precise("1/100"))
     assert found.agrees
-    assert {x.verdict for x in found.columns} == {Verdict.AGREES}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.AGREES}
 
 
 def test_thirty_digits_of_a_double_are_a_double(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, CORNER.changed(number="{:.29e}".format))
     assert found.agrees
     assert not found.diagnoses
-    assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.ROUNDING}
 
 
 def test_exponents_may_be_fortrans(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, CORNER.changed(number=lambda x: f"{x:.16e}".replace("e", "D")))
-    assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.ROUNDING}
 
 
 # -- mistakes --------------------------------------------------------------------------------------
@@ -239,7 +239,11 @@ def test_another_reading_of_an_area_error_is_named(
     column, reading = OTHER_AREAS[name]
     found = of(ours, tmp_path, CORNER.changed(**{column: reading}))
     assert named(found) == [{name.removeprefix("mse ").removeprefix("delta_j ")}]
-    assert [x.verdict for x in found.columns] == [Verdict.ROUNDING, Verdict.ROUNDING, Verdict.MORE]
+    assert [x.verdict for x in found.columns] == [
+        ColumnVerdict.ROUNDING,
+        ColumnVerdict.ROUNDING,
+        ColumnVerdict.MORE,
+    ]
 
 
 def test_every_mistake_has_its_table(ours: Published) -> None:
@@ -294,7 +298,7 @@ def test_one_wrong_number_among_right_ones_is_no_mistake_of_the_whole(
     found = of(ours, tmp_path, CORNER, "\n".join(lines))
     assert not found.agrees
     assert not found.diagnoses
-    parts = [x.parts_at for x in found.columns if x.verdict is Verdict.MORE]
+    parts = [x.parts_at for x in found.columns if x.verdict is ColumnVerdict.MORE]
     assert parts == [1]
 
 

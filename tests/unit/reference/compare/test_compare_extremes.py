@@ -11,7 +11,7 @@ import pytest
 from verify.errors import InputError
 from verify.reference.compare.agreement import is_single, number
 from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import Verdict
+from verify.reference.compare.findings import ColumnVerdict
 from verify.reference.compare.judge import may_overflow
 from verify.reference.compare.published import PublishedRun, load
 from verify.reference.compare.scatter import Scatter
@@ -69,7 +69,7 @@ def test_a_right_program_is_not_called_wrong(tmp_path: Path, what: str) -> None:
     found = of(tmp_path, run, step, lambda _, p: p)
     assert found.agrees
     assert not found.diagnoses
-    assert any(x.verdict is Verdict.ROUNDING for x in found.columns)
+    assert any(x.verdict is ColumnVerdict.ROUNDING for x in found.columns)
     assert bool(found.overflows) == ("overflow" in what)
 
 
@@ -116,7 +116,7 @@ def test_numbers_beyond_single_precision_are_none() -> None:
 def test_the_datas_own_numbers_agree_beyond_all_sizes_of_doubles(scene: str) -> None:
     ours = load(PUBLISHED, scene)
     found = compare(ours, read(PUBLISHED / f"{scene}-runs.csv", ours, {"scene": scene}, {}))
-    assert {x.verdict for x in found.columns} == {Verdict.AGREES}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.AGREES}
 
 
 @pytest.mark.parametrize(("text", "value"), [("1e4000", 4000), ("1.0E-4000", -4000)])
@@ -148,7 +148,7 @@ def test_where_a_run_is_lost_nothing_is_said(tmp_path: Path) -> None:
     assert list(found.lost.values()) == [4000]
     assert all(x.rows == 1 and x.digits > 15 for x in found.columns)
     found = soft(tmp_path, "4000,nan,7")
-    assert {x.verdict for x in found.columns} == {Verdict.LOST}
+    assert {x.verdict for x in found.columns} == {ColumnVerdict.LOST}
 
 
 def test_an_equilibrium_in_doubles_is_not_single_precision(tmp_path: Path) -> None:

@@ -8,7 +8,13 @@ import pytest
 
 from verify.reference.compare import diagnosis
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import DOUBLE, ColumnFindings, Fit, RunFindings, Verdict
+from verify.reference.compare.findings import (
+    DOUBLE,
+    ColumnFindings,
+    ColumnVerdict,
+    Fit,
+    RunFindings,
+)
 
 PLACE = (7, "lambda")
 UNIT = DOUBLE
@@ -19,9 +25,9 @@ ROUNDED = UNIT * THEIRS  # as near as two numbers of that size are told apart
 def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
     """The names that are said of a column that is off by `right` in the right reading, and by
     `other` in the first of the others; the rest of them do not fit."""
-    wrong = Fit({"lambda": Verdict.MORE})
+    wrong = Fit({"lambda": ColumnVerdict.MORE})
     wrong.parts, wrong.distances = {"lambda": PLACE[0]}, {PLACE: right}
-    near = Fit({"lambda": Verdict.AGREES if fits else Verdict.MORE})
+    near = Fit({"lambda": ColumnVerdict.AGREES if fits else ColumnVerdict.MORE})
     near.distances = {PLACE: other}
     asked: list[Any] = []
 
@@ -36,7 +42,7 @@ def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
         names=["lambda"], right=None, state=[],
     )  # fmt: skip
     findings = RunFindings(
-        "a run", {"lambda": ColumnFindings(Verdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT
+        "a run", {"lambda": ColumnFindings(ColumnVerdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT
     )
     named = Diagnosis(judge, findings)._explain_column(None, "lambda")  # type: ignore[arg-type]
     return [name for name, _ in named]
@@ -60,7 +66,7 @@ def test_a_reading_that_fits_and_is_much_nearer_is_named(times: int, other: Frac
 def test_a_mistake_of_the_state_is_told_by_the_same_rule(
     times: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    right, other = Fit({"lambda": Verdict.MORE}), Fit({"lambda": Verdict.AGREES})
+    right, other = Fit({"lambda": ColumnVerdict.MORE}), Fit({"lambda": ColumnVerdict.AGREES})
     right.parts, right.distances = {"lambda": PLACE[0]}, {PLACE: times * ROUNDED}
     other.distances = {PLACE: ROUNDED}
     late = SimpleNamespace(name="late", says="a step late", setting="late", synonyms=())
@@ -77,13 +83,17 @@ def test_a_mistake_of_the_state_is_told_by_the_same_rule(
 
 
 def test_the_place_of_a_fit_is_the_first_at_which_rounding_does_not_usually_explain_it() -> None:
-    fit = Fit(dict.fromkeys(("p", "q", "mse"), Verdict.AGREES))
+    fit = Fit(dict.fromkeys(("p", "q", "mse"), ColumnVerdict.AGREES))
     assert fit.place is None
     for step, name, verdict in [
-        (1, "mse", Verdict.ROUNDING), (3, "q", Verdict.PERHAPS), (5, "p", Verdict.MORE),
-        (7, "q", Verdict.MORE), (9, "q", Verdict.AGREES),
+        (1, "mse", ColumnVerdict.ROUNDING), (3, "q", ColumnVerdict.PERHAPS),
+        (5, "p", ColumnVerdict.MORE), (7, "q", ColumnVerdict.MORE), (9, "q", ColumnVerdict.AGREES),
     ]:  # fmt: skip
         fit.take(step, name, verdict)
     assert (fit.place, fit.parts) == ((3, "q"), {"q": 3, "p": 5})
-    assert fit.verdicts == {"p": Verdict.MORE, "q": Verdict.MORE, "mse": Verdict.ROUNDING}
+    assert fit.verdicts == {
+        "p": ColumnVerdict.MORE,
+        "q": ColumnVerdict.MORE,
+        "mse": ColumnVerdict.ROUNDING,
+    }
     assert not fit.fits

@@ -13,7 +13,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.limits import largest_step, stability_map
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
-from verify.studies.stability.verdict_on_run import Judgement, judge
+from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
 FORCED = "p**2/2 + q**2/2 - q*cos(2*t)"
 DUFFING = "p**2/2 + q**2/2 + q**4/4 - q*cos(7*t/5)/2"
@@ -29,7 +29,7 @@ def case(
     return Run(exact, scheme, rational(h), (rational(p), rational(q)), steps, rational(t0))
 
 
-def judged(*given: str | int, **more: str) -> Judgement:
+def judged(*given: str | int, **more: str) -> RunJudgement:
     return judge(RunMotion(case(*given, **more)))  # type: ignore[arg-type]
 
 

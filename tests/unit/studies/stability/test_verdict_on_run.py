@@ -11,7 +11,7 @@ from verify.studies.stability import verdict_on_run as blame
 from verify.studies.stability.rounded_start import nearest_equilibrium
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run, follow_precisely
-from verify.studies.stability.verdict_on_run import Judgement, judge
+from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
 HARMONIC = "p**2/2 + q**2/2"
 DUFFING = "p**2/2 + q**2/2 + q**4/4"
@@ -27,7 +27,7 @@ def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str =
     return Run(Hamiltonian.parse(text), scheme, rational(h), (rational(p), at), steps)
 
 
-def judged(*given: object) -> Judgement:
+def judged(*given: object) -> RunJudgement:
     return judge(RunMotion(case(*given)))  # type: ignore[arg-type]
 
 

@@ -29,7 +29,7 @@ from verify.schemes.printed.condition_set import (
     ConditionSet,
     NamedEquation,
     Residues,
-    join_conditions,
+    prepend_conditions,
 )
 from verify.schemes.printed.judged import Judged, Misprint, judge
 from verify.verdict import Verdict
@@ -165,7 +165,9 @@ def judge_in_time(table: TableauTable, order: int) -> Judged:
     which are not the row sums; or with both."""
     plain = order_conditions(table, order)
     if len(plain.equations) <= MANY:
-        judgement = judge(table.printed, join_conditions(plain, row_sum_conditions(table)), order)
+        judgement = judge(
+            table.printed, prepend_conditions(plain, row_sum_conditions(table)), order
+        )
         if judgement.verdict is not Verdict.REFUTED:
             return judgement
     limit = most_order(replace(table.grammar, timed=True))

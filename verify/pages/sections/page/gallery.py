@@ -15,7 +15,7 @@ from verify.pages.sections.gallery_finding import (
     short_value,
 )
 from verify.pages.sections.page_contents import PageContents
-from verify.pages.sections.section import Entry, Picture, Place, Section, Tile
+from verify.pages.sections.section import Entry, Picture, Section, SectionPlace, Tile
 from verify.pages.text import mathml, words
 from verify.pages.text.signs import SIGNS
 from verify.pages.text.typography import NBSP, count_noun, start, step, whole
@@ -196,7 +196,9 @@ def _is_known(size: str) -> bool:
 
 def _pictures(view: GalleryView) -> Iterator[Picture]:
     for card in view.cards:
-        yield from (Picture((6,), plot, Place(card.anchor, card.title)) for plot in card.plots)
+        yield from (
+            Picture((6,), plot, SectionPlace(card.anchor, card.title)) for plot in card.plots
+        )
 
 
 SECTION = Section(

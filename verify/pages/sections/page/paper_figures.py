@@ -8,7 +8,7 @@ from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.claim_view import Anchors, ClaimView
 from verify.pages.sections.page_contents import PageContents, SceneView
-from verify.pages.sections.section import Entry, Place, Section, walk
+from verify.pages.sections.section import Entry, Section, SectionPlace, walk
 from verify.scenes.paper_figures import PaperFigure
 
 _FIGURE_PREFIX = re.compile(r"^fig(ure|\.)?\s+", re.IGNORECASE)
@@ -75,9 +75,9 @@ def _candidate_plots(figure: PaperFigure, scene: SceneView) -> Iterator[tuple[Pl
             yield from each.section.matching_plots(each.view, figure.label)
 
 
-def _keeps(views: Sequence[PaperFigureView]) -> Iterator[tuple[Plot, Place]]:
+def _keeps(views: Sequence[PaperFigureView]) -> Iterator[tuple[Plot, SectionPlace]]:
     for view in views:
-        yield from ((plot, Place(view.anchor, view.figure.label)) for plot in view.plots)
+        yield from ((plot, SectionPlace(view.anchor, view.figure.label)) for plot in view.plots)
 
 
 SECTION = Section(

@@ -10,7 +10,7 @@ from verify.pages.figures.captioned_plot import Plot, captioned_plot, name_arith
 from verify.pages.sections.flow_finding import finding, findings, mean_of, region_of
 from verify.pages.sections.flow_words import words
 from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Place, Section
+from verify.pages.sections.section import Picture, Section, SectionPlace
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
@@ -186,7 +186,7 @@ def _terms(views: Sequence[FlowView]) -> dict[str, Markup]:
 def _pictures(view: FlowView) -> Iterator[Picture]:
     for each in view.regions:
         if each.plot is not None:
-            yield Picture((2,), each.plot, Place(each.anchor, each.title))
+            yield Picture((2,), each.plot, SectionPlace(each.anchor, each.title))
 
 
 SECTION = Section(

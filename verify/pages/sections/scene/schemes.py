@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.sections import scheme as of_scheme
-from verify.pages.sections.section import Entry, Place, Section, VisibleSection, select_sections
+from verify.pages.sections.section import (
+    Entry,
+    Section,
+    SectionPlace,
+    VisibleSection,
+    select_sections,
+)
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
@@ -32,7 +38,7 @@ def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...]:
 
 
 def _scheme(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeView:
-    place = Place(anchor, proof.scheme)
+    place = SectionPlace(anchor, proof.scheme)
     return SchemeView(proof, anchor, select_sections(of_scheme.FILES, place, scene, proof, anchor))
 
 

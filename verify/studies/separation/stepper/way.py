@@ -20,7 +20,7 @@ from verify.kernels.rounding import Ball, Rounded, analyse, rounding_of
 from verify.kernels.step import newton
 from verify.kernels.step.computation import Computation
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.estimated import working_digits
 from verify.scenes.results.separation import AnySeparation
 from verify.schemes.maps.step_map import StepMap
@@ -252,7 +252,7 @@ class Way(ABC):
         """Return the links that a proof gives; `exact`: the map for the run's parameters."""
 
     @abstractmethod
-    def values(self, run: Outcome, last: Fraction) -> list[Entries]:
+    def values(self, run: RunOutcome, last: Fraction) -> list[Entries]:
         """Return a run's values at its checkpoints; `last` is the better value of the last one."""
 
     def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:

@@ -39,7 +39,7 @@ from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.rounding import PRECISION
 from verify.kernels.step.computation import common_power
 from verify.kernels.step.kinds import may_leave_range
-from verify.kernels.stepping import KernelRun, Outcome, limits
+from verify.kernels.stepping import KernelRun, RunOutcome, limits
 from verify.runs.estimated import working_digits
 from verify.runs.run import prove_observables
 from verify.scenes.results.separation import SeparationResult
@@ -181,7 +181,7 @@ class Determinants(Way):
         worst = max(bound for _, bound in values)
         return links_of([(x,) for x, _ in values], worst, "enclosed", "ΔJ is constant")
 
-    def values(self, run: Outcome, last: Fraction) -> list[Entries]:
+    def values(self, run: RunOutcome, last: Fraction) -> list[Entries]:
         return [*((note["lambda"],) for note in run.trail[:-1]), (last,)]
 
     def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:

@@ -31,7 +31,7 @@ from typing import Any, ClassVar
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import Computation, Observed, computation_of, step_map_of
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.observables.observable import Need
 from verify.scenes.results.separation import SeparationInDegrees
 from verify.scenes.results.separation_parts import FormParts
@@ -132,7 +132,7 @@ class Matrices(Way):
         nothing = (Fraction(0),) * (self.count * (self.count - 1) // 2)
         return exact_links([nothing] * len(marks_of(run.steps, POINTS)), self.vanishes)
 
-    def values(self, run: Outcome, last: Fraction) -> list[Entries]:
+    def values(self, run: RunOutcome, last: Fraction) -> list[Entries]:
         names = [n for n in run.tangents[0] if n.startswith("w_")]
         return [tuple(note[n] for n in names) for note in run.tangents]
 
