@@ -11,7 +11,7 @@ can be none.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -95,16 +95,16 @@ def _largest(
         """Grow a safe box: first to all sides."""
         room = partial(_room, kernel, inputs, times, matrix)
 
-        def widest(box: Callable[[Fraction], tuple[Fraction, Fraction]]) -> Fraction:
-            """Return the greatest side whose box is safe, by bisection: a box that contains an
-            unsafe box is unsafe. With the least side it is the box that was safe before."""
-            return _SIDES[bisect_left(_SIDES, True, key=lambda r: room(*box(r), value) is not None)]
+        def widest(growing: Iterable[tuple[Fraction, Fraction]]) -> tuple[Fraction, Fraction]:
+            """Return the greatest safe box, by bisection: a box that contains an unsafe box is
+            unsafe. Boxes come from the greatest to the least, which is the one that was safe."""
+            boxes = list(growing)
+            return boxes[bisect_left(boxes, True, key=lambda box: room(*box, value) is not None)]
 
-        side = widest(lambda r: (max(p, r), max(q, r)))
-        p, q = max(p, side), max(q, side)
+        p, q = widest((max(p, r), max(q, r)) for r in _SIDES)
         # q first: it is an angle more often than p, and grows where that turns.
-        q = max(q, widest(lambda r: (p, max(q, r))))
-        p = max(p, widest(lambda r: (max(p, r), q)))
+        p, q = widest((p, max(q, r)) for r in _SIDES)
+        p, q = widest((max(p, r), q) for r in _SIDES)
         part = room(p, q, value)
         assert part is not None  # noqa: S101 - as was just seen
         return Limits(p, q, part, value, matrix)

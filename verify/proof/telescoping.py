@@ -14,11 +14,10 @@ alternating sum Lβ cancel but the first and the last. In the plane β = G dp∧
 (X G) dp∧dq, since the flow preserves dp∧dq. ∎
 
 Odd η: if H has an equilibrium at which the coefficient has a divergence other than 0, then it is
-the Lie derivative of no smooth form.
-Where f vanishes, L of a form B is AᵀB + BA, A = f'. From AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any
-B. For a coefficient of S that trace is twice its divergence; if it is not 0 at an equilibrium, the
-coefficient is no Lie derivative of a smooth form. In the plane X·G vanishes where f does, and
-there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2). ∎
+the Lie derivative of no smooth form. Where f vanishes, L of a form B is AᵀB + BA, A = f'. From
+AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any B. For a coefficient of S that trace is twice its
+divergence. In the plane X·G vanishes where f does, and there div(X^η f) = tr A^(η+1) =
+2 (−det Hess H)^((η+1)/2). ∎
 """
 
 import math

@@ -86,9 +86,8 @@ def _must_agree(
     compared = 0
     for place, h in _calls(places):
         rounded_place = place.with_rounded_state(DOUBLE.round_number)
-        floats_end = unless_it_fails(
-            partial(step.at_place, rounded_place, h)
-        )  # other places may do
+        # Where the call fails the place is left out: others may do.
+        floats_end = unless_it_fails(partial(step.at_place, rounded_place, h))
         bounded = None if floats_end is None else end_of_ours(rounded_place, h, floats_end)
         if floats_end is not None and bounded is not None:
             compared += 1
