@@ -13,35 +13,35 @@ from verify.from_type import register
 
 if TYPE_CHECKING:
     from verify import schemes as schemes
-    from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
     from verify.calls.check import check_map as check_map
     from verify.calls.export import export as export
-    from verify.calls.flow import flow as flow
-    from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
+    from verify.calls.prove import modified_hamiltonian as modified_hamiltonian
     from verify.calls.prove import prove as prove
-    from verify.calls.report import Report as Report
     from verify.calls.run import run as run
+    from verify.calls.run import sweep as sweep
+    from verify.calls.run_result import Report as Report
     from verify.calls.run_result import RunResult as RunResult
     from verify.calls.separate import separate as separate
     from verify.calls.separate import separate_grid as separate_grid
-    from verify.calls.stability import stability as stability
-    from verify.calls.sweep import sweep as sweep
+    from verify.calls.studies import bench as bench
+    from verify.calls.studies import flow as flow
+    from verify.calls.studies import stability as stability
     from verify.errors import InputError as InputError
     from verify.hamiltonians import systems as systems
     from verify.hamiltonians.hamiltonian import Hamiltonian as Hamiltonian
     from verify.hamiltonians.named_system import System as System
-    from verify.integrators.tables.check import check_table as check_table
+    from verify.integrators.tables.table_file import check_table as check_table
+    from verify.pages.plotting import plot_energy_drift as plot_energy_drift
     from verify.pages.plotting import plot_flow as plot_flow
+    from verify.pages.plotting import plot_orbit as plot_orbit
     from verify.pages.plotting import plot_over_time as plot_over_time
     from verify.pages.plotting import plot_runs as plot_runs
     from verify.pages.plotting import plot_separation as plot_separation
     from verify.pages.plotting import plot_work_precision as plot_work_precision
-    from verify.pages.plotting_orbits import plot_energy_drift as plot_energy_drift
-    from verify.pages.plotting_orbits import plot_orbit as plot_orbit
-    from verify.proof.plane.modified.equation import ModifiedEquation as ModifiedEquation
-    from verify.proof.proof import Proof as Proof
-    from verify.scenes.results.orbit import OrbitTable as OrbitTable
+    from verify.proof.plane.modified_equation import ModifiedEquation as ModifiedEquation
+    from verify.proof.proof_for_one_h import Proof as Proof
+    from verify.scenes.results.run import OrbitTable as OrbitTable
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationGridInDegrees as SeparationGridInDegrees
     from verify.scenes.results.separation import SeparationInDegrees as SeparationInDegrees
@@ -57,20 +57,23 @@ if TYPE_CHECKING:
 # A module is imported when its name is used, so that `verify --help` and a proof wait for no other.
 _NAMES = {
     "run": ("verify.calls.run", "N steps: values with error bounds, and the orbit as arrays"),
-    "sweep": ("verify.calls.sweep", "runs over lists of schemes, steps, starts: a table"),
+    "sweep": ("verify.calls.run", "runs over lists of schemes, steps, starts: a table"),
     "prove": ("verify.calls.prove", "the order of ΔJ = det J − 1 and of the map, exactly"),
-    "modified_hamiltonian": ("verify.calls.modified", "the energy that a scheme keeps: H̃ in h"),
+    "modified_hamiltonian": ("verify.calls.prove", "the energy that a scheme keeps: H̃ in h"),
     "export": ("verify.calls.export", "a step map, J and ΔJ as C, Python, Julia or LaTeX"),
     "separate": ("verify.calls.separate", "truncation and rounding in Λ of a float64 run"),
     "separate_grid": ("verify.calls.separate", "the same over step sizes, and where they cross"),
-    "flow": ("verify.calls.flow", "a region carried by schemes, and its area"),
-    "stability": ("verify.calls.stability", "runs judged: stable or not, and whose fault it is"),
-    "bench": ("verify.calls.bench", "error against run time"),
+    "flow": ("verify.calls.studies", "a region carried by schemes, and its area"),
+    "stability": ("verify.calls.studies", "runs judged: stable or not, and whose fault it is"),
+    "bench": ("verify.calls.studies", "error against run time"),
     "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
     "check_map": ("verify.calls.check", "any map of one's own: symplectic or not"),
-    "check_table": ("verify.integrators.tables.check", "printed coefficients, by what they claim"),
-    "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
-    "plot_energy_drift": ("verify.pages.plotting_orbits", "the drift of H and of H̃ over t"),
+    "check_table": (
+        "verify.integrators.tables.table_file",
+        "printed coefficients, by what they claim",
+    ),
+    "plot_orbit": ("verify.pages.plotting", "an orbit's quantity over t, or in the plane"),
+    "plot_energy_drift": ("verify.pages.plotting", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),
     "plot_over_time": ("verify.pages.plotting", "ΔJ and Λ over t, as bands"),
     "plot_separation": ("verify.pages.plotting", "truncation and rounding against the step size"),
@@ -87,10 +90,10 @@ _NAMES = {
     ),
     "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
-    "Proof": ("verify.proof.proof", "what is proved of a step map"),
-    "ModifiedEquation": ("verify.proof.plane.modified.equation", "what is known of a scheme's H̃"),
+    "Proof": ("verify.proof.proof_for_one_h", "what is proved of a step map"),
+    "ModifiedEquation": ("verify.proof.plane.modified_equation", "what is known of a scheme's H̃"),
     "RunResult": ("verify.calls.run_result", "what a run gave"),
-    "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),
+    "OrbitTable": ("verify.scenes.results.run", "the states of a run"),
     "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),
     "SeparationResult": ("verify.scenes.results.separation", "what a separation gave"),
     "SeparationGrid": ("verify.scenes.results.separation", "separations over step sizes"),
@@ -102,7 +105,7 @@ _NAMES = {
         "verify.scenes.results.separation",
         "such separations over step sizes",
     ),
-    "Report": ("verify.calls.report", "a whole report"),
+    "Report": ("verify.calls.run_result", "a whole report"),
     "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
     "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),
 }
@@ -111,7 +114,7 @@ _MODULES = ("schemes", "systems")
 _WIDTH = max(map(len, _NAMES))
 __all__ = [*_NAMES]
 __doc__ = (__doc__ or "") + "\n".join(  # None by python -OO
-    f"    {name:{_WIDTH}}  {what}" for name, (_, what) in _NAMES.items()
+    f"    {name:{_WIDTH}}  {summary}" for name, (_, summary) in _NAMES.items()
 )
 
 

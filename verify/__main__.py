@@ -27,7 +27,7 @@ def main() -> None:
 if __name__ == "__main__":
     # Python has put the current folder first on the path. Where verify itself does not come from
     # that folder, no other module may: a file of the user's, such as random.py, would be imported.
-    here = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))  # noqa: PTH120
-    if not sys.flags.safe_path and os.path.realpath(sys.path[0]) != here:
+    package_parent = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))  # noqa: PTH120
+    if not sys.flags.safe_path and os.path.realpath(sys.path[0]) != package_parent:
         del sys.path[0]
     main()

@@ -42,9 +42,9 @@ def key_of(*parts: str) -> str:
 
 
 def folder() -> Path | None:
-    """Return the folder where code is kept; None where none is to be kept.
+    """Return the folder where code is kept; None if none is to be kept.
 
-    Raises InputError where VERIFY_CACHE is neither a folder's absolute path nor `off`.
+    Raises InputError if VERIFY_CACHE is neither a folder's absolute path nor `off`.
     """
     setting = os.environ.get(VARIABLE, "")
     # Without owners of files there is no telling whose code a file holds: nothing is kept.
@@ -66,7 +66,7 @@ def folder() -> Path | None:
 
 
 def load(key: str) -> bytes | None:
-    """Return the code that was kept under the key; None where there is none to be trusted."""
+    """Return the code that was kept under the key; None if there is none to be trusted."""
     with _open_folder(folder()) as directory:
         content = b"" if directory is None else _read_entry(directory, key + _SUFFIX)
     code = content[_DIGEST:]
@@ -103,9 +103,9 @@ def keep(key: str, code: bytes) -> None:
     if path is None:
         return
     with suppress(OSError):
-        for each in (path.parent, path):
+        for parent in (path.parent, path):
             # Private from the beginning: what others may write to is refused later by `_is_ours`.
-            each.mkdir(mode=0o700, parents=True, exist_ok=True)
+            parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _open_folder(path) as directory:
         if directory is not None:
             with suppress(OSError, InputError):
@@ -124,7 +124,7 @@ def _is_ours(status: os.stat_result) -> bool:
 
 @contextmanager
 def _open_folder(path: Path | None) -> Iterator[int | None]:
-    """Open the folder for a while, and yield its descriptor; None where it is not to be trusted."""
+    """Open the folder for a while, and yield its descriptor; None if it is not to be trusted."""
     # Files are opened relative to this descriptor, so that nobody can put another folder in its
     # place between the check and the use.
     directory = None
@@ -148,10 +148,10 @@ def _drop_oldest(directory: int) -> None:
                 with suppress(OSError):  # gone meanwhile, by another process
                     status = entry.stat(follow_symlinks=False)
                     files.append((status.st_mtime_ns, entry.name, status.st_size))
-    size = sum(each for _, _, each in files)
-    for _, name, each in sorted(files):
-        if size <= MOST_BYTES:
+    total = sum(size for _, _, size in files)
+    for _, name, size in sorted(files):
+        if total <= MOST_BYTES:
             return
         with suppress(OSError):
             os.unlink(name, dir_fd=directory)
-        size -= each
+        total -= size

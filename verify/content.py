@@ -20,7 +20,7 @@ def content(*names: str) -> Path:
 
 
 def checkout() -> Path | None:
-    """Return the folder of the checkout that holds the package; None where it is installed."""
+    """Return the folder of the checkout that holds the package; None if it is installed."""
     root = _find_root(_package())
     return root if root == _package().parent else None
 
@@ -58,9 +58,9 @@ def is_shipped(path: Path) -> bool:
     Writing there would change what is shipped, and the digest of all shipped files with it.
     """
     # With links followed: a link into the package leads there, too.
-    root, place = _find_root(_package()), path.resolve()
+    root, target = _find_root(_package()), path.resolve()
     folders = (_package(), *(root / name for name in _FOLDERS))
-    return any(place.is_relative_to(folder.resolve()) for folder in folders)
+    return any(target.is_relative_to(folder.resolve()) for folder in folders)
 
 
 def _package() -> Path:
@@ -68,10 +68,10 @@ def _package() -> Path:
 
 
 def _find_root(package: Path) -> Path:
-    """Return the folder that holds the content; RuntimeError where neither place has all of it."""
+    """Return the folder that holds the content; RuntimeError if neither place has all of it."""
     for root in (package / _INSTALLED, package.parent):
-        mine = root != package.parent or (root / _CHECKOUT).is_file()
-        if mine and all((root / name).is_dir() for name in _FOLDERS):
+        is_candidate = root != package.parent or (root / _CHECKOUT).is_file()
+        if is_candidate and all((root / name).is_dir() for name in _FOLDERS):
             return root
     raise RuntimeError(f"{package}: neither a checkout nor whole: no {' and no '.join(_FOLDERS)}")
 

@@ -39,7 +39,7 @@ class Catalogue:
         return name in self._modules
 
     def module(self, name: str) -> Any:
-        """Import and return the module of that name. Raises KeyError where there is none."""
+        """Import and return the module of that name. Raises KeyError if there is none."""
         return import_module(self._modules[name])
 
     def folder(self, name: str) -> str:

@@ -67,14 +67,14 @@ def unknown_name(
     plain = {**aliases, **{plain_name(each): each for each in reversed(names)}}
     plain_text = plain_name(str(name))
     # Whole words first: `duffing oscillator` is nearer to `duffing` than its letters are.
-    near = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", plain_text)]
-    near = sorted(near, key=len, reverse=True) or get_close_matches(plain_text, plain, 1, 0.6)
-    question = format_suggestion(plain[near[0]] if near else "")
+    nearest = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", plain_text)]
+    nearest = sorted(nearest, key=len, reverse=True) or get_close_matches(plain_text, plain, 1, 0.6)
+    question = format_suggestion(plain[nearest[0]] if nearest else "")
     return InputError(source, name, f"unknown; {question}allowed: {', '.join(names)}{more}")
 
 
 def find_nearest(name: str, names: Iterable[str]) -> str:
-    """Return the one of `names` that is spelt most like `name`; empty where none is similar."""
+    """Return the one of `names` that is spelt most like `name`; empty if none is similar."""
     from difflib import get_close_matches
 
     return next(iter(get_close_matches(name, list(names), 1, 0.6)), "")

@@ -43,7 +43,7 @@ def open_regular_file(path: Path) -> Iterator[BinaryIO]:
 
 
 def _suggest_instead(path: Path, error: OSError) -> str:
-    """Return advice for a file that cannot be opened; empty where there is none."""
+    """Return advice for a file that cannot be opened; empty if there is none."""
     if isinstance(error, IsADirectoryError):
         return "; give a file"
     if not isinstance(error, FileNotFoundError):
@@ -57,11 +57,11 @@ def _suggest_instead(path: Path, error: OSError) -> str:
     by_stem: dict[str, Path] = {}
     with suppress(OSError):
         # Of two files with one stem the last stays in the table: that with the same suffix.
-        some = islice(path.parent.iterdir(), _MOST_NAMES)
-        candidates = sorted(some, key=lambda each: (each.suffix == path.suffix, each))
-        by_stem = {each.stem.lower(): each for each in candidates}
-    near = get_close_matches(path.stem.strip().lower(), by_stem, n=1, cutoff=0.7)
-    return f"; is {by_stem[near[0]]} meant?" if near else "; give a file that is there"
+        entries = islice(path.parent.iterdir(), _MOST_NAMES)
+        candidates = sorted(entries, key=lambda file: (file.suffix == path.suffix, file))
+        by_stem = {file.stem.lower(): file for file in candidates}
+    nearest = get_close_matches(path.stem.strip().lower(), by_stem, n=1, cutoff=0.7)
+    return f"; is {by_stem[nearest[0]]} meant?" if nearest else "; give a file that is there"
 
 
 def read_bytes(path: Path, most: int | None = MOST_BYTES) -> bytes:
@@ -80,7 +80,7 @@ def read_text(path: Path, most: int | None = MOST_TEXT) -> str:
 
 
 def text_of(content: bytes, name: str) -> str:
-    """Decode the content as text. Raises InputError where it is not UTF-8."""
+    """Decode the content as text. Raises InputError if it is not UTF-8."""
     try:
         return content.decode()
     except UnicodeDecodeError as error:
@@ -90,7 +90,7 @@ def text_of(content: bytes, name: str) -> str:
 
 
 def check_replaceable(path: Path, name: str = "file") -> None:
-    """Raise InputError where the path is a folder, a link, a device or read-only."""
+    """Raise InputError if the path is a folder, a link, a device or read-only."""
     try:
         mode = path.lstat().st_mode
     except OSError:
@@ -141,7 +141,7 @@ def _is_running(process: int) -> bool:
 def write_atomically(path: Path, content: str | bytes) -> None:
     """Write the file whole or not at all: to a temporary one beside it, which is then renamed.
 
-    Raises InputError where a link, a device, a pipe or a read-only file stands there, and OSError,
+    Raises InputError if a link, a device, a pipe or a read-only file stands there, and OSError,
     which names the file, where it cannot be written.
     """
     check_replaceable(path)

@@ -3,9 +3,10 @@
     {"format": "areaproof certificate 2", …}
 
 A format's version is a whole number, which grows when a reader of the old one would misread the
-new. Each format is named where its files are made: `FORMAT` of `proof.certificates.file` and of
-`scenes.results.report` (results.json), `KEPT` and `CHECKPOINT` of `execution.keeping`,
-`DATA_FORMAT` and `MANIFEST_FORMAT` of `reference.make.models`.
+new. Each format is named where its files are made: `FORMAT` of
+`proof.certificates.certificate_file` and of `scenes.results.report` (results.json), `KEPT` and
+`CHECKPOINT` of `execution.keeping`, `DATA_FORMAT` of `reference.make.models`, `MANIFEST_FORMAT` of
+`reference.make.data_files`.
 """
 
 import json
@@ -19,7 +20,7 @@ _BEGINNING = 200  # bytes within which our files name their format
 
 
 def read_json(path: Path, expected: str) -> dict[str, Any]:
-    """Read the object of that format from a file. InputError where there is no such file."""
+    """Read the object of that format from a file. InputError if there is no such file."""
     try:
         data = json.loads(read_bytes(path), object_pairs_hook=reject_repeated_keys)
     except InputError:
@@ -33,7 +34,7 @@ def read_json(path: Path, expected: str) -> dict[str, Any]:
 
 
 def reject_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Build the object; ValueError where a key stands twice."""
+    """Build the object; ValueError if a key stands twice."""
     # json takes the last of two, other readers the first: they would read different files.
     result = dict(pairs)
     if len(result) < len(pairs):

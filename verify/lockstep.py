@@ -92,7 +92,7 @@ def _is_suspended(course: Course[Any]) -> bool:
 class _ThreadState(threading.local):
     """The seconds for which others ran since the course of this thread began."""
 
-    away = 0.0
+    seconds_away = 0.0
 
 
 _THREAD_STATE = _ThreadState()
@@ -100,7 +100,7 @@ _THREAD_STATE = _ThreadState()
 
 def clock() -> float:
     """Return the seconds for which this course has run, with the work done for it."""
-    return time.perf_counter() - _THREAD_STATE.away
+    return time.perf_counter() - _THREAD_STATE.seconds_away
 
 
 class CourseOutcome(Generic[T]):
@@ -146,9 +146,9 @@ def run_together(
             _advance(waiting)
             for member in [member for member in waiting if member.is_ready]:
                 member.resume()
-                others = [other for other in waiting if other is not member]
+                remaining = [m for m in waiting if m is not member]
                 # In one assignment: an interruption may come at any time, and is everybody's.
-                waiting = others if member.outcome else [*others, member]
+                waiting = remaining if member.outcome else [*remaining, member]
                 if member.outcome is not None:
                     yield member.number, member.outcome
     except KeyboardInterrupt as error:
@@ -176,7 +176,7 @@ class _Member(Generic[T]):
         self.number, self.course = number, course
         self.outcome: CourseOutcome[T] | None = None
         self.pending: Pending | None = None
-        self.away = self.since = 0.0  # seconds for which others ran; when it began to wait
+        self.seconds_away = self.since = 0.0  # seconds for which others ran; when it began to wait
 
     @property
     def is_ready(self) -> bool:
@@ -187,9 +187,9 @@ class _Member(Generic[T]):
         """Run the course until its next request or its end; a KeyboardInterrupt is raised."""
         # The course was away since it began to wait, but for the seconds of its own request.
         if self.pending is not None:
-            self.away += time.perf_counter() - self.since - self.pending.seconds
+            self.seconds_away += time.perf_counter() - self.since - self.pending.seconds
         # A course may itself run others: the time of the outer one is put back afterwards.
-        outer, _THREAD_STATE.away = _THREAD_STATE.away, self.away
+        outer, _THREAD_STATE.seconds_away = _THREAD_STATE.seconds_away, self.seconds_away
         try:
             self.pending = next(self.course)
         except StopIteration as stop:
@@ -197,7 +197,7 @@ class _Member(Generic[T]):
         except Exception as error:
             self.outcome = CourseOutcome(None, error)
         finally:
-            _THREAD_STATE.away = outer
+            _THREAD_STATE.seconds_away = outer
             self.since = time.perf_counter()
 
     def end(self, reason: BaseException) -> None:

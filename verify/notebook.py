@@ -1,11 +1,17 @@
-"""HTML tables and LaTeX for notebooks, plain and readable on any background.
+"""Results for notebooks: HTML tables and LaTeX, and numbers for the tables of other libraries.
 
-The HTML has no style sheet, colour or script; everything is escaped. LaTeX is made of formulas and
-numbers only. The classes that are shown say what they show.
+The HTML is plain and readable on any background: it has no style sheet, colour or script, and
+everything is escaped. LaTeX is made of formulas and numbers only. The classes that are shown say
+what they show. pandas and xarray are imported where a table of theirs is asked for.
 """
 
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from html import escape
+from importlib import import_module
+from typing import Any
+
+from verify.errors import InputError
 
 _LONGEST = 1200  # characters of a formula that is shown
 _CELL = "text-align: left; font-variant-numeric: tabular-nums"
@@ -59,3 +65,23 @@ def number_latex(text: str) -> str:
     mantissa, _, exponent = text.lower().partition("e")
     power = int(exponent or 0)
     return rf"{mantissa} \cdot 10^{{{power}}}" if power else mantissa
+
+
+# -- tables of optional libraries -----------------------------------------------------------------
+
+
+def import_library(name: str, feature: str) -> Any:
+    """Import the library of that name; InputError, one line, where it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError:
+        raise InputError("library", name, f"is not installed, and {feature} needs it") from None
+
+
+def nearest_float(text: str) -> float:
+    """Return the float nearest to an exact text, a decimal or a quotient; nan for an empty one.
+
+    >>> nearest_float("1/4"), nearest_float("1.5e-03")
+    (0.25, 0.0015)
+    """
+    return float(Fraction(text)) if "/" in text else float(text or "nan")

@@ -116,17 +116,17 @@ def prose(*parts: str) -> Prose:
 
 
 def number(text: str) -> str:
-    """Return a Number where the text is one; else the text, such as `unknown`."""
+    """Return a Number if the text is one; else the text, such as `unknown`."""
     return Number(text) if _NUMBER.fullmatch(text) else text
 
 
-def count(n: int, one: str) -> str:
+def count(n: int, thing: str) -> str:
     """Return the number and the thing, in the singular or the plural.
 
     >>> count(1, "stage"), count(2, "stage")
     ('1 stage', '2 stages')
     """
-    return f"{n} {one}{'' if n == 1 else 's'}"
+    return f"{n} {thing}{'' if n == 1 else 's'}"
 
 
 def join_prose(between: str, parts: Iterable[str]) -> Prose:

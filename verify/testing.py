@@ -11,7 +11,7 @@
         assert_convergence_order(step, "pendulum", 1)
 
 The step is proved where its code lets symbols through, and else measured; see
-`verify.integrators.check`. It is called, also with p, q and h that are no floats.
+`verify.integrators.step_check`. It is called, also with p, q and h that are no floats.
 """
 
 from collections.abc import Callable
@@ -21,8 +21,8 @@ from verify.calls.check import request_of
 from verify.calls.inputs import hamiltonian_from
 from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.check import check_integrator
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
+from verify.integrators.step_check import check_integrator
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
 from verify.verdict import Verdict
@@ -106,14 +106,13 @@ def _assert_claims(
             raise unknown_name(name, options[name], sorted(option_names))
     if not callable(step):
         raise InputError("step", step, "is no function")
-    exact = hamiltonian_from(hamiltonian, options.get("parameters"))
-    where = {name: options.get(name) for name in ("p", "q", "step_size", "within")}
-    limit = options.get("time_limit", TIME_LIMIT)
+    system = hamiltonian_from(hamiltonian, options.get("parameters"))
+    places = {name: options.get(name) for name in ("p", "q", "step_size", "within")}
     callee = callee_from(
-        step, exact.coordinates, arguments=options.get("arguments"),
-        parameters=dict(exact.values), time_limit=limit,
+        step, system.coordinates, arguments=options.get("arguments"),
+        parameters=dict(system.values), time_limit=options.get("time_limit", TIME_LIMIT),
     )  # fmt: skip
-    finding = check_integrator(callee, exact, claims, request_of(exact, **where))
+    finding = check_integrator(callee, system, claims, request_of(system, **places))
     # UNDECIDED does not hold: an assertion that nothing decides must not pass.
     if not finding.verdict.holds:
         raise AssertionError(_format_message(finding))

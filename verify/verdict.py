@@ -14,4 +14,5 @@ class Verdict(StrEnum):
 
     @property
     def holds(self) -> bool:
+        """True if the claim holds: it is PROVED, ENCLOSED or MEASURED."""
         return self in (Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED)

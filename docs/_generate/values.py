@@ -15,7 +15,7 @@ from verify.scenes import values
 
 # Those whose rules are functions, which say nothing of themselves.
 _NAMED = {
-    values.Number: "number",
+    values.ExactNumber: "number",
     values.StepSize: "number > 0",
     values.Time: "number > 0",
     values.SchemeName: "scheme",

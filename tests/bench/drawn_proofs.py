@@ -62,7 +62,7 @@ def prove_all(kind: str) -> None:
     """Prints Hamiltonians a second, the best of some rounds of other ones, and the peak memory."""
     from verify import schemes
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.proof.order import prove
+    from verify.proof.order_for_one_h import prove
     from verify.verdict import Verdict
 
     made = [schemes.get(name) for name in SCHEMES]

@@ -13,7 +13,7 @@ from typing import Any
 
 import flint
 
-from verify.flows.extrapolation import Flow
+from verify.flows.extrapolation import NumericalFlow
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -67,7 +67,7 @@ def lie_series(slopes: Slopes, digits: int) -> Any:
 
 
 def gragg(formula: str, digits: int) -> Any:
-    flow = Flow(canonical_field(Hamiltonian.parse(formula))[0], digits)
+    flow = NumericalFlow(canonical_field(Hamiltonian.parse(formula))[0], digits)
     return flow.follow((flow.number(Fraction(0)), flow.number(Q0)), Fraction(END))[1]
 
 

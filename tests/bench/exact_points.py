@@ -48,7 +48,7 @@ def main() -> None:
         best = min(together)
         print(
             f"{name:>16} {best:10.3f} {single:12.1f} {single / best:6.0f} "
-            f"{found.bound:8.1e} {len(found.alone)}",
+            f"{found.bound:8.1e} {len(found.outliers)}",
             flush=True,
         )
 

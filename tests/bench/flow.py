@@ -18,12 +18,12 @@ import numpy as np
 
 from verify import arithmetic
 from verify.arithmetic.float_context import FLOAT
-from verify.execution.keeping import NOTHING
+from verify.execution.keeper import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap, waypoints_of
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.shapes import named as shapes
-from verify.studies.regions.task import FlowTask
+from verify.studies.kinds.regions import FlowTask
 
 SYSTEMS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
 POINTS, STEPS, H = 2_000, 20_000, Fraction(1, 100)

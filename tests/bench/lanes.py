@@ -23,7 +23,7 @@ from tight_mpmath import DELTA
 
 from verify import arithmetic
 from verify.arithmetic.compiled.translation import Layout
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import LANES
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
@@ -82,17 +82,17 @@ def measure(system: str, digits: int, orbits: int, certified: bool, rounds: int)
     function: Any = kernel.function
     words = words_of(function.layout, each)
     parts = [np.ascontiguousarray(words[:, k : k + 1]) for k in range(orbits)]
-    alone = np.concatenate([function.one(part) for part in parts], axis=1)
-    if function.lanes is None:
+    alone = np.concatenate([function.orbit_kernel(part) for part in parts], axis=1)
+    if function.lane_kernel is None:
         raise SystemExit("no lanes here; VERIFY_LANES=portable forces slow ones")
     sets = [np.ascontiguousarray(words[:, k : k + LANES]) for k in range(0, orbits, LANES)]
-    together = np.concatenate([function.lanes(part) for part in sets], axis=1)
+    together = np.concatenate([function.lane_kernel(part) for part in sets], axis=1)
     if not np.array_equal(alone, together):
         raise SystemExit(f"{system}, {digits} digits: an orbit in lanes is another one")
     taken: list[list[float]] = [[], []]
     for _ in range(rounds):
-        taken[0].append(timed(lambda: function.one(parts[0])) / STEPS)
-        taken[1].append(timed(lambda: [function.lanes(s) for s in sets]) / STEPS / orbits)
+        taken[0].append(timed(lambda: function.orbit_kernel(parts[0])) / STEPS)
+        taken[1].append(timed(lambda: [function.lane_kernel(s) for s in sets]) / STEPS / orbits)
     return [statistics.median(x) * 1e9 for x in taken]
 
 

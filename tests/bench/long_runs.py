@@ -99,7 +99,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     from verify.execution.execute import Store, execute
     from verify.execution.executors import Placement
     from verify.scenes.results.run import RunResult
-    from verify.studies.plan import plan_scenes
+    from verify.studies.tasks_of_scenes import plan_scenes
 
     _, scenes, _ = load_target("paper")
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
@@ -125,7 +125,7 @@ def figure10_run(name: str, digits: int, steps: int) -> tuple[float, float, Any]
     The paper does not say from where it starts; q = 1.5, p = 0 is one of its five initial values.
     """
     from verify.hamiltonians import systems
-    from verify.runs.run import run
+    from verify.runs.requested_run import run
 
     begun = time.perf_counter()
     found = run(

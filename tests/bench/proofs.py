@@ -12,9 +12,9 @@ from pathlib import Path
 
 ROUNDS = 3
 EVERY = (
-    "from verify.proof.every import prove_every\n"
+    "from verify.proof.order_for_every_h import prove_for_every_h\n"
     "for eta in range(1, 9):\n"
-    "    proof = prove_every(f'lie{eta}')\n"
+    "    proof = prove_for_every_h(f'lie{eta}')\n"
     "    assert proof.verdict == 'PROVED' and proof.order == eta + 1, proof\n"
     "    assert proof.telescopes is (eta % 2 == 0), proof\n"
 )
@@ -22,8 +22,8 @@ DEGREE_8 = "(p**8 + q**8)/8 + p**3*q**5/5 - 2*p**4*q**2 + p*q/3 + q**7/7"
 
 
 SYMBOLIC = (
-    "import sys; from verify.claims.judging import prepare\n"
-    "from verify.claims.file import load_claims\n"
+    "import sys; from verify.claims.verdicts import prepare\n"
+    "from verify.claims.claims_file import load_claims\n"
     "from verify.commands.shared.input import paper_folder\n"
     "from verify.execution.execute import Store\n"
     "file = load_claims(paper_folder() / 'claims.toml')\n"

@@ -8,11 +8,11 @@ import sys
 
 PROVED = (
     "import resource, sys, time\n"
-    "from verify.proof.every import prove_every\n"
+    "from verify.proof.order_for_every_h import prove_for_every_h\n"
     "degrees, most = map(int, sys.argv[1:])\n"
     "begun = time.perf_counter()\n"
     "for eta in range(1, most + 1):\n"
-    "    found = prove_every(f'lie{eta}', degrees=degrees)\n"
+    "    found = prove_for_every_h(f'lie{eta}', degrees=degrees)\n"
     "    assert found.verdict == 'PROVED' and found.order == eta + 1, found\n"
     "    assert found.telescopes is (eta % 2 == 0), found\n"
     "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024\n"

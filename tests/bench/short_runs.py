@@ -21,9 +21,9 @@ from verify import arithmetic as number_systems
 from verify import lockstep
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.studies.separation.links import separate_chains
-from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.mixed_run import Stopped
 
 STEPS, H = 8, Fraction(1, 100)
 P, Q = Fraction(1, 3), Fraction(1, 2)

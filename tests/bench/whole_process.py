@@ -20,10 +20,11 @@ _RUN = (
     "r = run(h, 'lie2', q=F(3, 2), p=F(0), step_size=F(1, 1000), steps=%d)"
 )
 _TABLES = (
-    "from verify.commands.shared.input import target; from verify.studies.plan import plan_scenes;"
+    "from verify.commands.shared.input import load_target;"
+    "from verify.studies.tasks_of_scenes import plan_scenes;"
     "from verify.execution.execute import Store, execute\n"
     "if __name__ == '__main__':\n"
-    "    _, scenes, _ = target('paper')\n"
+    "    _, scenes, _ = load_target('paper')\n"
     "    scenes = [s.with_only(schemes=('lie2',), grid=s.grid.model_copy(\n"
     "        update={'arithmetic': 'float64', 'separate': False})) for s in scenes]\n"
     "    plan = plan_scenes(scenes)\n"

@@ -16,8 +16,8 @@ from fractions import Fraction
 
 from verify.execution.execute import compute_task
 from verify.execution.executors import FunctionCall, Place, Placement, open_place, results_of
-from verify.execution.machine import machine
-from verify.studies.separation.task import SeparationTask
+from verify.execution.provenance import machine
+from verify.studies.kinds.separation import SeparationTask
 
 FEW, MANY = 400_000, 4_000_000  # steps; fewer are stepped in another way
 TARGETS = {"2 workers": 1.8, "Dask, 2 workers": 1.7}

@@ -6,16 +6,16 @@ from functools import cache
 from typing import Any
 
 from tests.helpers.constructed.galleries import CROSSED, KEPT, NOTHING, gallery, shown
-from verify.claims.claim import Claim
+from verify.claims.base_claim import Claim
 from verify.claims.kinds.delta_j import DeltaJClaim
 from verify.claims.kinds.monotone import MonotoneClaim
-from verify.claims.kinds.table import TableClaim
+from verify.claims.kinds.table import PrintedTableClaim
 from verify.claims.kinds.theorem import TheoremClaim
-from verify.claims.report import gallery_report, make_report
+from verify.claims.verdicts import gallery_report, make_report
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.pages.page import render
-from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.paper_sections import PaperFigure
 from verify.scenes.results.report import Report
 from verify.scenes.scene import scene_from
 
@@ -49,7 +49,7 @@ def paper() -> Report:
     )  # fmt: skip
     common = {"section": "4.1 The Duffing system", "scene": "duffing", "scheme": "lie2"}
     claims: list[Claim] = [
-        TableClaim.model_validate(
+        PrintedTableClaim.model_validate(
             common | {"id": "table-9", "source": "Table 9", "statement": f"A table. {EVIL}",
                       "kind": "table", "step_sizes": ["0.01", "0.02"],
                       "printed": ["-1.3010", "-1.0000"]}

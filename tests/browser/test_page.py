@@ -10,8 +10,8 @@ from playwright.sync_api import Browser, sync_playwright
 
 from tests.browser.checks import Opened, opened
 from tests.browser.made_pages import EVIL, NAMES, page_of, planted
+from tests.unit.pages.test_mistakes_by_library import GIVEN
 from tests.unit.pages.test_page import report
-from tests.unit.pages.test_wrong import GIVEN
 from verify.pages.page import render
 
 pytestmark = pytest.mark.left_to_ci

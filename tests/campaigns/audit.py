@@ -10,9 +10,9 @@ of an hour.
 import sys
 import time
 
-from verify.audits.printed_libraries import files
-from verify.audits.second.look import OF_ORDERS, at_table, claimed_of
-from verify.integrators.tables.check import read_tables
+from verify.audits.library_claims import files
+from verify.audits.second_look import OF_ORDERS, claimed_of, look_at_table
+from verify.integrators.tables.table_file import read_tables
 from verify.verdict import Verdict
 
 ORDERS = ("order", "order in time", "embedded order")
@@ -30,7 +30,7 @@ def main() -> int:
             plain = claim.kind.partition(", ")[0]
             if plain not in ORDERS or claimed is None or claim.verdict is Verdict.UNDECIDED:
                 continue
-            look = at_table(entry, claim.kind, claimed)
+            look = look_at_table(entry, claim.kind, claimed)
             if not look.slopes:
                 unseen += 1
             elif claim.verdict is Verdict.REFUTED and claim.severity in OF_ORDERS:

@@ -22,12 +22,11 @@ from typing import Any
 from tests.oracle.printed_certificates import is_true
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.certificates.certification import certify_for_every_h, certify_for_one_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import state_theorem
-from verify.proof.certificates.every import certify_every
-from verify.proof.certificates.one import certify_one
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.certificates.established_statement import state_theorem
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import potential_of
 from verify.schemes import get, names
 
@@ -59,7 +58,7 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
             scheme = get(name)
             try:
                 proof = prove(scheme.step_map(hamiltonian), scheme)
-                found.append(certify_one(proof, potential_of(proof, scheme)))
+                found.append(certify_for_one_h(proof, potential_of(proof, scheme)))
             except InputError:
                 continue
     for name in (*names(), "lie1", "lie2", "lie3"):
@@ -67,10 +66,10 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
         every = scheme.every_h
         for separable in (False, True) if every and not every.separable else (True,):
             with suppress(InputError):
-                found.append(certify_every(prove_every(name, separable)))
+                found.append(certify_for_every_h(prove_for_every_h(name, separable)))
         if scheme.order <= 4 or not scheme.explicit:  # others are longer in time, and take long
             with suppress(InputError):
-                found.append(certify_every(prove_every(name, timed=True)))
+                found.append(certify_for_every_h(prove_for_every_h(name, timed=True)))
     texts = dict.fromkeys(map(json.dumps, found))
     return tuple(json.loads(text) for text in texts if len(text) <= longest)
 

@@ -13,10 +13,9 @@ import time
 from collections import Counter
 
 from verify.exploration import properties
-from verify.exploration.property_checks import check_sample, shrink
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import sample_scene
+from verify.exploration.scenes_of_seed import check_sample, sample_scene, shrink
 
 KINDS = [(degrees, timed) for degrees in (2, 3) for timed in (False, True)]
 

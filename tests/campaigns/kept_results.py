@@ -13,8 +13,8 @@ import tempfile
 from pathlib import Path
 
 from verify.execution.execute import Store
-from verify.execution.keeping import NOTHING, Keeper
-from verify.studies.proofs.every import EveryTask
+from verify.execution.keeper import NOTHING, Keeper
+from verify.studies.kinds.every import EveryTask
 
 TASKS = [EveryTask(scheme=name) for name in ("lie1", "lie2", "symplectic-euler", "rk4")]
 

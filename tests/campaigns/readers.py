@@ -22,17 +22,16 @@ from typing import Any
 
 from tests.paths import ROOT
 from verify.arithmetic.exact import rational
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tables.check import check_table
-from verify.proof.certificates.every import certify_every
-from verify.proof.certificates.file import check_file
-from verify.proof.every import prove_every
-from verify.reference.compare.published import load
-from verify.reference.compare.rows import open_table
-from verify.reference.make.make import PUBLISHED
-from verify.reference.make.parquet import parquet_bytes, parquet_rows
+from verify.integrators.tables.table_file import check_table
+from verify.proof.certificates.certificate_file import check_file
+from verify.proof.certificates.certification import certify_for_every_h
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.reference.compare.published_data import load
+from verify.reference.make.data_folder import PUBLISHED
+from verify.reference.make.file_contents import open_table, parquet_bytes, parquet_rows
 from verify.scenes.results.report import Provenance, Report, read_report
 from verify.scenes.scene import load_scene
 from verify.scenes.shapes.user_outline import svg_path
@@ -105,7 +104,9 @@ def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
     papers = tuple((ROOT / "reports/paper" / f"{n}.toml").read_text("utf-8") for n in ("duffing",))
     claims = (ROOT / "reports/paper/claims.toml").read_text("utf-8").split("[[claim]]")
     short = tuple(claims[0] + "[[claim]]" + each for each in claims[1:8])
-    made = tuple(json.dumps(certify_every(prove_every(n))) for n in ("lie2", "implicit-midpoint"))
+    made = tuple(
+        json.dumps(certify_for_every_h(prove_for_every_h(n))) for n in ("lie2", "implicit-midpoint")
+    )
     told = Provenance(command="", versions={}, machine="", seconds=1, kept=0, computed=0)
     report = Report(title="a", claims=(), scenes=(), left_out=(), provenance=told)
     data = (PUBLISHED / "extreme-zero.json").read_text("utf-8")

@@ -19,7 +19,7 @@ from typing import Any
 from tests.campaigns.certificates import mutant, seeds
 from tests.helpers.rocq.coqc import beside, compile_theory, coqc
 from verify.errors import InputError
-from verify.proof.assistant.export import export_certificate
+from verify.proof.assistant.certificate_export import export_certificate
 from verify.proof.certificates.checker import check
 
 SLOWEST = 60.0  # seconds for a file

@@ -160,7 +160,7 @@ def test_what_cannot_be_written_is_told_all_the_same(
 
     monkeypatch.chdir(tmp_path)
     Path("claims.toml").write_text(FALSE)
-    monkeypatch.setattr("verify.exploration.explore.write_atomically", full)
+    monkeypatch.setattr("verify.exploration.exploring.write_atomically", full)
     status, out, err = here(capsys, "explore", "claims.toml", "--examples", "20", "--seed", "1",
                             "--degree", "3", "--workers", "1")  # fmt: skip
     assert status == 2

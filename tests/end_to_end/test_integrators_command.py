@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from verify.audits import libraries as others
-from verify.audits import printed_libraries
+from verify.audits import library_claims
 from verify.commands.main import main
 
 
@@ -17,7 +17,7 @@ def without_libraries(monkeypatch: pytest.MonkeyPatch) -> None:
     nothing: ModuleSpec | None = None
     monkeypatch.setattr(others, "find_spec", lambda name: nothing)
     # The tables that libraries have in their sources take most of a minute; they have tests below.
-    monkeypatch.setattr(printed_libraries, "files", list)
+    monkeypatch.setattr(library_claims, "files", list)
     tables = others.get("literature")
     few = [x for x in tables.integrators() if x.name.startswith(("Ruth", "Yoshida 8, solution E"))]
     monkeypatch.setattr(tables, "integrators", lambda: few)

@@ -46,7 +46,7 @@ def told(capsys: pytest.CaptureFixture[str], typed: list[str], words: tuple[str,
     assert not missing, err
 
 
-# -- formulas: more of them, with what they are told, in tests/unit/algebra/mistakes ---------------
+# -- formulas: more of them, with their messages, in tests/unit/algebra/test_formula_mistakes.py ---
 
 FORMULAS = {
     "p**2/2 + 2q**2": "column 10: write 2*q for 2q",

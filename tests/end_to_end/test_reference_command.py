@@ -9,7 +9,7 @@ import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
 from tests.helpers.constructed.reference import SCENES
-from verify.reference.make.make import PUBLISHED, committed_scenes
+from verify.reference.make.data_folder import PUBLISHED, committed_scenes
 
 LIMIT = 5_000_000  # bytes of the committed set
 
@@ -187,7 +187,7 @@ def test_parquet_is_the_same_tables_or_one_line_says_what_is_missing(
         return
     assert status == 0
     from tests.helpers.constructed.reference import repaired
-    from verify.reference.make.parquet import parquet_bytes, parquet_rows
+    from verify.reference.make.file_contents import parquet_bytes, parquet_rows
 
     status, out, _ = here(capsys, "reference", "check", str(folder), "--share", "0", "--json")
     assert (status, json_of(out)["not_compared"]) == (0, [])

@@ -19,7 +19,7 @@ from verify.arithmetic.arb import bounds, midpoint_and_radius, rational_ball
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide.functions import _ANGLES, _OCTAVE
+from verify.arithmetic.wide.table_series import _ANGLES, _OCTAVE
 from verify.functions import in_rings
 
 WIDTHS = (128, 156, 192, 256, 320, 512)

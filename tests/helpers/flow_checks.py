@@ -14,9 +14,8 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.arithmetic.flint_precision import working_precision
-from verify.flows.closed_form import evaluate
-from verify.hamiltonians.motion import Motion, exactly
-from verify.hamiltonians.named_system import System
+from verify.flows.ball_evaluation import evaluate
+from verify.hamiltonians.named_system import Motion, System, exactly
 
 WORKING = 160  # digits
 BITS = 1600  # of the balls, whose middles are compared with so many digits

@@ -11,8 +11,8 @@ import numpy as np
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline, Point, bezier
-from verify.studies.regions.area import Goal, MeasuredArea, Probe
 from verify.studies.regions.point_carriers import FloatCarrier, WideCarrier
+from verify.studies.regions.region_area import Goal, MeasuredArea, Probe
 
 FINE = Goal(change=Fraction(0), area=Fraction(1, 10**13))
 WIDE_GOAL = Goal(change=Fraction(0), area=Fraction(1, 10**27))

@@ -11,11 +11,11 @@ import numpy as np
 
 from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.compiled.translation import Fixed, Source
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import LANES
 from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide.size import INTEGER_BITS
 from verify.kernels.kernel import kernel_for
-from verify.studies.separation.stepper.kernel import mixed_kernel
+from verify.studies.separation.mixed_kernel import mixed_kernel
 
 NATIVE = [name for name, path in paths.PATHS.items() if path.required and path.is_available]
 IN_LANES = [*NATIVE, "portable"]

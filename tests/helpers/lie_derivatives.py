@@ -1,12 +1,12 @@
 """Derivatives along the flow of every H in the plane."""
 
-from verify.algebra.series.jets import Jets, Poly, Series
-from verify.hamiltonians.jet_flow import JetFlow
+from verify.algebra.jets import Jets, Poly, Series
+from verify.hamiltonians.canonical_field import JetField
 
 
 def lie_derivatives(jets: Jets, name: str, most: int) -> Series:
     """[y, X y, …, X^most y] of y = p or q."""
-    flow = JetFlow(jets)
+    flow = JetField(jets)
     return [flow.power(n)[flow.names.index(name)] for n in range(most + 1)]
 
 

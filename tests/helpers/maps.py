@@ -3,7 +3,7 @@
 import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.maps.by_formulas import map_from_expressions, step_map_from_formulas
+from verify.schemes.maps.formula_map import map_from_expressions, step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
 
 

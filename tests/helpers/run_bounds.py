@@ -1,8 +1,8 @@
 """The bounds of a run by their formulas, worked out again with mpmath's numbers.
 
-Every formula is written here as it stands in the docstrings of `verify.runs.a_posteriori`,
-`verify.runs.form_bound` and `verify.runs.a_posteriori`, and shares no code with them. A bound that
-is loose says nothing by holding the true value; it is held to its formula, term by term.
+Every formula is written here as it stands in the docstrings of `verify.runs.a_posteriori_bound` and
+`verify.runs.matrix_growth`, and shares no code with them. A bound that is loose says nothing by
+holding the true value; it is held to its formula, term by term.
 """
 
 import random

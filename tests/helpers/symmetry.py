@@ -7,12 +7,11 @@ its equations are the same but for 1 − a and 1 − b; so stages in reverse, wi
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.symmetry import Symmetry, judge_symmetry
+from verify.proof.map_symmetry import Symmetry, judge_symmetry
 from verify.prose import prose
-from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.condition import Condition, condition_of
 from verify.schemes.conditions.every_hamiltonian import StageEquations
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.residue import condition_of
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme

@@ -53,7 +53,7 @@ def drawn_scenes(examples: int, seed: int) -> list[Any]:
     """
     drawer, spaces, schemes = (
         import_module(f"verify.{name}")
-        for name in ("exploration.scenes", "exploration.sample_space", "schemes")
+        for name in ("exploration.scenes_of_seed", "exploration.sample_space", "schemes")
     )
     space = spaces.SampleSpace
     asked = [(space(), k) for k in range(examples)]

@@ -14,7 +14,7 @@ from types import CodeType, ModuleType
 
 from tests.mutants.mutate import Mutant, mutants, mutated
 
-_KEEPING = "verify.execution.keeping"
+_KEEPING = "verify.execution.keeper"
 
 
 class _Changed(SourceFileLoader):
@@ -29,7 +29,7 @@ class _Changed(SourceFileLoader):
 
 
 class _OwnFingerprint(SourceFileLoader):
-    """Loads `verify.execution.keeping`, whose fingerprint is then a mutant's own."""
+    """Loads `verify.execution.keeper`, whose fingerprint is then a mutant's own."""
 
     def __init__(self, name: str, path: str, key: str) -> None:
         super().__init__(name, path)

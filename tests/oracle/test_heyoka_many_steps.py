@@ -31,7 +31,7 @@ from tests.oracle.by_heyoka import (
     oracle,
 )
 from verify import arithmetic
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.run import RunResult
 
 STEPS = 300

@@ -18,7 +18,7 @@ from tests.oracle.by_heyoka import PRECISIONS, STEP_SIZE, Precision, hy
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import midpoint_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 
 WIDEST = PRECISIONS.get("quad") or PRECISIONS.get("extended") or PRECISIONS["double"]

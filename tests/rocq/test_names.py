@@ -9,7 +9,7 @@ import pytest
 from tests.helpers.rocq.assumptions import ASKED
 from tests.helpers.rocq.exports import certificate, export, export_of, proved
 from tests.helpers.rocq.session import Session
-from verify.proof.assistant.formulas import KEYWORDS, safe_names
+from verify.proof.assistant.rocq_formulas import KEYWORDS, safe_names
 from verify.proof.assistant.text import template_words
 
 pytestmark = pytest.mark.left_to_ci

@@ -12,7 +12,7 @@ from tests.helpers.rocq.assumptions import (
     printed_assumptions,
 )
 from tests.helpers.rocq.session import Session
-from verify.proof.assistant.shipped import FOLDER, files, sort_by_imports, text_of
+from verify.proof.assistant.shipped_theory import FOLDER, files, sort_by_imports, text_of
 
 pytestmark = pytest.mark.left_to_ci
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.helpers.rocq.coqc import changed, in_module
 from tests.helpers.rocq.session import Session
-from verify.proof.assistant.shipped import text_of
+from verify.proof.assistant.shipped_theory import text_of
 
 pytestmark = pytest.mark.left_to_ci
 

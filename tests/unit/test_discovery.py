@@ -11,7 +11,7 @@ from verify.audits import libraries
 from verify.discovery import Catalogue
 from verify.exploration import properties
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import sample_scene
+from verify.exploration.scenes_of_seed import sample_scene
 from verify.hamiltonians import systems
 from verify.scenes.shapes import named
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.files import read_bytes, read_text, write_atomically
 from verify.formats import read_json

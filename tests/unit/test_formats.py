@@ -10,18 +10,19 @@ import pytest
 from tests.campaigns.kept_results import kept_results
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.keeping import KEPT, NOTHING, Keeper, seal, unseal
+from verify.execution.keeper import KEPT, NOTHING, Keeper, seal, unseal
 from verify.formats import check_format
-from verify.proof.certificates import file as certificates
-from verify.proof.certificates.every import certify_every
-from verify.proof.every import prove_every
-from verify.reference.check.check import check
-from verify.reference.compare.published import load
-from verify.reference.make.make import PUBLISHED
-from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT
+from verify.proof.certificates import certificate_file as certificates
+from verify.proof.certificates.certification import certify_for_every_h
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.reference.check.folder_check import check
+from verify.reference.compare.published_data import load
+from verify.reference.make.data_files import MANIFEST_FORMAT
+from verify.reference.make.data_folder import PUBLISHED
+from verify.reference.make.models import DATA_FORMAT
 from verify.scenes.results import report as reports
 from verify.scenes.results.report import Provenance, Report, read_report
-from verify.studies.proofs.every import EveryTask
+from verify.studies.kinds.every import EveryTask
 
 Reader = Callable[[Path], object]
 REPORT = Report(
@@ -42,7 +43,7 @@ def scene(path: Path) -> object:
 READERS: dict[str, tuple[str, Reader, Callable[[], str]]] = {
     "certificate": (
         certificates.FORMAT, certificates.check_file,
-        lambda: json.dumps(certify_every(prove_every("lie2"))),
+        lambda: json.dumps(certify_for_every_h(prove_for_every_h("lie2"))),
     ),
     "results.json": (reports.FORMAT, read_report, REPORT.model_dump_json),
     "data": (DATA_FORMAT, scene, (PUBLISHED / "duffing.json").read_text),

@@ -30,7 +30,7 @@ ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies",
          "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic",
          "functions", "observables", "structures")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
-          "frames", "late", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
+          "lazy_sympy", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:
@@ -66,15 +66,15 @@ BY_NAME = {
     "verify": {"import_module"},  # public names, when they are used
     "verify.calls.progress": {"modules"},  # IPython, where it is imported
     "verify.discovery": {"import_module"},  # files of a package, by their names
-    "verify.late": {"import_module"},  # sympy, when it is asked for something
-    "verify.frames": {"import_module"},  # pandas and xarray, where they are installed
+    "verify.lazy_sympy": {"import_module"},  # sympy, when it is asked for something
+    "verify.notebook": {"import_module"},  # pandas and xarray, where they are installed
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.user_code.faults": {"modules"},  # numpy, where it is imported
-    "verify.integrators.user_code.repeated": {"modules"},  # numpy, and where a function is from
-    "verify.integrators.tracing.functions": {"builtins", "__import__"},  # what the user's code does
+    "verify.integrators.user_code.repetition": {"modules"},  # numpy, and where a function is from
+    "verify.integrators.tracing.function_copy": {"builtins", "__import__"},  # the user's code
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
-    "verify.audits.report": {"import_module"},  # a library that may be broken
-    "verify.audits.methods.scripted": {"exec"},  # lines of ours, which are shown
+    "verify.audits.integrators_report": {"import_module"},  # a library that may be broken
+    "verify.audits.methods.driver": {"exec"},  # lines of ours, which are shown
     "verify.integrators.user_code.loading": {
         "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
@@ -137,10 +137,11 @@ def test_imports_go_downwards_only() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "from verify.studies.plan import plan_scenes",
+        "from verify.studies.tasks_of_scenes import plan_scenes",
         "import verify.commands.main",
         "def f():\n    from verify.pages import page",
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from verify.runs.run import run",
+        "from typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from verify.runs.requested_run import run",
         "from importlib import import_module\nimport_module('verify.claims.judge')",
         "from verify import testing",
         "from verify import errors, run",
@@ -237,11 +238,11 @@ def test_there_are_no_circles_of_modules_nor_of_folders() -> None:
     between = folders(our_edges())
     assert not circles(between)
     assert {Path(folder).parts[0] for folder in between} == set(ROOMS), "they were read"
-    ring = our_edges()["verify.algebra.ring"] | {"verify.proof.order"}
+    ring = our_edges()["verify.algebra.ring"] | {"verify.proof.order_for_one_h"}
     found = circles(folders(our_edges() | {"verify.algebra.ring": ring}))
     assert any({"algebra", "proof"} <= circle for circle in found)
-    planted = our_edges() | {"verify.algebra.generator": {"verify.algebra.ring"}}
-    assert any("verify.algebra.generator" in circle for circle in circles(planted))
+    planted = our_edges() | {"verify.algebra.differential_ring": {"verify.algebra.ring"}}
+    assert any("verify.algebra.differential_ring" in circle for circle in circles(planted))
 
 
 MOST_FILES = 22
@@ -286,7 +287,7 @@ def test_stray_python_and_an_imported_example_are_seen(tmp_path: Path) -> None:
         path = tmp_path / f"{number}.py"  # what a file imports is read once
         path.write_text(f"def f():\n    {line}\n")
         assert from_content(imported(path, everywhere=True))
-    assert not from_content({"verify.reference.make.make", "verify.content"})
+    assert not from_content({"verify.reference.make.data_folder", "verify.content"})
 
 
 def test_pages_compute_nothing_themselves() -> None:

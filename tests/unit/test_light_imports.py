@@ -57,8 +57,8 @@ def test_matplotlib_is_imported_only_where_it_is_used() -> None:
         assert drawing or "matplotlib" not in roots(names), name
 
 
-EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "property_checks",
-             "gallery", "hunting", "island_search")}  # fmt: skip
+EXPLORING = {f"verify.exploration.{name}" for name in ("scenes_of_seed", "exploring", "hunting",
+             "island_search")}  # fmt: skip
 
 
 def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
@@ -88,9 +88,12 @@ def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
     assert not {name for name in of_arrays(imports()) if rooms_of(name) in light}
     assert "verify.studies.regions.panels" in of_arrays(imports()), "the rule speaks of something"
     planted = imports() | {
-        "verify.studies.plan": imports()["verify.studies.plan"] | {"verify.studies.regions.panels"}
+        "verify.studies.tasks_of_scenes": imports()["verify.studies.tasks_of_scenes"]
+        | {"verify.studies.regions.panels"}
     }
-    assert bring_arrays(planted) == {("verify.studies.plan", "verify.studies.regions.panels")}
+    assert bring_arrays(planted) == {
+        ("verify.studies.tasks_of_scenes", "verify.studies.regions.panels")
+    }
 
 
 SAID = """

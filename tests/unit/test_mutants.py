@@ -148,7 +148,11 @@ def test_every_mutant_compiles_differs_and_has_its_own_key() -> None:
 
 
 def test_mutants_are_enumerated_alike_in_every_process() -> None:
-    few = ("verify.arithmetic.exact", "verify.proof.order", "verify.schemes.maps.step_map")
+    few = (
+        "verify.arithmetic.exact",
+        "verify.proof.order_for_one_h",
+        "verify.schemes.maps.step_map",
+    )
     keys = f"print([m.key for m in sample(60, 7, {few})])"
     asked = f"from tests.mutants.targets import sample; {keys}"
     command = [sys.executable, "-c", asked]
@@ -173,7 +177,7 @@ def one(module: str, change: str) -> Mutant:
     return found
 
 
-COMBINATION = "verify.algebra.linear_combination"
+COMBINATION = "verify.algebra.linear_algebra"
 PLANTED = """
 import sys
 from collections import Counter
@@ -181,8 +185,8 @@ from tests.mutants.planted import planted
 if {index} >= 0:
     planted({module!r}, {index})
 import {module} as there
-from verify.execution.keeping import fingerprint
-import verify.algebra.series.jets as beside
+from verify.execution.keeper import fingerprint
+import verify.algebra.jets as beside
 print(type(beside.__loader__).__name__, type(there.__loader__).__name__, fingerprint(), sep=";")
 """
 
@@ -196,7 +200,7 @@ def in_a_process(source: str) -> str:
 def test_one_module_is_planted_and_nothing_on_disk_is_changed() -> None:
     mutant = one(COMBINATION, "last in pivots → True")
     before = {
-        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_combination*")
+        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_algebra*")
     }
     source = records.source()
     changed = in_a_process(PLANTED.format(module=COMBINATION, index=mutant.index)).split(";")
@@ -206,7 +210,7 @@ def test_one_module_is_planted_and_nothing_on_disk_is_changed() -> None:
     assert changed[2] != sound[2], "what is kept on disk would be taken for the sound code's"
     assert records.source() == source
     after = {
-        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_combination*")
+        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_algebra*")
     }
     assert {p: t for p, t in after.items() if p in before} == before
 
@@ -244,7 +248,7 @@ def test_a_child_is_done_or_dies_or_hangs() -> None:
 CHECK = """
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 def test_ruth3_has_order_three():
     scheme = schemes.get("ruth3")
     proof = prove(scheme.step_map(Hamiltonian.parse("p**2/2 + q**4/4")), scheme)
@@ -352,7 +356,7 @@ def test_each_mutant_that_is_explained_is_one_of_todays_source() -> None:
 
 def test_of_changes_that_read_alike_in_a_line_one_is_explained(tmp_path: Path) -> None:
     """In `a = 2 * x + 2` two constants are changed alike."""
-    module = "verify.proof.certificates.numbers"
+    module = "verify.proof.certificates.named_numbers"
     lines = path_of(module).read_text(encoding="utf-8").splitlines()
     told = [(lines[m.line - 1].strip(), f"{m.operator} {m.change}") for m in mutants(module)]
     (line, change), _ = next(x for x in Counter(told).items() if x[1] == 2)
@@ -384,7 +388,7 @@ class Reached:
 
 
 def test_the_tests_of_a_mutants_room_that_reach_its_line_come_first() -> None:
-    mutant = Mutant("verify.runs.orbit", 0, 7, 0, "constant", "1 → 2", 5)
+    mutant = Mutant("verify.runs.orbit_table", 0, 7, 0, "constant", "1 → 2", 5)
     near, far, room, dear = (
         "tests/unit/runs/test_a.py::test_x", "tests/unit/pages/test_b.py::test_y",
         "tests/unit/runs/test_a.py::test_z", "tests/unit/runs/test_a.py::test_dear",
@@ -400,7 +404,7 @@ def test_the_tests_of_a_mutants_room_that_reach_its_line_come_first() -> None:
 def test_a_mutant_is_planted_in_the_process_of_the_tests(planted: bool, killed: bool) -> None:
     """One that the test has to see, and one of another module."""
     test = "tests/unit/kernels/test_partials.py::test_the_solution_is_that_of_the_system"
-    module = "verify.kernels.step.program_algebra" if planted else "verify.pages.wrong"
+    module = "verify.kernels.step.program_algebra" if planted else "verify.pages.answers"
     chosen = next(m for m in mutants(module) if not planted or m.change.startswith("pivots +="))
     status, said = campaign._run(chosen, [test], 120)
     assert (status not in (0, None)) is killed, said

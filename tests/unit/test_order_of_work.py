@@ -13,8 +13,8 @@ import pytest
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.runs.run import run
+from verify.proof.order_for_one_h import prove
+from verify.runs.requested_run import run
 from verify.schemes import get
 
 HAMILTONIANS = {

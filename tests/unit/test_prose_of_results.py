@@ -7,22 +7,22 @@ import pytest
 
 from tests.helpers.pages.parts_of_prose import UNMARKED, proses, unmarked
 from tests.helpers.programs.judged import judged
-from verify.execution.keeping import NOTHING
+from verify.execution.keeper import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Claims
 from verify.papers import check_theorem
 from verify.papers import names as theorems
-from verify.proof.every import prove_every
-from verify.proof.symmetry import judge_symmetry
+from verify.proof.map_symmetry import judge_symmetry
+from verify.proof.order_for_every_h import prove_for_every_h
 from verify.prose import Formula, Number, Prose, prose
 from verify.scenes.frozen import PLAIN
 from verify.schemes import get
 from verify.schemes import names as schemes
-from verify.studies.criteria import judge
-from verify.studies.proofs.one import ProofTask
-from verify.studies.separation.growth import fit_growth
-from verify.studies.stability.results import run_result
-from verify.studies.stability.trail import Run
+from verify.studies.criteria_verdicts import judge
+from verify.studies.kinds.proofs import ProofTask
+from verify.studies.separation.growth_fits import fit_growth
+from verify.studies.stability.trail import StabilityRun
+from verify.studies.stability.verdict_results import run_result
 
 OWN = "p_next = p - h*q**2; q_next = q + h*p"
 HAMILTONIANS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
@@ -39,7 +39,7 @@ def test_theorems_are_marked(name: str) -> None:
 @pytest.mark.parametrize("separable", [False, True])
 @pytest.mark.parametrize("name", [n for n in schemes() if get(n).every_h and get(n).order <= 6])
 def test_proofs_for_every_h_are_marked(name: str, separable: bool) -> None:
-    proof = prove_every(name, separable=separable)
+    proof = prove_for_every_h(name, separable=separable)
     assert unmarked([proof, proof.argument]) == []
     assert proof.reason in list(proses(proof))
 
@@ -108,7 +108,7 @@ def test_what_is_found_of_a_step_is_marked(step: Any, claims: Claims) -> None:
 @pytest.mark.parametrize("h", ["1/10", "1/2", "9/4"])
 @pytest.mark.parametrize("q", ["1/2", "30"])
 def test_stability_is_marked(h: str, q: str) -> None:
-    run = Run(DUFFING, "symplectic-euler", Fraction(h), (Fraction(0), Fraction(q)), 200)
+    run = StabilityRun(DUFFING, "symplectic-euler", Fraction(h), (Fraction(0), Fraction(q)), 200)
     found = run_result(run)
     assert unmarked(found) == []
     assert len(list(proses(found))) == 2

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from verify.algebra.generator import Generator, Poly
-from verify.algebra.identities.polynomials import Polynomials, places_in, split
-from verify.late import sympy
+from verify.algebra.identities.polynomials import Generator, Poly, Polynomials, places_in, split
+from verify.lazy_sympy import sympy
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 
@@ -116,7 +115,7 @@ class DifferentialRing(Polynomials):
         return self.gens[index]
 
     def find(self, kind: str, argument: Poly | None, degree: int = 1) -> Poly | None:
-        """Return the generator of that kind for that argument, or None where there is none."""
+        """Return the generator of that kind for that argument, or None if there is none."""
         for g in self.generators:
             if g.kind == kind and g.degree == degree and g.argument == argument:
                 return self.gens[g.index]

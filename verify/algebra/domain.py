@@ -11,12 +11,12 @@ from itertools import groupby
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
 from verify.algebra.expressions.formula_text import to_text
-from verify.algebra.requirement import Relation, Requirement
+from verify.algebra.expressions.function_nodes import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.zero_test import witness
 from verify.effort import answer_unless_long, limit_effort
 from verify.errors import InputError
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.prose import Formula, Prose, join_prose, prose
 
 _SIGNS = {"!=": "≠", ">=": "≥", ">": ">", "<=": "≤", "<": "<"}
@@ -25,7 +25,7 @@ _PRECISION = 128
 
 
 @dataclass(frozen=True)
-class Domain:
+class FormulaDomain:
     """All points at which every requirement holds, and every condition in words is true.
 
     `words`: conditions that are no inequalities, such as that the equations of an implicit scheme
@@ -36,15 +36,15 @@ class Domain:
     words: tuple[str, ...] = ()
 
     @classmethod
-    def from_requirements(cls, requirements: Iterable[Requirement], *words: str) -> Domain:
+    def from_requirements(cls, requirements: Iterable[Requirement], *words: str) -> FormulaDomain:
         """Simplify the requirements to a domain; those that always hold are dropped."""
-        simple = {r for each in requirements for r in _simplify_or_keep(each)}
+        simple = {r for requirement in requirements for r in _simplify_or_keep(requirement)}
         return cls(tuple(_merge(simple)), tuple(dict.fromkeys(words)))
 
-    def __and__(self, other: Domain) -> Domain:
+    def __and__(self, other: FormulaDomain) -> FormulaDomain:
         if not other:
             return self
-        return Domain.from_requirements(
+        return FormulaDomain.from_requirements(
             (*self.requirements, *other.requirements), *self.words, *other.words
         )
 
@@ -77,8 +77,8 @@ class Domain:
     def _elements(self) -> tuple[Ring, list[Poly]]:
         return embed([r.expression for r in self.requirements], sorted(self.names))
 
-    def substitute(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Domain:
-        """Substitute values in the domain; InputError where a requirement then fails."""
+    def substitute(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> FormulaDomain:
+        """Substitute values in the domain; InputError if a requirement then fails."""
         if not values or not self.requirements:
             return self
         with limit_effort("domain", ", ".join(self.texts), "to put a value in"):
@@ -89,10 +89,10 @@ class Domain:
             if after.expression.is_number and _holds_of_number(after) is False:
                 text = ", ".join(f"{name} = {value}" for name, value in values.items())
                 raise InputError("parameter", text, f"is outside of {' '.join(_sides(before))}")
-        return Domain.from_requirements(results, *self.words)
+        return FormulaDomain.from_requirements(results, *self.words)
 
     def contains(self, point: Mapping[str, Fraction]) -> bool | None:
-        """Return True if all requirements hold at the point; None where that is not decided.
+        """Return True if all requirements hold at the point; None if that is not decided.
 
         The point gives a value to each of `names`.
         """
@@ -117,8 +117,10 @@ class Domain:
         """
         return [
             str(_format_requirement(r))
-            for r, one, other in zip(self.requirements, before, self.signs(point), strict=True)
-            if (other == -1 and r.relation != "!=") or (one and other == -one)
+            for r, sign_before, sign in zip(
+                self.requirements, before, self.signs(point), strict=True
+            )
+            if (sign == -1 and r.relation != "!=") or (sign_before and sign == -sign_before)
         ]
 
     def decide(self, ring: Ring, x: Poly) -> Decision:
@@ -153,11 +155,11 @@ class Domain:
                     yield moved_point
 
 
-EVERYWHERE = Domain()
+EVERYWHERE = FormulaDomain()
 
 
 def holds(value: Ball | None, relation: Relation) -> bool | None:
-    """Return True if all numbers of a ball are ≠ 0, ≥ 0 or > 0; None where not decided."""
+    """Return True if all numbers of a ball are ≠ 0, ≥ 0 or > 0; None if not decided."""
     if value is None or not value.is_finite():
         return None
     if relation == "!=":
@@ -198,30 +200,32 @@ def _simplify_unequal(u: sympy.Expr) -> Iterable[Requirement]:
         if base.is_Mul:
             yield from _simplify_unequal(base)
         elif not base.is_number and not _always(base, "!="):
-            rest = base.primitive()[1] if base.is_Add else base
-            yield Requirement(-rest if rest.could_extract_minus_sign() else rest, "!=")
+            expression = base.primitive()[1] if base.is_Add else base
+            yield Requirement(
+                -expression if expression.could_extract_minus_sign() else expression, "!="
+            )
 
 
 def _simplify_signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
     """Simplify the condition that a product of defined factors is ≥ 0 or > 0; a root is ≥ 0."""
     # Positive factors do not change the sign of a product.
     positive = [f for f in sympy.Mul.make_args(u) if f.is_positive]
-    rest = sympy.Mul(*(f for f in sympy.Mul.make_args(u) if f not in positive))
-    number, rest = rest.as_coeff_Mul()
-    rest = (rest.primitive()[1] if rest.is_Add else rest) * sympy.sign(number)
-    base, exponent = (rest * sympy.sign(number)).as_base_exp()
+    product = sympy.Mul(*(f for f in sympy.Mul.make_args(u) if f not in positive))
+    number, product = product.as_coeff_Mul()
+    product = (product.primitive()[1] if product.is_Add else product) * sympy.sign(number)
+    base, exponent = (product * sympy.sign(number)).as_base_exp()
     if exponent.is_Integer and exponent.p % 2 and exponent != 1:
         yield from _simplify_signed(sympy.sign(number) * base, relation)
     elif exponent.is_Rational and exponent != 1 and number > 0:
         if relation == ">":
             yield from _simplify(base, "!=" if exponent.is_Integer else ">")
-    elif not _always(rest, relation):
-        yield Requirement(rest, relation)
+    elif not _always(product, relation):
+        yield Requirement(product, relation)
 
 
 def _always(u: sympy.Expr, relation: Relation) -> bool:
     """Return True if the condition is shown to hold everywhere."""
-    from verify.algebra.identities.absolute_values import sign_of  # few formulas have conditions
+    from verify.algebra.identities.signs import sign_of  # few formulas have conditions
 
     if relation == "!=":
         return bool(u.is_nonzero) or sign_of(u, strict=True) is not None

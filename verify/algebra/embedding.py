@@ -12,22 +12,22 @@ from functools import partial
 
 import flint
 
-from verify.algebra.expressions.functions_used import (
-    function_of,
-    is_exponential_power,
+from verify.algebra.expressions.function_nodes import (
+    applied_function,
+    argument_of,
     is_natural,
     is_trigonometric,
     levels_of,
+    root_degrees,
     subexpressions,
 )
 from verify.algebra.expressions.monomials import monomials_of
-from verify.algebra.identities.numbers import rational_root
-from verify.algebra.lattice import lattice, lattice_and_turns
+from verify.algebra.identities.algebraic_numbers import rational_root
+from verify.algebra.linear_algebra import lattice, lattice_and_turns
 from verify.algebra.ring import Poly, Ring, RingFullError
 from verify.errors import LimitError
-from verify.functions import by_name
-from verify.functions.function import CIRCLE, HYPERBOLA, Function, Pair
-from verify.late import sympy
+from verify.functions.function import CIRCLE, HYPERBOLA, Pair
+from verify.lazy_sympy import sympy
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
@@ -39,17 +39,17 @@ def embed(
 ) -> tuple[Ring, list[Poly]]:
     """Build the ring of the expressions over the variables, and each expression as its element.
 
-    Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
+    Raises InputError if an expression divides by zero, or grows beyond `most_terms` terms.
     """
     nodes = subexpressions([x for x in expressions if monomials_of(x) is None])
     levels = levels_of(nodes)
     powers = {node for node in nodes if node.is_Pow and not is_natural(node.exp)}
-    functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
+    functions, others = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
     # Multiplication is faster with fewer generators, used or not: the usual number is tried first.
-    most = 6 * (functions + rest + len(variables))
-    usual = min(2 * functions + 2 * rest, most)
+    most = 6 * (functions + others + len(variables))
+    usual = min(2 * functions + 2 * others, most)
     for room in (usual, most):
-        builder = _Builder(Ring(variables, room, spare=0), _root_degrees(powers), most_terms)
+        builder = _Builder(Ring(variables, room, spare=0), root_degrees(powers), most_terms)
         try:
             for level in levels:
                 builder.functions(level)
@@ -57,28 +57,6 @@ def embed(
         except RingFullError as error:
             problem = f"is too involved: {error}"
     raise LimitError("formula", str(expressions[0]), problem)
-
-
-def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
-    """Return for each base under a root the degree of one root of which all others are powers."""
-    degrees: dict[sympy.Expr, int] = {}
-    for power in powers:
-        if power.exp.is_Rational:
-            degrees[power.base] = math.lcm(degrees.get(power.base, 1), int(power.exp.q))
-    return degrees
-
-
-def _argument(function: sympy.Expr) -> sympy.Expr:
-    if is_exponential_power(function):
-        return function.exp * sympy.log(function.base)
-    return function.args[0] if function.args else sympy.S.One  # e is exp(1)
-
-
-def _function(node: sympy.Expr) -> Function:
-    """Return the function that the node applies; u**v is the exponential of v log u."""
-    function = by_name()[_EXP] if node.is_Pow else function_of(node)
-    assert function is not None  # noqa: S101 - the nodes are those of `levels_of`
-    return function
 
 
 def _scale(u: Poly, degree: int) -> flint.fmpq:
@@ -105,10 +83,10 @@ class _Builder:
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Add generators for one level of functions, whose arguments are elements already."""
         self.family([f for f in level if is_trigonometric(f)], self.circle, lattice_and_turns)
-        exponentials = [f for f in level if _function(f).pair is HYPERBOLA]
+        exponentials = [f for f in level if applied_function(f).pair is HYPERBOLA]
         self.family(exponentials, self.exponential, lattice)
         for function in level:
-            if _function(function).pair is None:
+            if applied_function(function).pair is None:
                 self.other(function)
 
     def family(
@@ -121,7 +99,7 @@ class _Builder:
         if not functions:
             return
         ring = self.ring
-        arguments = [self.element(_argument(f)) for f in functions]
+        arguments = [self.element(argument_of(f)) for f in functions]
         basis, multiples = find(ring, arguments)
         values = [
             make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
@@ -139,7 +117,7 @@ class _Builder:
         def over(above: Poly, below: Poly) -> Poly:
             return self.ring.multiply(above, self.inverse(below, function))
 
-        parts = _function(function).parts
+        parts = applied_function(function).parts
         assert parts is not None  # noqa: S101 - those of a pair have them
         return self.ring.reduce(parts(odd, even, over))
 
@@ -158,7 +136,7 @@ class _Builder:
         ring = self.ring
         # cosh and sinh need a relation, exp does not: exp alone is the simpler generator.
         if ring.find(HYPERBOLA.even, b) is not None or any(
-            _function(f).name != _EXP for f in functions
+            applied_function(f).name != _EXP for f in functions
         ):
             return partial(self.multiple, *self.pair(b, HYPERBOLA), sign=HYPERBOLA.sign)
         e = ring.find(_EXP, b)
@@ -186,15 +164,15 @@ class _Builder:
         return even, odd if k >= 0 else -odd
 
     def sum_of_arguments(
-        self, one: tuple[Poly, Poly], two: tuple[Poly, Poly], sign: int
+        self, left: tuple[Poly, Poly], right: tuple[Poly, Poly], sign: int
     ) -> tuple[Poly, Poly]:
         """Return (c, s) at the sum of two arguments, by the addition theorem."""
-        (c, s), (d, t), reduce = one, two, self.ring.reduce
+        (c, s), (d, t), reduce = left, right, self.ring.reduce
         return reduce(c * d + sign * s * t), reduce(s * d + c * t)
 
     def other(self, function: sympy.Expr) -> None:
         """Add a function without a partner, whose derivative is a function of its argument."""
-        ring, u, rule = self.ring, self.element(function.args[0]), _function(function)
+        ring, u, rule = self.ring, self.element(function.args[0]), applied_function(function)
         same = ring.find(rule.name, u)
         if same is not None:
             self.cache[function] = same
@@ -212,7 +190,7 @@ class _Builder:
     # -- everything else ----------------------------------------------------------------------
 
     def element(self, node: sympy.Expr) -> Poly:
-        """Return the element of the expression; InputError where it is undefined or too large."""
+        """Return the element of the expression; InputError if it is undefined or too large."""
         if node in self.cache:
             return self.cache[node]
         self.cache[node] = self.check_length(self.build(node), node)
@@ -288,18 +266,18 @@ class _Builder:
 
     def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
         """Return the root of u = c·v^common, |v| being ±v everywhere: c^(1/n)·|v|^(common/n)."""
-        from verify.algebra.where_positive import size_of_base  # which few formulas need
+        from verify.algebra.positivity import size_of_base  # which few formulas need
 
         size = size_of_base(self.ring, u, common)
         if size is None:
             raise LimitError("formula", str(node), "is not smooth: the root of a power is |x|")
         c, v = size
-        rest = degree // common
-        root = v if rest == 1 else self.root(v, rest, node)
-        exact = rational_root(c, degree)
-        number = self.ring.context.constant(c if exact is None else exact)
+        index = degree // common
+        root = v if index == 1 else self.root(v, index, node)
+        rational = rational_root(c, degree)
+        number = self.ring.context.constant(c if rational is None else rational)
         # The number's own root is one more generator, unless it is rational.
-        number = self.root(number, degree, node) if exact is None else number
+        number = self.root(number, degree, node) if rational is None else number
         return self.check_length(self.ring.multiply(root, number), node)
 
     def power_of_element(self, base: Poly, n: int, node: sympy.Expr) -> Poly:

@@ -8,7 +8,7 @@ from itertools import product
 import flint
 
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.generator import Generator, Poly, terms_of
+from verify.algebra.identities.polynomials import Generator, Poly, terms_of
 from verify.arithmetic.flint_precision import working_precision
 from verify.functions import in_rings
 from verify.functions.function import Function
@@ -20,7 +20,7 @@ _FAR_POINTS = 200
 def enclose(
     ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
 ) -> Ball | None:
-    """Return a ball (flint.arb) that contains x at the point, or None where x is not defined.
+    """Return a ball (flint.arb) that contains x at the point, or None if x is not defined.
 
     Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
     """
@@ -38,7 +38,7 @@ def enclose(
 def enclose_defined(
     ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
 ) -> Ball:
-    """Enclose x at the point; ValueError where x may be undefined there."""
+    """Enclose x at the point; ValueError if x may be undefined there."""
     ball = enclose(ring, x, point, precision)
     if ball is None:
         raise ValueError(f"an element is not defined at {dict(point)}")
@@ -46,7 +46,7 @@ def enclose_defined(
 
 
 def enclose_over(ring: DifferentialRing, x: Poly, box: Mapping[str, Ball]) -> Ball | None:
-    """Return a ball that contains x at every point of a box, or None where x may be undefined.
+    """Return a ball that contains x at every point of a box, or None if x may be undefined.
 
     The box is a product of balls. Computed in flint's present precision.
     """
@@ -57,7 +57,7 @@ def enclose_over(ring: DifferentialRing, x: Poly, box: Mapping[str, Ball]) -> Ba
 def enclose_all(
     ring: DifferentialRing, elements: Sequence[Poly], box: Mapping[str, Ball]
 ) -> list[Ball] | None:
-    """Enclose each of the elements as `enclose_over` does; None where one may be undefined."""
+    """Enclose each of the elements as `enclose_over` does; None if one may be undefined."""
     return Enclosures(ring, elements).enclose_over(box)
 
 
@@ -152,7 +152,7 @@ class Enclosures:
         return [_terms(x) for x in distinct], numbers
 
     def enclose_at(self, point: Mapping[str, Fraction], precision: int) -> list[Ball] | None:
-        """Enclose the elements at the point; None where one is not defined there."""
+        """Enclose the elements at the point; None if one is not defined there."""
         with working_precision(precision):
             return self.enclose_over(
                 {
@@ -162,7 +162,7 @@ class Enclosures:
             )
 
     def enclose_over(self, box: Mapping[str, Ball]) -> list[Ball] | None:
-        """Enclose the elements over the box; None where one may be undefined in it.
+        """Enclose the elements over the box; None if one may be undefined in it.
 
         Computed in flint's present precision.
         """

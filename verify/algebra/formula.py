@@ -16,21 +16,20 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
-from verify.algebra.expressions.constant_size import is_within_reach
 from verify.algebra.expressions.formula_text import to_text
-from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_power_of_name
-from verify.algebra.limits import check_expression, check_power
-from verify.algebra.requirement import (
+from verify.algebra.expressions.function_nodes import (
     Requirement,
     requirements_of_divisor,
     requirements_of_function,
     requirements_of_power,
 )
+from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_power_of_name
+from verify.algebra.limits import check_expression, check_power, is_within_reach
 from verify.arithmetic.exact import rational
 from verify.effort import limit_effort
 from verify.errors import InputError, LimitError
 from verify.functions import names as names_of_functions
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 MAX_LENGTH = 5000  # characters; the H of a chain of 64 masses has 4,240
 MAX_DEPTH = 60
@@ -67,7 +66,7 @@ def function(name: str) -> Callable[[sympy.Expr], sympy.Expr]:
 def parameter_name(name: str) -> str:
     """Return the name if it may name a parameter; else raise InputError."""
     if not name.isascii():
-        from verify.algebra.mistakes.characters import strange_character
+        from verify.algebra.text_mistakes import strange_character
 
         raise InputError("parameter", name, strange_character(name))
     if not _PARAMETER.fullmatch(name) or name in RESERVED:
@@ -95,7 +94,7 @@ def read(
     """Parse `text`, and collect the requirements for it to be defined as it is written.
 
     They include requirements of parts that sympy's simplification removes; see
-    `verify.algebra.requirement`. The arguments are those of `parse`.
+    `verify.algebra.expressions.function_nodes`. The arguments are those of `parse`.
     """
     if not isinstance(text, str):
         raise InputError(source, text, "is not text; write a formula such as 'p**2/2 + q**2/2'")
@@ -104,7 +103,7 @@ def read(
     if len(text) > MAX_LENGTH:
         raise LimitError(source, text, f"longer than {MAX_LENGTH} characters")
     if not (text.isascii() and " ".join(text.split()).isprintable()):
-        from verify.algebra.mistakes.characters import strange_character
+        from verify.algebra.text_mistakes import strange_character
 
         raise InputError(source, text, strange_character(text))
     line = " ".join(text.replace("^", "**").split())
@@ -128,16 +127,16 @@ def _tree(line: str, text: str, source: str) -> ast.expr:
         offset = error.offset and error.offset - 1
     except (ValueError, RecursionError, MemoryError):
         pass
-    from verify.algebra.mistakes.syntax import syntax_mistake
+    from verify.algebra.text_mistakes import syntax_mistake
 
     raise InputError(source, text, syntax_mistake(text, FUNCTIONS, offset))
 
 
 def _nodes() -> ModuleType:
     """Import the module of messages about mistakes, only when there is one."""
-    from verify.algebra.mistakes import nodes
+    from verify.algebra import node_mistakes
 
-    return nodes
+    return node_mistakes
 
 
 class _Reader:
@@ -148,8 +147,8 @@ class _Reader:
         self.required: list[Requirement] = []
         self.effort = limit_effort(source, text, "to read it")
 
-    def fail(self, problem: str, place: ast.expr | int | None = None) -> InputError:
-        return InputError(self.source, self.text, self.with_place(problem, place))
+    def fail(self, problem: str, position: ast.expr | int | None = None) -> InputError:
+        return InputError(self.source, self.text, self.with_place(problem, position))
 
     def exceed_limit(self, problem: str, at: ast.expr | None = None) -> LimitError:
         return LimitError(self.source, self.text, self.with_place(problem, at))
@@ -158,10 +157,10 @@ class _Reader:
         """Prefix the problem with the place in the text of that node or offset of the line."""
         if position is None:
             return problem
-        from verify.algebra.mistakes.place import index_of, place
+        from verify.algebra.text_mistakes import format_place, index_of
 
         offset = position if isinstance(position, int) else position.col_offset
-        return f"at {place(self.text, index_of(self.text, offset))}: {problem}"
+        return f"at {format_place(self.text, index_of(self.text, offset))}: {problem}"
 
     def read(self, node: ast.expr, depth: int) -> sympy.Expr:
         if depth > MAX_DEPTH:
@@ -306,7 +305,7 @@ class _Reader:
     def apply(
         self, operation: Callable[..., sympy.Expr], *operands: sympy.Expr, description: str
     ) -> sympy.Expr:
-        """Apply an operation of sympy; LimitError where it fails, as for roots of huge numbers."""
+        """Apply an operation of sympy; LimitError if it fails, as for roots of huge numbers."""
         with self.effort:
             try:
                 return operation(*operands)

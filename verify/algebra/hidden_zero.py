@@ -4,66 +4,45 @@ The element is translated to a field of functions in which more identities show:
 - cosines and sines are expanded over parts of angles, rational multiples of π being split off, and
   hyperbolic functions are of exponentials;
 - roots and logarithms are those of irreducible factors, as |·|^r and log |·| are homomorphisms;
-- numbers are distinguished from 0 by a bound from below (`identities.numbers`).
+- numbers are distinguished from 0 by a bound from below (`identities.algebraic_numbers`).
 An element that is then still not 0 may be shown to be 0 by a relation between logarithms or between
-arctangents (`identities.relations`), or between square roots. Every step is an identity of
-functions wherever the element is defined; an element that is defined nowhere is not called zero.
+arctangents, or between square roots. Every step is an identity of functions wherever the element is
+defined; an element that is defined nowhere is not called zero.
 
-Square roots of functions are treated by the product over all their signs.
+Relations with whole coefficients are found numerically, by the LLL algorithm at one point, and then
+proved exactly: Σ kᵢ log |fᵢ| = 0 where Π fᵢ^(2kᵢ) = 1; and Σ kᵢ atan uᵢ is a multiple of π where
+Π (1 + i uᵢ)^kᵢ is real, the same multiple everywhere on a convex set, so that a ball at one point
+determines it.
 
 Where x is a polynomial in square roots ρ, the product of x with its conjugates, in which signs of
 the ρ are changed, is a polynomial in the ρ². On a connected set a product of analytic functions is
 0 only where one factor is: x is, if none of its conjugates is 0 at one point.
 """
 
+from collections.abc import Callable, Iterator
+
+import flint
+
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.identities.field import Field, Names, Point, UndecidedError
-from verify.algebra.identities.numbers import vanishes
+from verify.algebra.identities.algebraic_numbers import vanishes
+from verify.algebra.identities.angles import power, times
+from verify.algebra.identities.field import Field, Names, Point, Quotient, UndecidedError
+from verify.algebra.identities.field_image import FieldImage, translate_element
 from verify.algebra.identities.polynomials import Poly, places_in, split
-from verify.algebra.identities.relations import eliminate_related
-from verify.algebra.identities.translation import Translation, translate_element
-from verify.algebra.where_positive import is_convex, point_of
+from verify.algebra.positivity import is_convex, point_of
 from verify.arithmetic.flint_precision import working_precision
 from verify.functions import in_rings
 from verify.functions.function import CIRCLE
 
+_MOST_UNITS = 12
+_BITS_EACH = 32
+_LARGEST = 64  # multiple, where powers of a function are to be made
+_LARGEST_OF_NUMBERS = 4096
+_BITS_OF_ANGLE = 128
 _MOST_ROOTS = 4
-_BITS = 256
+_BITS_OF_CONJUGATES = 256
 
-
-def vanishes_by_conjugates(t: Translation, x: Poly, names: Names) -> bool:
-    """Return True if x is shown to be 0 on a connected set with the point of `names`."""
-    field = t.field
-    # Tangents have poles, and signs jump: with them conjugates need not be analytic.
-    if any(key[0] in ("tangent", "sign") for key in field.unit_by_key):
-        return False
-    conjugates = [x]
-    product = x
-    while not product.is_zero():
-        place = next((p for p in places_in(product) if _is_square_root(t, p)), None)
-        if place is None or len(conjugates) > 2**_MOST_ROOTS:
-            break
-        conjugates += [_conjugate(field, y, place) for y in conjugates]
-        product = field.multiply(product, _conjugate(field, product, place))
-    if len(conjugates) == 1 or not vanishes(field, product):
-        return False
-    with working_precision(_BITS):
-        point = Point(field, names())
-        return all(not point.enclose(y).contains(0) for y in conjugates[1:])
-
-
-def _is_square_root(t: Translation, place: int) -> bool:
-    return (
-        place in t.powers.roots
-        and t.powers.roots[place][1] == 2
-        and t.field.units[place].number is None
-    )
-
-
-def _conjugate(field: Field, x: Poly, place: int) -> Poly:
-    parts = split(x, place)
-    unit = field.ring.gens[place]
-    return sum((part * (-unit) ** n for n, part in parts.items()), field.ring.zero)
+Multiples = dict[int, int]  # of units, by their places; none is 0
 
 
 def is_hidden_zero(ring: DifferentialRing, x: Poly) -> bool:
@@ -90,7 +69,7 @@ def _is_shown(ring: DifferentialRing, x: Poly, names: Names, tangents: bool) -> 
         return False
 
 
-def _vanishes(t: Translation, ring: DifferentialRing, x: Poly, names: Names) -> bool:
+def _vanishes(t: FieldImage, ring: DifferentialRing, x: Poly, names: Names) -> bool:
     above = t.element.above
     if vanishes(t.field, above):
         return True
@@ -100,3 +79,147 @@ def _vanishes(t: Translation, ring: DifferentialRing, x: Poly, names: Names) -> 
     if remaining != above and vanishes(t.field, remaining):
         return True
     return is_convex(ring, [x], inside=x) and vanishes_by_conjugates(t, remaining, names)
+
+
+# -- relations between logarithms, and between arctangents ----------------------------------------
+
+
+def eliminate_related(t: FieldImage, x: Poly, names: Names, convex: Callable[[], bool]) -> Poly:
+    """Replace logarithms and arctangents in x that are rational combinations of others.
+
+    `names`: returns balls for the names, in flint's precision, at a point where x is defined.
+    `convex`: returns True if the arguments of the arctangents in x are defined on a convex set.
+    """
+    logarithms = [place for place in places_in(x) if place in t.powers.logarithms]
+    x = _eliminate(t.field, x, logarithms, names, lambda k: _is_sum_of_logarithms(t, k))
+    angles = [place for place in places_in(x) if place in t.angles.arctangents]
+    constant = [place for place in angles if _is_number(t.angles.arctangents[place])]
+    angles = angles if angles == constant or convex() else constant
+    if not angles:
+        return x
+    # π is the oldest of them, which is never replaced.
+    angles.append(t.field.place(t.angles.pi))
+    return _eliminate(t.field, x, angles, names, lambda k: _is_sum_of_angles(t, k, names))
+
+
+def _is_number(u: Quotient) -> bool:
+    return u.field.is_number(u.above) and u.field.is_number(u.below)
+
+
+def _eliminate(
+    field: Field, x: Poly, places: list[int], names: Names, is_relation: Callable[[Multiples], bool]
+) -> Poly:
+    remaining = list(places)
+    # Each relation eliminates one unit, so the search is repeated with the others.
+    while 1 < len(remaining) <= _MOST_UNITS:
+        multiples = next((k for k in _candidates(field, remaining, names) if is_relation(k)), None)
+        if multiples is None:
+            break
+        replaced = next(place for place in remaining if place in multiples)
+        x = _replace_unit(field, x, multiples, replaced)
+        remaining.remove(replaced)
+    return x
+
+
+def _candidates(field: Field, places: list[int], names: Names) -> Iterator[Multiples]:
+    """Yield small multiples of units whose sum seems to be 0."""
+    bits = _BITS_EACH * (len(places) + 1)
+    with working_precision(2 * bits):
+        point = Point(field, names())
+        balls = [point.unit(place) * flint.arb(2) ** bits for place in places]
+        if not all(ball.is_finite() and abs(ball) < flint.arb(2) ** (2 * bits) for ball in balls):
+            return
+        wholes = [int(ball.mid().floor().unique_fmpz() or 0) for ball in balls]
+    # The rows (e_i, 2^bits·ball_i) span a lattice; a short vector of it is a relation with small
+    # coefficients. LLL finds it where it exists, and the caller proves it.
+    rows = [[*(int(i == j) for j in range(len(places))), w] for i, w in enumerate(wholes)]
+    for row in flint.fmpz_mat(rows).lll().tolist():
+        multiples = [int(k) for k in row[:-1]]
+        size = sum(map(abs, multiples))
+        if size <= _LARGEST_OF_NUMBERS and abs(int(row[-1])) <= 2 * size:
+            yield {place: k for place, k in zip(places, multiples, strict=True) if k}
+
+
+def _replace_unit(field: Field, x: Poly, multiples: Multiples, place: int) -> Poly:
+    """Replace the unit of that place in x by the others in the relation."""
+    gens, value, total = field.ring.gens, field.ring.zero, field.ring.zero
+    for other, k in multiples.items():
+        if other != place:
+            value += gens[other] * flint.fmpq(-k, multiples[place])
+    for n, part in split(x, place).items():
+        total += field.multiply(part, value**n)
+    return field.ring.reduce(total)
+
+
+def _is_sum_of_logarithms(t: FieldImage, multiples: Multiples) -> bool:
+    field, product = t.field, t.field.one
+    try:
+        for place, k in multiples.items():
+            f = t.powers.logarithms[place]
+            _check_multiple(k, number=field.is_number(f))
+            product = product * field.polynomial(f) ** (2 * k)
+        return vanishes(field, product.above - product.below)
+    except UndecidedError:
+        return False
+
+
+def _is_sum_of_angles(t: FieldImage, multiples: Multiples, names: Names) -> bool:
+    field, product = t.field, (t.field.one, t.field.zero)
+    try:
+        for place, k in multiples.items():
+            if place in t.angles.arctangents:  # else it is π
+                u = t.angles.arctangents[place]
+                _check_multiple(k, number=_is_number(u))
+                turned = power((field.one, u if k > 0 else -u), abs(k))
+                product = times(product, turned)
+        if not vanishes(field, product[1].above):
+            return False
+    except UndecidedError:
+        return False
+    with working_precision(_BITS_OF_ANGLE):
+        point = Point(field, names())
+        total = sum((point.unit(place) * k for place, k in multiples.items()), flint.arb(0))
+        return bool(abs(total) < 1)  # a multiple of π that is below 1 is 0
+
+
+def _check_multiple(k: int, *, number: bool) -> None:
+    if abs(k) > (_LARGEST_OF_NUMBERS if number else _LARGEST):
+        raise UndecidedError("too high a power")
+
+
+# -- square roots ---------------------------------------------------------------------------------
+
+
+def vanishes_by_conjugates(t: FieldImage, x: Poly, names: Names) -> bool:
+    """Return True if x is shown to be 0 on a connected set with the point of `names`."""
+    field = t.field
+    # Tangents have poles, and signs jump: with them conjugates need not be analytic.
+    if any(key[0] in ("tangent", "sign") for key in field.unit_by_key):
+        return False
+    conjugates = [x]
+    product = x
+    while not product.is_zero():
+        place = next((p for p in places_in(product) if _is_square_root(t, p)), None)
+        if place is None or len(conjugates) > 2**_MOST_ROOTS:
+            break
+        conjugates += [_conjugate(field, y, place) for y in conjugates]
+        product = field.multiply(product, _conjugate(field, product, place))
+    if len(conjugates) == 1 or not vanishes(field, product):
+        return False
+    with working_precision(_BITS_OF_CONJUGATES):
+        point = Point(field, names())
+        return all(not point.enclose(y).contains(0) for y in conjugates[1:])
+
+
+def _is_square_root(t: FieldImage, place: int) -> bool:
+    return (
+        place in t.powers.roots
+        and t.powers.roots[place][1] == 2
+        and t.field.units[place].number is None
+    )
+
+
+def _conjugate(field: Field, x: Poly, place: int) -> Poly:
+    parts = split(x, place)
+    unit = field.ring.gens[place]
+    return sum((part * (-unit) ** n for n, part in parts.items()), field.ring.zero)

@@ -1,18 +1,29 @@
-"""Limits of exact expressions: they must be finite, real, smooth and of bounded size."""
+"""Limits of exact expressions: they must be finite, real, smooth and of bounded size.
+
+sympy evaluates as it builds: 2**a at a = 10^300, or the sign of log(sin(exp(exp(a)))) at a = 100,
+would never end. So powers and constants are checked before sympy sees them, constants by ball
+arithmetic, which says at once that one is out of reach; and where values are put into an
+expression, its tree is rebuilt here from its leaves, with the same checks at every step.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from verify.algebra.expressions.functions_used import function_of
+import flint
+
+from verify.algebra.expressions.function_nodes import function_of
 from verify.algebra.expressions.monomials import monomials_of
+from verify.arithmetic.flint_precision import working_precision
 from verify.effort import answer_unless_long, limit_effort
 from verify.errors import InputError, LimitError
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
 MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
+MAX_BITS = 4000  # of the size of a constant
 
 
 def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
@@ -24,17 +35,19 @@ def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if _small_polynomial(result):
         return result
     result = _one_product(result)
-    numbers, powers, others = _by_kind(result)
+    numbers, powers, other_nodes = _by_kind(result)
     # sympy makes |x| of √(x²); where x has one sign the root is smooth and the formula allowed.
-    if any(isinstance(node, sympy.Abs) for node in others):
-        from verify.algebra.identities.absolute_values import without_absolute_values
+    if any(isinstance(node, sympy.Abs) for node in other_nodes):
+        from verify.algebra.identities.signs import without_absolute_values
 
         with limit_effort(source, text, "to see the signs in it"):
             result = without_absolute_values(result)
-        numbers, powers, others = _by_kind(result)
-    if any(node in undefined_values() or isinstance(node, sympy.AccumBounds) for node in others):
+        numbers, powers, other_nodes = _by_kind(result)
+    if any(
+        node in undefined_values() or isinstance(node, sympy.AccumBounds) for node in other_nodes
+    ):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
-    if any(_is_not_smooth(node) for node in others):
+    if any(_is_not_smooth(node) for node in other_nodes):
         raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
     for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
@@ -43,7 +56,7 @@ def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             check_power(power.base, power.exp, source, text)
-    if sympy.I in others or any(map(_is_of_nonpositive, others)):
+    if sympy.I in other_nodes or any(map(_is_of_nonpositive, other_nodes)):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
 
@@ -82,7 +95,7 @@ def _one_product(x: sympy.Expr) -> sympy.Expr:
 
 def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
     """Return the rational numbers, the powers, and the other nodes but sums, products, names."""
-    numbers, powers, others = [], [], []
+    numbers, powers, other_nodes = [], [], []
     waiting = [expression]
     while waiting:
         node = waiting.pop()
@@ -92,13 +105,13 @@ def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr]
         if node.is_Pow:
             powers.append(node)
         elif not (node.is_Add or node.is_Mul or node.is_Symbol):
-            others.append(node)
+            other_nodes.append(node)
         waiting += node.args
-    return numbers, powers, others
+    return numbers, powers, other_nodes
 
 
 def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
-    """Raise InputError where that rational power is not real, or may be too large for sympy."""
+    """Raise InputError if that rational power is not real, or may be too large for sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and _is_nonpositive(base) and not base.is_zero:
@@ -126,3 +139,86 @@ def _root_bits(base: sympy.Expr) -> int:
     numbers, powers, _ = _by_kind(constant)
     bits = max((max(n.p.bit_length(), n.q.bit_length()) for n in numbers), default=0)
     return bits * math.prod(int(power.exp.q) for power in powers if power.exp.is_Rational)
+
+
+# -- constants ------------------------------------------------------------------------------------
+
+
+def is_within_reach(constant: sympy.Expr) -> bool:
+    """Return True if the constant is finite and below 2^4000 in size, by ball arithmetic."""
+    with working_precision(128):
+        ball = _ball(constant)
+        # 128 bits suffice: only the order of magnitude matters, and a doubtful ball counts as too
+        # large.
+        limit = flint.arb(2) ** MAX_BITS
+        return ball is not None and ball.is_finite() and abs(ball) < limit
+
+
+def _ball(node: sympy.Expr) -> flint.arb | None:
+    """Enclose the constant, or return None if this module does not know the expression."""
+    if node.is_Rational:
+        return flint.arb(flint.fmpq(int(node.p), int(node.q)))
+    if node is sympy.pi:
+        return flint.arb.pi()
+    if node is sympy.E:
+        return flint.arb(1).exp()
+    balls = [_ball(argument) for argument in node.args]
+    arguments = [x for x in balls if x is not None and x.is_finite()]
+    if len(arguments) < len(balls):
+        return None
+    if node.is_Add:
+        return sum(arguments, flint.arb(0))
+    if node.is_Mul:
+        return math.prod(arguments, start=flint.arb(1))
+    if node.is_Pow:
+        return arguments[0] ** arguments[1]
+    function = function_of(node)
+    return None if function is None else function.of_balls(flint.arb)(arguments[0])
+
+
+# -- values for symbols ---------------------------------------------------------------------------
+
+
+def substitute(
+    expression: sympy.Expr, values: Mapping[sympy.Symbol, sympy.Rational], description: str
+) -> sympy.Expr:
+    """Substitute the values in the expression; InputError("parameter", description, …) if that
+    fails."""
+    if not values:
+        return expression
+
+    def build(node: sympy.Expr) -> sympy.Expr:
+        if node in values:
+            return values[node]
+        if not node.args or not node.free_symbols & values.keys():
+            return node
+        arguments = [build(argument) for argument in node.args]
+        _check_rebuilding(node, arguments, description)
+        try:
+            return node.func(*arguments)
+        except (ArithmeticError, AttributeError, TypeError, RecursionError):  # from within sympy
+            raise _problem(description, f"{node} cannot be handled exactly there") from None
+
+    with limit_effort("parameter", description, "to put it in"):
+        result = build(expression)
+    return check_expression(result, "parameter", description)
+
+
+def _problem(description: str, text: str) -> InputError:
+    return InputError("parameter", description, text)
+
+
+def _check_rebuilding(node: sympy.Expr, arguments: list[sympy.Expr], description: str) -> None:
+    """Raise InputError unless it is safe to rebuild the node from these arguments."""
+    exponents = []
+    if node.is_Pow and arguments[1].is_Rational:
+        check_power(arguments[0], arguments[1], "parameter", description)
+    # exp(n log u) becomes uⁿ at once, so n is checked before sympy builds it.
+    elif isinstance(node, sympy.exp):  # a sum with logarithms becomes powers
+        terms = sympy.Add.make_args(arguments[0])
+        exponents = [term.as_coeff_Mul()[0] for term in terms if term.has(sympy.log)]
+    if any(e.is_Rational and abs(e) > MAX_EXPONENT for e in exponents):
+        raise _problem(description, f"makes an exponent beyond ±{MAX_EXPONENT}")
+    constant = isinstance(node, sympy.Function) and not arguments[0].free_symbols
+    if constant and not is_within_reach(arguments[0]):
+        raise _problem(description, f"{node} is not defined there, or too large")

@@ -18,19 +18,34 @@ identity, as exp(q √(3 + 2 √2)) does, or names of parts do; the callers repo
 
 Functions of sums are expanded over a basis of the lattice that their arguments span, so that
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not treated as independent.
+
+A record holds a ring and an element of it as plain data, from which both are rebuilt without
+parsing: what `verify.algebra.embedding.embed` builds, without additions by schemes.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import flint
+
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.differential_ring import RingFullError as RingFullError
-from verify.algebra.generator import Poly as Poly
-from verify.algebra.ring_text import as_expression, as_product, as_text
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.formula import function, symbol
+from verify.algebra.identities.polynomials import Generator, places_in, terms_of
+from verify.algebra.identities.polynomials import Poly as Poly
+from verify.algebra.limits import undefined_values
 from verify.algebra.zero_test import Decision as Decision
 from verify.algebra.zero_test import decide_zero
-from verify.late import sympy
+from verify.functions import in_rings
+from verify.lazy_sympy import sympy
 
-_MOST_FACTORS = 4
+_MOST_FACTORS = 4  # that an inverse is made of
+_LONG = 100  # terms of an argument, from which on it is not factored
+_MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
 
 class Ring(DifferentialRing):
@@ -56,7 +71,7 @@ class Ring(DifferentialRing):
     def inverse(self, u: Poly) -> Poly:
         """Return 1/u, by the inverses of u's irreducible factors (of u itself, if they are many).
 
-        Raises ZeroDivisionError where u is zero, or cannot be shown not to be.
+        Raises ZeroDivisionError if u is zero, or cannot be shown not to be.
         """
         if self.decide(u).zero is not False:
             raise ZeroDivisionError
@@ -83,12 +98,138 @@ class Ring(DifferentialRing):
 
     def expression(self, x: Poly) -> sympy.Expr:
         """Convert x to an expression, with its terms as they stand in the ring."""
-        return as_expression(self, x)
+        return _sum_of_terms(x, self._expressions_of_generators(x))
 
-    def text(self, x: Poly) -> str:
-        """Format x as a formula: factored where it has few terms, else as in the ring."""
-        return as_text(self, x)
+    def expression_at_0(self, x: Poly, variable: sympy.Symbol) -> sympy.Expr:
+        """Convert x to an expression at variable = 0; nan if it is undefined there."""
+        try:
+            expressions = self._expressions_of_generators(x)
+            generators = {k: g.subs(variable, 0) for k, g in expressions.items()}
+            if any(g.has(*undefined_values()) for g in generators.values()):
+                return self.expression(x).subs(variable, 0)
+        except TypeError:  # sympy has compared a nan within with a number
+            return sympy.nan
+        return _sum_of_terms(x, generators)
 
     def as_product(self, x: Poly) -> sympy.Expr:
         """Convert x to an expression, factored into irreducible polynomials in the generators."""
-        return as_product(self, x)
+        if x.is_zero():
+            return sympy.Integer(0)
+        content, factors = x.factor()
+        parts = [self.expression(f) ** int(n) for f, n in factors]
+        return sympy.Mul(_rational(content), *parts)
+
+    def text(self, x: Poly) -> str:
+        """Format x as a formula: factored where it has few terms, else as it stands in the ring."""
+        if len(x) <= _MOST_FACTORED:
+            return to_text(self.as_product(x))
+        names = {
+            f"_{g.index}": f"({to_text(self._generator_expression(g))})"
+            for g in self.generators_in(x)
+        }
+        return re.sub(r"\b_\d+\b", lambda name: names[name[0]], str(x)).replace("^", "**")
+
+    def _expressions_of_generators(self, x: Poly) -> dict[int, sympy.Expr]:
+        """Return the expressions of the generators in x, by their places."""
+        generators = {g.index: g for g in self.generators}
+        return {k: self._generator_expression(generators[k]) for k in places_in(x)}
+
+    def _generator_expression(self, g: Generator) -> sympy.Expr:
+        """Convert the generator to an expression, which is cached."""
+        if g.index not in self.expressions:
+            self.expressions[g.index] = _apply_function(g, self._argument(g))
+        return self.expressions[g.index]
+
+    def _argument(self, g: Generator) -> sympy.Expr:
+        """Return the generator's argument as an expression; 0 where it has none."""
+        if g.argument is None:
+            return sympy.S.Zero
+        rule = in_rings().get(g.kind)
+        # Factored, the argument is mostly the product that was written; of a pair it is a sum.
+        factored = rule is not None and rule.pair is None and len(g.inner) < _LONG
+        return (self.as_product if factored else self.expression)(g.inner)
+
+
+def _sum_of_terms(x: Poly, generators: Mapping[int, sympy.Expr]) -> sympy.Expr:
+    terms = []
+    for monomial, coefficient in terms_of(x):
+        factors = [(generators[k], int(n)) for k, n in enumerate(monomial) if n]
+        if all(g is not sympy.S.Zero for g, _ in factors):
+            terms.append(sympy.Mul(_rational(coefficient), *(g**n for g, n in factors)))
+    return sympy.Add(*terms)
+
+
+def _apply_function(g: Generator, argument: sympy.Expr) -> sympy.Expr:
+    """Apply the generator's function to an expression, which is ignored by a variable and π."""
+    if g.kind == "variable":
+        return symbol(g.name)
+    return _FUNCTIONS[g.kind](argument, g.degree)
+
+
+def _by_name(name: str) -> Callable[[sympy.Expr, int], sympy.Expr]:
+    return lambda x, _: function(name)(x)
+
+
+_FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
+    **{name: _by_name(name) for name in in_rings()},
+    "root": lambda x, degree: x ** sympy.Rational(1, degree),
+    "inverse": lambda x, _: 1 / x,
+    "pi": lambda x, _: sympy.pi,
+}
+
+
+def _rational(value: flint.fmpq) -> sympy.Rational:
+    """Convert a flint rational to sympy's."""
+    return sympy.Rational(int(value.numer()), int(value.denom()))
+
+
+# -- a ring and an element as plain data ----------------------------------------------------------
+
+Record = dict[str, Any]  # of lists, texts and whole numbers
+_Terms = list[tuple[list[int], str, str]]  # exponents, numerator, denominator
+
+
+def record_of(ring: Ring, x: Poly) -> Record:
+    """Return the ring and its element x as data for JSON."""
+    functions = [g for g in ring.generators if g.kind != "variable"]
+    return {
+        "variables": ring.variables,
+        "room": ring.room,
+        "generators": [
+            [g.kind, None if g.argument is None else _terms(g.argument), g.degree]
+            for g in functions
+        ],
+        "relations": [
+            [index, power, _terms(relation)] for index, power, relation in ring.relations
+        ],
+        "gradients": [
+            [g.index, {name: _terms(part) for name, part in ring.gradient(g.index).items()}]
+            for g in functions
+        ],
+        "element": _terms(x),
+    }
+
+
+def ring_from_record(record: Mapping[str, Any]) -> tuple[Ring, Poly]:
+    """Rebuild the ring and the element from their record."""
+    ring = Ring(record["variables"], record["room"], spare=0)
+    places = ring.context.gens()
+    for kind, argument, degree in record["generators"]:
+        ring.add(kind, None if argument is None else _poly(ring, argument), degree)
+    # Generators come before relations and gradients, which refer to them by their places.
+    for index, power, relation in record["relations"]:
+        ring.relate(places[index], power, _poly(ring, relation))
+    for index, gradient in record["gradients"]:
+        ring.set_partials(places[index], {n: _poly(ring, part) for n, part in gradient.items()})
+    return ring, _poly(ring, record["element"])
+
+
+def _terms(x: Poly) -> _Terms:
+    # In hexadecimal: Python reads no decimal number of more than 4300 digits.
+    return [([*map(int, powers)], f"{int(c.p):x}", f"{int(c.q):x}") for powers, c in terms_of(x)]
+
+
+def _poly(ring: Ring, terms: _Terms) -> Poly:
+    return ring.context.from_dict(
+        {tuple(powers): flint.fmpq(int(p, 16), int(q, 16)) for powers, p, q in terms}
+    )

@@ -12,8 +12,7 @@ from itertools import islice
 
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.enclosure import Ball, Enclosures, enclose, points
-from verify.algebra.generator import Poly
-from verify.algebra.identities.polynomials import split
+from verify.algebra.identities.polynomials import Poly, split
 
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness

@@ -32,7 +32,7 @@ def get(name: str, digits: int) -> "Arithmetic":
     """Return the arithmetic of that name with at least `digits` decimal digits (float64 has its
     own).
 
-    Raises InputError where there is none of that name.
+    Raises InputError if there is none of that name.
     """
     return about(name).make(digits)
 
@@ -40,7 +40,7 @@ def get(name: str, digits: int) -> "Arithmetic":
 def about(name: str) -> "NumberSystem":
     """Return the description of the number system of that name; no library is imported.
 
-    Raises InputError where there is none of that name.
+    Raises InputError if there is none of that name.
 
     >>> about("float64").digits, about("mpfr").digits
     (17, None)

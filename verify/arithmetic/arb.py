@@ -47,7 +47,7 @@ def make_ball(midpoint: Fraction, radius: Fraction) -> Ball:
 
 
 def lg(x: Ball) -> Ball:
-    """Return the decimal logarithm; not finite where x may be 0 or negative."""
+    """Return the decimal logarithm; not finite if x may be 0 or negative."""
     return x.log() / flint.arb(10).log()
 
 
@@ -71,7 +71,7 @@ def midpoint_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
 
 
 def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> tuple[Fraction, Fraction]:
-    """Return the number, and 0; or, where it is too small, 0 and a bound of its size."""
+    """Return the number, and 0; or, if it is too small, 0 and a bound of its size."""
     numerator, power = int(mantissa), int(exponent)
     if power > _MOST_EXPONENT:
         raise OverflowError("a ball is too large for a rational")
@@ -79,8 +79,8 @@ def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> tuple[Fraction, Fra
     # contains it, which keeps the enclosure rigorous.
     if power < -_MOST_EXPONENT:
         return Fraction(0), Fraction(abs(numerator), 1 << _MOST_EXPONENT)
-    exact = Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
-    return exact, Fraction(0)
+    number = Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
+    return number, Fraction(0)
 
 
 def bounds(x: Ball) -> tuple[Fraction, Fraction]:
@@ -98,17 +98,17 @@ def format_ball(x: Ball, digits: int = 6) -> str:
 
 
 def format_fixed(x: Ball, places: int) -> str:
-    """Return the ball's midpoint with so many decimal places, where both its ends round to it."""
+    """Return the ball's midpoint with so many decimal places, if both its ends round to it."""
     if not is_representable(x):
         return "unknown"
     low, high = bounds(x)
     unit = Fraction(1, 10**places)
     if round(low / unit) != round(high / unit):
         return format_ball(x)
-    return place(round(low / unit), places)
+    return decimal_of_units(round(low / unit), places)
 
 
-def place(units: int, places: int) -> str:
+def decimal_of_units(units: int, places: int) -> str:
     """Write an integer number of 10^−places as a decimal.
 
     >>> place(-12345, 2)

@@ -8,6 +8,7 @@ in the same way, a float32 by its own shortest decimal.
 """
 
 import re
+from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Integral, Real
@@ -17,7 +18,10 @@ import gmpy2
 
 from verify.errors import InputError
 
-Exact = int | str | float | Decimal | Fraction
+Number = int | str | float | Decimal | Fraction
+"""A number of a user, as `rational` reads it: exact, or a float that stands for its decimal."""
+NumberOrList = Number | Sequence[Number]
+"""One number, or one for each degree of freedom."""
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
@@ -34,7 +38,7 @@ class Mpf(Protocol):
     def _mpf_(self) -> tuple[int, int, int, int]: ...
 
 
-def rational(value: Exact, name: str = "number") -> Fraction:
+def rational(value: Number, name: str = "number") -> Fraction:
     """Return the exact value of a user's number.
 
     Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
@@ -46,18 +50,18 @@ def rational(value: Exact, name: str = "number") -> Fraction:
     """
     if _is_float(value):
         return _from_float(value, name)
-    if isinstance(value, bool) or not isinstance(value, Exact | Integral):
+    if isinstance(value, bool) or not isinstance(value, Number | Integral):
         raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
     if isinstance(value, str | Decimal):
-        exact = _from_text(str(value), name)
+        number = _from_text(str(value), name)
     else:  # numpy's integers overflow inside a Fraction
-        exact = Fraction(int(value) if isinstance(value, Integral) else value)
-    if max(exact.numerator.bit_length(), exact.denominator.bit_length()) > _MAX_BITS:
+        number = Fraction(int(value) if isinstance(value, Integral) else value)
+    if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MAX_BITS:
         raise _too_long(name, value)
-    return exact
+    return number
 
 
-def positive(value: Exact, name: str) -> Fraction:
+def positive(value: Number, name: str) -> Fraction:
     """Return the exact value; InputError unless it is greater than zero."""
     number = rational(value, name)
     if number <= 0:
@@ -66,7 +70,7 @@ def positive(value: Exact, name: str) -> Fraction:
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:
-    """Return the value, where it is a whole number from `least` to `most`; else raise
+    """Return the value, if it is a whole number from `least` to `most`; else raise
     InputError."""
     count = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
     if count is None or count < least or (most is not None and count > most):
@@ -78,7 +82,7 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
 
 
 def as_whole(value: Any, least: int = 1, most: int | None = None) -> str:
-    """Return advice what to write for 1e6, 10.0 and 1,000; empty where that is no whole number
+    """Return advice what to write for 1e6, 10.0 and 1,000; empty if that is no whole number
     of the range."""
     try:
         number = rational(re.sub("[,_]", "", value) if isinstance(value, str) else value)
@@ -109,7 +113,7 @@ def _from_text(text: str, name: str) -> Fraction:
         raise _too_long(name, text) from None
 
 
-def _too_long(name: str, value: Exact) -> InputError:
+def _too_long(name: str, value: Number) -> InputError:
     return InputError(name, value, f"has more than {_MAX_BITS} bits")
 
 
@@ -127,7 +131,7 @@ def _from_float(value: float, name: str) -> Fraction:
 
 
 def text(value: Fraction) -> str:
-    """Return a short exact text of a rational: a decimal where it ends, else a quotient.
+    """Return a short exact text of a rational: a decimal if it ends, else a quotient.
 
     >>> text(Fraction(1, 8)), text(Fraction(1, 3))
     ('0.125', '1/3')
@@ -147,7 +151,7 @@ def text(value: Fraction) -> str:
 
 
 def plain(value: Fraction, digits: int) -> str:
-    """Return so many significant digits, without an exponent where the number is of ordinary size.
+    """Return so many significant digits, without an exponent if the number is of ordinary size.
 
     >>> plain(Fraction(1, 3), 5)
     '0.33333'
@@ -157,7 +161,7 @@ def plain(value: Fraction, digits: int) -> str:
 
 
 def short(value: Fraction) -> str:
-    """Return the exact text where that is short, else three significant digits.
+    """Return the exact text if that is short, else three significant digits.
 
     >>> short(Fraction(1, 3)), short(Fraction(1, 3**30))
     ('1/3', '4.86e-15')
@@ -249,7 +253,7 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
     bound.
 
     The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
-    The returned bound includes the rounding of the text. Where no digit is known the text is "0".
+    The returned bound includes the rounding of the text. If no digit is known the text is "0".
 
     >>> known_digits(Fraction(1, 3), Fraction(1, 10**5), 12)
     ('3.333e-01', '4.34e-05')
@@ -263,7 +267,7 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
 
 
 def known_text(value: Fraction, bound: Fraction, most: int) -> str:
-    """Return the text of `known_digits` alone, where its bound is not needed.
+    """Return the text of `known_digits` alone, if its bound is not needed.
 
     >>> known_text(Fraction(1, 3), Fraction(1, 10**5), 12)
     '3.333e-01'
@@ -273,7 +277,7 @@ def known_text(value: Fraction, bound: Fraction, most: int) -> str:
 
 
 def _count_known_digits(value: Fraction, bound: Fraction, most: int) -> int:
-    """Return how many digits the bound allows, `most` at most; 0 where none is known, or value =
+    """Return how many digits the bound allows, `most` at most; 0 if none is known, or value =
     0."""
     if not value:
         return 0

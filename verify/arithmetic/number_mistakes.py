@@ -42,8 +42,8 @@ def _guess_numbers(text: str) -> Iterator[str]:
         yield thousands if plain.count(",") > 1 else f"{thousands} or {plain.replace(',', '.')}"
     if "," in plain and "." in plain:
         last = max(",", ".", key=plain.rfind)
-        other = "," if last == "." else "."
-        plain = plain.replace(other, "").replace(last, ".")
+        separator = "," if last == "." else "."
+        plain = plain.replace(separator, "").replace(last, ".")
     tries = (
         plain.replace(",", "."),
         re.sub(r"[dD]([+-]?\d+)$", r"e\1", plain),
@@ -72,7 +72,7 @@ def _from_other_base(text: str) -> Iterator[str]:
 
 
 def _plain(text: str) -> str:
-    """Return the text in ASCII where there is such a character, without quotation marks and
+    """Return the text in ASCII if there is such a character, without quotation marks and
     brackets around it."""
     plain = re.sub("[−‐-―]", "-", unicodedata.normalize("NFKC", text)).replace("⁄", "/")
     plain = re.sub(r"\s*([/*^])\s*|^([+-])\s+", r"\1\2", plain)

@@ -1,4 +1,4 @@
-"""A number system: its description, and what a kernel needs of it at one precision."""
+"""A number system: its numbers, its description, and what a kernel needs at one precision."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -7,16 +7,35 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from types import CodeType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
 
 from verify.lockstep import Course
 
 if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
 
+SystemNumber = object  # of some system, whose functions alone take it apart
 Rounding = Callable[[str, int, "Ball"], "Ball"]
 State = Sequence[Any]  # the numbers that a kernel carries
 Walk = Callable[[Callable[..., Any], int, int, State, State, int], Course[list[State]]]
+
+
+class Element(Protocol):
+    """A number that can be added, multiplied and divided by integers: of a ring, a field, or a
+    ball."""
+
+    def __neg__(self) -> Self: ...
+
+    def __add__(self, other: Self, /) -> Self: ...
+
+    def __sub__(self, other: Self, /) -> Self: ...
+
+    def __mul__(self, other: Self | int, /) -> Self: ...
+
+    def __truediv__(self, other: int, /) -> Self: ...
+
+
+E = TypeVar("E", bound=Element)
 
 
 @dataclass(frozen=True)
@@ -27,15 +46,15 @@ class Arithmetic:
     `context()` the operators of its numbers and `functions` round as this arithmetic does; whoever
     uses them or calls a kernel enters it, and it leaves nothing changed. `compile` turns a kernel's
     source, which uses + − * / and the names in `functions`, into the function of that name. `guard`
-    is a condition on `{x}`, put into the loop, that holds while the orbit is in range (None where
+    is a condition on `{x}`, put into the loop, that holds while the orbit is in range (None if
     infinities propagate and are found afterwards). `pipelined`: independent operations overlap, so
     that latency counts and not their number. `chunk`: steps between looks at progress and
     interruption. `absolute`: numbers have so many bits after the point, not so many significant
-    ones; a kernel then scales ΔJ and has limits of its own instead of a guard. `radius`, where a
+    ones; a kernel then scales ΔJ and has limits of its own instead of a guard. `radius`, if a
     number is an enclosure: how far from `exact` the true value may be, and `minimum` and `maximum`
     are then among the functions. `rounding`: how far the result of an operation may be off, by its
     kind in a program, its degree (of a root) and its size, a bound of |exact| and |computed|; None
-    where that is not known. `walk`: what does the work of `states`, where that is
+    if that is not known. `walk`: what does the work of `states`, if that is
     done for several orbits together. Two arithmetics of one name and precision are equal.
     """
 
@@ -70,7 +89,7 @@ class Arithmetic:
         later_steps: int = 0,
     ) -> Course[list[State]]:
         """Return what a kernel carries after `every` steps, twice as many, … from a state, `stops`
-        times; fewer where a number left the arithmetic's range on the way.
+        times; fewer if a number left the arithmetic's range on the way.
 
         `fixed`: its arguments between the number of steps and what it carries. `later_steps`: the
         number of steps of this orbit that will be requested after these.
@@ -140,7 +159,7 @@ class UnsupportedError(Exception):
 
 
 _CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
-ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000
+ESCAPE_BITS = 4000  # if exponents have no end of their own, an orbit is stopped at |z| = 2^4000
 MOST_EXPONENT = 1 << 20  # and of what is carried beside it: more takes time and says nothing
 
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
 from verify.integrators.tables.entry import TableEntry
-from verify.integrators.tables.splittings.claims import timed_parts
+from verify.integrators.tables.splitting_claims import timed_parts
 from verify.schemes.printed.splitting_table import PrintedTable
 
 Point = tuple[Fraction, ...]  # p, then q
@@ -109,11 +109,11 @@ def write_digits_program(
     printed = _wrap_items(
         [f'F("{table.printed.numbers[name].strip()}")' for name in table.printed.units], "    "
     )
-    exact = ",\n    ".join(
+    nearest_texts = ",\n    ".join(
         f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.printed.units if nearest
     )
-    rest = [
-        f"    {n} = {_exact(x)}"
+    exact_lines = [
+        f"    {n} = {_with_fractions(x)}"
         for n, x in table.printed.numbers.items()
         if n not in table.printed.units
     ]
@@ -122,11 +122,11 @@ def write_digits_program(
         "",
         f"ORDER = {order}",
         f"printed = [\n{printed}\n]",
-        *([f"nearest = [\n    {exact},\n]"] if nearest else []),
+        *([f"nearest = [\n    {nearest_texts},\n]"] if nearest else []),
         "",
         "",
         f"def parts({names}):",
-        *rest,
+        *exact_lines,
         *_parts(table),
     ]
     kinetic = "p²/2" if quadratic else "p²/2 + p³/3"
@@ -142,9 +142,11 @@ def write_digits_program(
 def _parts(table: PrintedTable) -> list[str]:
     """Write the kicks and drifts; a composition is one of kick–drift–kick."""
     if table.kind != "composition":
-        items = _wrap_items([f'("{kind}", {_exact(size)})' for kind, size in table.parts], " " * 8)
+        items = _wrap_items(
+            [f'("{kind}", {_with_fractions(size)})' for kind, size in table.parts], " " * 8
+        )
         return [f"    return [\n{items}\n    ]"]
-    items = _wrap_items([_exact(size) for _, size in table.parts], " " * 8)
+    items = _wrap_items([_with_fractions(size) for _, size in table.parts], " " * 8)
     return [
         f"    w = [\n{items}\n    ]",
         '    kdk = ("kick", F(1, 2)), ("drift", F(1)), ("kick", F(1, 2))',
@@ -162,7 +164,7 @@ def _wrap_items(items: Sequence[str], indent: str) -> str:
     return "\n".join(line.rstrip() for line in lines)
 
 
-def _exact(size: str) -> str:
+def _with_fractions(size: str) -> str:
     """Write a formula whose quotients are no floats."""
     return _INTEGER.sub(r"F(\g<0>)", size)
 
@@ -182,9 +184,9 @@ def _start(point: Point) -> dict[str, str]:
         p, q = map(float, point)
         apart = "max(abs(x[0] - y[0]), abs(x[1] - y[1]))"
         return {"p": repr(p), "q": repr(q), "distance": apart}
-    one, other = ([float(x) for x in part] for part in (point[:half], point[half:]))
+    momenta, displacements = ([float(x) for x in part] for part in (point[:half], point[half:]))
     apart = "np.abs(np.subtract(x, y)).max()"
-    return {"p": f"np.array({one})", "q": f"np.array({other})", "distance": apart}
+    return {"p": f"np.array({momenta})", "q": f"np.array({displacements})", "distance": apart}
 
 
 def write_time_program(code: str, point: Point) -> str:

@@ -1,1 +1,1 @@
-"""The calls from Python, one a file; each takes a system and a scheme in any of their forms."""
+"""The calls from Python; each takes a system and a scheme in any of their forms."""

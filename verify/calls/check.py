@@ -1,14 +1,16 @@
 """`verify.check`: verification of a user's step function, or of any scheme, against its claims.
 
-`verify.check_map`: whether any map of a user's own, without an H, is symplectic.
+`verify.check_map`: the same of any map of a user's own, without an H: is it symplectic?
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from verify.arithmetic.exact import Exact, positive, rational, whole
+from verify.arithmetic.exact import Number, NumberOrList, positive, rational, whole
 from verify.calls.inputs import (
     ParametersLike,
     SchemeLike,
@@ -20,14 +22,14 @@ from verify.calls.inputs import (
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import check_degrees, coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.check import check_integrator
-from verify.integrators.check import check_map as judge_map
 from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
+from verify.integrators.step_check import check_integrator
+from verify.integrators.step_check import check_map as judge_map
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
-from verify.proof.order import prove
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.scheme import Scheme
 
 
@@ -40,10 +42,10 @@ def check(
     area_preserving: bool = False,
     symplectic: bool = False,
     arguments: str | None = None,
-    p: Exact | Sequence[Exact] | None = None,
-    q: Exact | Sequence[Exact] | None = None,
-    step_size: Exact | None = None,
-    within: Exact | None = None,
+    p: NumberOrList | None = None,
+    q: NumberOrList | None = None,
+    step_size: Number | None = None,
+    within: Number | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding | Proof:
     """Decide whether a step is a scheme for H and what it preserves: by proof, else by measuring.
@@ -54,22 +56,25 @@ def check(
     step: a function step(p, q, h), or step(p, q, t, h) for an H in t, that returns p' and q'; it
         is called. Or a scheme's name, 'p_next = …; q_next = …', a Scheme or a StepMap, which is
         proved.
-    order: the least claimed order of convergence; by default that which a scheme itself claims.
-    area_preserving, symplectic: whether det J ≡ 1 is claimed of it, or JᵀΩJ ≡ Ω, which is the same
-        in one degree of freedom.
+    order: the least claimed order of convergence, 1 … 12; by default that which a scheme itself
+        claims.
+    area_preserving, symplectic: True if det J ≡ 1 is claimed of it, or JᵀΩJ ≡ Ω, which is the
+        same in one degree of freedom.
     arguments: such as "q,p,h", where the function's arguments are not named so.
-    q, p: the first state to look at, numbers or, in n degrees of freedom, lists of n; `step_size`:
-        the largest step size to look at; `within`: an allowed defect.
+    q, p: the first state to look at, numbers or, in n degrees of freedom, lists of n numbers.
+    step_size: the largest step size to look at.
+    within: an allowed defect.
     time_limit: seconds for the whole check.
 
-    Returns a Finding of a function, with its `verdict` and `reason`; a Proof of a scheme. Raises
-    InputError, one line.
+    Returns a Finding of a function: its `verdict` with the `reason`, its `order` and
+    `convergence_order`, and a `counterexample` where it is refuted at a point. Returns a Proof of a
+    scheme, as `verify.prove` does. Raises InputError, one line.
 
     >>> euler = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
     >>> str(euler.verdict), euler.area_preserving, euler.order
     ('PROVED', False, 2)
     """
-    exact = hamiltonian_from(system, parameters)
+    hamiltonian = hamiltonian_from(system, parameters)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
     for name, claimed in (("area_preserving", area_preserving), ("symplectic", symplectic)):
@@ -77,8 +82,8 @@ def check(
             raise InputError(name, claimed, "must be True or False")
     if not callable(step) or isinstance(step, Scheme):
         scheme = scheme_from(step)
-        step_map = step_map_from(scheme, exact)
-        keeps = symplectic or (area_preserving and exact.degrees == 1)
+        step_map = step_map_from(scheme, hamiltonian)
+        keeps = symplectic or (area_preserving and hamiltonian.degrees == 1)
         # det J ≡ 1 is weaker than JᵀΩJ ≡ Ω where n > 1, and a scheme's proof decides the latter.
         if area_preserving and not keeps:
             problem = "of a scheme in several degrees of freedom symplectic=True is claimed"
@@ -88,11 +93,13 @@ def check(
             return prove(step_map, scheme)
         return prove(step_map, _with_claims(scheme, order, keeps))
     callee = callee_from(
-        step, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
+        step, hamiltonian.coordinates, arguments=arguments, parameters=dict(hamiltonian.values),
         time_limit=time_limit,
     )  # fmt: skip
     claims = Claims(order=order, area_preserving=area_preserving, symplectic=symplectic)
-    return check_integrator(callee, exact, claims, request_of(exact, p, q, step_size, within))
+    return check_integrator(
+        callee, hamiltonian, claims, request_of(hamiltonian, p, q, step_size, within)
+    )
 
 
 def check_map(
@@ -100,9 +107,9 @@ def check_map(
     degrees: int = 1,
     *,
     arguments: str | None = None,
-    parameters: Mapping[str, Exact] | None = None,
-    point: Sequence[Exact] | None = None,
-    within: Exact | None = None,
+    parameters: Mapping[str, Number] | None = None,
+    point: Sequence[Number] | None = None,
+    within: Number | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding:
     """Decide whether a map is symplectic, JᵀΩJ = Ω everywhere: by proof, else by measuring.
@@ -113,10 +120,12 @@ def check_map(
         else; or map(z) → z' of one array of 2·degrees numbers. It is called.
     arguments: where the coordinates stand in z, such as "q1,p1,q2,p2"; else p1, …, pn, q1, …, qn.
     parameters: further arguments that it takes by name, exact.
-    point: p1, …, pn, q1, …, qn of the first point to look at; `within`: an allowed defect;
-        `time_limit`: seconds for all calls.
+    point: the first point to look at, 2·degrees numbers p1, …, pn, q1, …, qn.
+    within: an allowed defect.
+    time_limit: seconds for all calls.
 
-    Raises InputError, one line.
+    Returns a Finding: its `verdict` with the `reason`, `symplectic` and `area_preserving`, and the
+    `entry` of S = JᵀΩJ − Ω that is not 0, if there is one. Raises InputError, one line.
 
     >>> shear = check_map(lambda p, q: ([p[0] - q[1], p[1] - q[0]], q), degrees=2)
     >>> str(shear.verdict), shear.symplectic
@@ -145,11 +154,11 @@ def check_map(
 
 
 def request_of(
-    exact: Hamiltonian,
-    p: Exact | Sequence[Exact] | None,
-    q: Exact | Sequence[Exact] | None,
-    step_size: Exact | None = None,
-    within: Exact | None = None,
+    hamiltonian: Hamiltonian,
+    p: NumberOrList | None,
+    q: NumberOrList | None,
+    step_size: Number | None = None,
+    within: Number | None = None,
 ) -> Request:
     """Return the places to look at, read from a caller's arguments. Raises InputError."""
     if (p is None) != (q is None):
@@ -157,8 +166,8 @@ def request_of(
     z: list[Fraction] = []
     for name, values in (("p", p), ("q", q)):
         numbers: list[Any] = [] if values is None else _as_numbers(values)
-        if values is not None and len(numbers) != exact.degrees:
-            problem = f"has {len(numbers)} numbers; allowed: {exact.degrees}"
+        if values is not None and len(numbers) != hamiltonian.degrees:
+            problem = f"has {len(numbers)} numbers; allowed: {hamiltonian.degrees}"
             raise InputError(name, values, problem)
         z += [rational(x, name) for x in numbers]
     return Request(

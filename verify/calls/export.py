@@ -1,5 +1,7 @@
 """`verify.export`: a step map, its Jacobian and ΔJ as code."""
 
+from __future__ import annotations
+
 from verify.algebra.expressions.formula_text import to_text
 from verify.calls.inputs import (
     ParametersLike,
@@ -54,9 +56,9 @@ def build_program(
     name: str = "step",
 ) -> Program:
     """Return the map as assignments, with its constants, for a language; see `export`."""
-    exact = hamiltonian_from(system, parameters)
+    hamiltonian = hamiltonian_from(system, parameters)
     scheme_or_map = scheme_from(scheme)
-    step_map = step_map_from(scheme_or_map, exact)
+    step_map = step_map_from(scheme_or_map, hamiltonian)
     if isinstance(scheme_or_map, Scheme):
         scheme_text = scheme_or_map.name
     else:

@@ -7,18 +7,18 @@ as `verify.arithmetic.exact` tells; numpy's are read like Python's.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from numbers import Integral
 from typing import Any
 
 from verify import schemes
 from verify.algebra.expressions.formula_text import to_text
-from verify.arithmetic.exact import Exact, whole
+from verify.arithmetic.exact import Number, whole
 from verify.errors import InputError, unknown_name
 from verify.execution.execute import Store, execute
 from verify.execution.executors import Placement
-from verify.execution.study import Need, plan_of
+from verify.execution.plan import Need, plan_of
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.named_system import System
@@ -29,7 +29,11 @@ from verify.schemes.scheme import Scheme
 
 SystemLike = Hamiltonian | System | str
 SchemeLike = Scheme | StepMap | str
-ParametersLike = Mapping[str, Exact | None] | None
+SchemesLike = SchemeLike | Sequence[SchemeLike]
+# One number, or a list, a tuple, a range or an array with one axis of such.
+NumbersLike = Number | Iterable[Number]
+# Values by the names of parameters; None leaves a parameter a symbol.
+ParametersLike = Mapping[str, Number | None] | None
 
 _NAME = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")  # no formula: a word, or words with dashes
 _SOURCE = "arguments"
@@ -141,26 +145,26 @@ def scene_of(
     scheme: object,
     parameters: ParametersLike,
     *,
-    t0: Exact | None = None,
+    t0: Number | None = None,
     name: str = "",
     system_name: str | None = None,
     **sections: Any,
 ) -> Scene:
     """Return a scene of the system and one scheme or several, with these sections and this name.
 
-    `t0`: when its runs start, which an H without t does not look at. `known_as`: the name of the
+    `t0`: when its runs start, which an H without t does not look at. `system_name`: the name of the
     system, where it has one.
     """
-    exact = hamiltonian_from(system, parameters)
+    hamiltonian = hamiltonian_from(system, parameters)
     # A family such as `fput` is one system for each n; a scene names its member by the parameter
     # n.
     of_family = system_name is not None and systems.get(system_name).family is not None
     data = {
-        **({"system": system_name} if system_name else {"hamiltonian": exact.formula}),
-        "parameters": dict[str, Fraction](exact.values)
-        | ({"n": Fraction(exact.degrees)} if of_family else {}),
-        "schemes": schemes_from(scheme, exact),
-        **({"t0": plain_values(t0)} if t0 is not None and exact.time_dependent else {}),
+        **({"system": system_name} if system_name else {"hamiltonian": hamiltonian.formula}),
+        "parameters": dict[str, Fraction](hamiltonian.values)
+        | ({"n": Fraction(hamiltonian.degrees)} if of_family else {}),
+        "schemes": schemes_from(scheme, hamiltonian),
+        **({"t0": plain_values(t0)} if t0 is not None and hamiltonian.time_dependent else {}),
     }
     sections = {key: plain_values(_drop_none(section)) for key, section in sections.items()}
     try:
@@ -192,5 +196,5 @@ def _drop_none(value: Any) -> Any:
 
 def perform(scene: Scene, need: Need, workers: int) -> dict[str, Frozen]:
     """Compute the scene's results by their keys, in so many processes; 1 is this one."""
-    where = Placement(whole("workers", workers, 1))
-    return execute(plan_of([scene], need), Store(None), where=where)
+    processes = Placement(whole("workers", workers, 1))
+    return execute(plan_of([scene], need), Store(None), where=processes)

@@ -1,5 +1,11 @@
-"""`verify.prove`: the order of ΔJ and of the map, by exact algebra."""
+"""`verify.prove` and `verify.modified_hamiltonian`: order, area and energy by exact algebra."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from verify import schemes
+from verify.arithmetic.exact import whole
 from verify.calls.inputs import (
     ParametersLike,
     SchemeLike,
@@ -9,10 +15,14 @@ from verify.calls.inputs import (
     step_map_from,
 )
 from verify.errors import NOT_GIVEN, InputError
-from verify.proof.order import prove as prove_map
-from verify.proof.proof import Proof
+from verify.hamiltonians import systems
+from verify.proof.order_for_one_h import prove as prove_map
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
+
+if TYPE_CHECKING:
+    from verify.proof.plane.modified_equation import ModifiedEquation
 
 
 def prove(
@@ -33,7 +43,9 @@ def prove(
     parameters: exact values by name; one without a value stays a symbol, and the proof holds for
         all its values but those that `domain` names.
 
-    Raises InputError, one line, for a bad argument.
+    Returns a Proof: `verdict` with its `reason`; `order` of ΔJ or S and its `leading` coefficient,
+    an expression; `convergence_order` of the map; `area_preserving` and `symplectic`, None if
+    that is undecided. Raises InputError, one line, for a bad argument.
 
     >>> proof = prove("duffing", "lie2")
     >>> str(proof.verdict), proof.order, proof.leading
@@ -50,11 +62,72 @@ def prove(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
         return prove_map(system, claims)
-    exact = hamiltonian_from(system, parameters)
+    hamiltonian = hamiltonian_from(system, parameters)
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     scheme_or_map = scheme_from(scheme)
     return prove_map(
-        step_map_from(scheme_or_map, exact),
+        step_map_from(scheme_or_map, hamiltonian),
         scheme_or_map if isinstance(scheme_or_map, Scheme) else None,
     )
+
+
+def modified_hamiltonian(
+    scheme: SchemeLike,
+    system: SystemLike | None = None,
+    order: int = 4,
+    *,
+    parameters: ParametersLike = None,
+    separable: bool = False,
+) -> ModifiedEquation:
+    """Return the modified equation's terms and the modified Hamiltonian H̃ = H + h H_2 + h² H_3 + ….
+
+    The map of the scheme is the exact flow of the modified field, as a series in h; where its terms
+    are Hamiltonian, H̃ is the energy that the scheme keeps. The first term that is not has a
+    divergence, which is the leading coefficient of ΔJ.
+
+    Parameters
+    ----------
+    scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
+    system: a Hamiltonian, a system's name, a formula; without one, for every smooth H that the
+        scheme takes (`separable`: every H = T(p) + V(q)), or for that of the StepMap.
+    order: the highest power of h in f̃ and H̃, 1 … 10, for every H 1 … 8.
+    parameters: exact values by name; one without a value stays a symbol.
+
+    Returns a ModifiedEquation: its `terms` by powers of h, the `expression` of H̃ as far as they are
+    Hamiltonian, and a `verdict` with its `reason`. Raises InputError, one line, for a bad argument.
+
+    >>> modified_hamiltonian("stormer-verlet", "p**2/2 + q**4/4", 2).expression
+    h**2*q**2*(6*p**2 - q**4)/24 + p**2/2 + q**4/4
+    >>> equation = modified_hamiltonian("lie2", "duffing", 4)
+    >>> equation.reach, equation.first_not_hamiltonian.divergence
+    (1, '3*delta*p*q')
+    """
+    # Imported here, since `prove` needs none of it.
+    from verify.proof.plane.modified_for_every_h import MOST_ORDER as MOST_FOR_EVERY
+    from verify.proof.plane.modified_for_every_h import modified_for_every_h
+    from verify.proof.plane.modified_for_one_h import MOST_ORDER, modified_for_one_h
+
+    scheme_or_map = _resolve_scheme(scheme, system)
+    whole("order", order, 1, MOST_FOR_EVERY if system is None else MOST_ORDER)
+    if system is None:
+        if parameters:
+            raise InputError("parameters", parameters, "goes with a system")
+        if isinstance(scheme_or_map, StepMap):
+            return modified_for_one_h(scheme_or_map, None, order)
+        return modified_for_every_h(scheme_or_map.name, order, separable)
+    if separable:
+        raise InputError("separable", separable, "goes without a system")
+    hamiltonian = hamiltonian_from(system, parameters)
+    claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
+    return modified_for_one_h(step_map_from(scheme_or_map, hamiltonian), claims, order)
+
+
+def _resolve_scheme(scheme: SchemeLike, system: SystemLike | None) -> Scheme | StepMap:
+    """Return the scheme; InputError with the right call where a system stands in its place."""
+    if isinstance(scheme, str) and systems.canonical(scheme) in systems.names():
+        is_swapped = isinstance(system, str) and schemes.canonical(system) in schemes.names()
+        example = system if is_swapped else "stormer-verlet"
+        write = f"modified_hamiltonian({example!r}, {scheme!r})"
+        raise InputError("scheme", scheme, f"is a system; write {write}")
+    return scheme_from(scheme)

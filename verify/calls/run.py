@@ -1,39 +1,51 @@
-"""`verify.run`: N steps, each number with its error bound."""
+"""`verify.run` and `verify.sweep`: N steps, each number with its bound, and tables of runs."""
 
-from collections.abc import Sequence
+from __future__ import annotations
 
-from verify.arithmetic.exact import Exact, whole
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import Any
+
+from verify.arithmetic.exact import Number, NumberOrList, positive, rational, text, whole
 from verify.arithmetic.systems import float64
 from verify.calls.inputs import (
+    NumbersLike,
     ParametersLike,
     SchemeLike,
+    SchemesLike,
     SystemLike,
+    as_list,
     hamiltonian_from,
     is_list,
     scheme_name,
+    schemes_from,
 )
 from verify.calls.progress import Progress, progress_of
 from verify.calls.run_result import RunResult
 from verify.errors import InputError
-from verify.hamiltonians.start import Given, check_start
-from verify.lockstep import Course, run_alone
-from verify.runs.run import RequestedRun
-from verify.scenes.results.orbit import MOST_POINTS
+from verify.execution.plan import MOST_AT_ONCE
+from verify.hamiltonians.run_domain import check_start
+from verify.lockstep import Course, run_alone, run_together
+from verify.runs.requested_run import RequestedRun
+from verify.scenes.observables import CLOSED_FORM
+from verify.scenes.results.run import MOST_POINTS
+from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import AUTO, steps_from
 
 _DIGITS = 17
+_MOST_RUNS = 100_000  # of a sweep
 
 
 def run(
     system: SystemLike,
     scheme: SchemeLike,
     *,
-    q: Given,
-    p: Given,
-    step_size: Exact,
+    q: NumberOrList,
+    p: NumberOrList,
+    step_size: Number,
     steps: int | None = None,
-    time: Exact | None = None,
-    t0: Exact = 0,
+    time: Number | None = None,
+    t0: Number = 0,
     parameters: ParametersLike = None,
     arithmetic: str | None = None,
     digits: int | None = None,
@@ -48,7 +60,7 @@ def run(
     system: a Hamiltonian, a system's name, or a formula such as "p**2/2 - cos(q)".
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10. In n
-        degrees of freedom q and p are lists.
+        degrees of freedom q and p are lists of n numbers. All numbers are without units.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
     t0: the time at the start, for an H that depends on t.
     parameters: exact values by name, beside those that the Hamiltonian has.
@@ -86,15 +98,15 @@ def run(
 
 
 def run_in_turn(
-    system: SystemLike, scheme: SchemeLike, *, q: Given, p: Given, step_size: Exact,
-    steps: int | None, time: Exact | None, t0: Exact = 0, parameters: ParametersLike,
+    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList, step_size: Number,
+    steps: int | None, time: Number | None, t0: Number = 0, parameters: ParametersLike,
     arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
     points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
     """Return the run as a course, which can be stepped together with others."""
-    exact = hamiltonian_from(system, parameters)
-    check_start(exact, q, p, t0)
-    name = scheme_name(scheme, exact)
+    hamiltonian = hamiltonian_from(system, parameters)
+    check_start(hamiltonian, q, p, t0)
+    name = scheme_name(scheme, hamiltonian)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
     digits = None if digits is None else whole("digits", digits, 1)
@@ -104,9 +116,9 @@ def run_in_turn(
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
     with progress_of(progress, f"{name[:30]}, steps", count) as report:
         request = RequestedRun(
-            exact, name, q=q, p=p, step_size=step_size, steps=count, t0=t0, arithmetic=arithmetic,
-            digits=digits or _DIGITS, observables=_observable_names(observables),
-            points=int(points),
+            hamiltonian, name, q=q, p=p, step_size=step_size, steps=count, t0=t0,
+            arithmetic=arithmetic, digits=digits or _DIGITS,
+            observables=_observable_names(observables), points=int(points),
         )  # fmt: skip
         result = yield from request.result(report)
     return RunResult.from_result(result).with_points(int(points))
@@ -116,3 +128,95 @@ def _observable_names(observables: Sequence[str] | None) -> tuple[str, ...] | No
     if observables is None:
         return None
     return tuple(observables) if is_list(observables) else (str(observables),)
+
+
+def sweep(
+    system: SystemLike,
+    scheme: SchemesLike,
+    *,
+    q: NumbersLike,
+    p: NumbersLike,
+    step_size: NumbersLike,
+    steps: int | None = None,
+    time: Number | None = None,
+    parameters: Mapping[str, NumbersLike] | None = None,
+    observables: Sequence[str] = CLOSED_FORM,
+    progress: Progress = None,
+    **options: Any,
+) -> Sweep:
+    """Run every combination of the arguments that are lists, and return a table of the values.
+
+    The arguments are those of `verify.run`, in one degree of freedom.
+
+    Parameters
+    ----------
+    scheme, step_size, q, p, each of the parameters: one, or a list, a range or an array with one
+        axis; all combinations of them are run, 100,000 at most.
+    steps, time: one of the two; `time` gives every step size its N = ⌊time / h⌋.
+    observables: as in `verify.run`; by default delta_j_max, mse and lambda.
+    progress: as in `verify.run`; it counts runs.
+    options: `arithmetic`, `digits` and `t0` of `verify.run`.
+
+    Returns a Sweep with a row for each run, the last axis fastest: `rows` as exact texts, `column`
+    as an array of float64, `to_dataframe` and `to_xarray`. A run that left its range has empty
+    values, and its `status` says so. Raises InputError, one line, as `verify.run` does.
+
+    >>> table = sweep("duffing", ["lie2", "rk4"], parameters={"delta": 1}, q=1.5, p=0,
+    ...               step_size=[0.1, 0.05], time=1)
+    >>> table
+    Sweep(4 runs: 2 scheme × 2 step_size × 1 q × 1 p × 1 delta; delta_j_max, mse, lambda)
+    >>> table.column("lambda").shape, table.column("step_size").tolist()
+    ((4,), [0.1, 0.05, 0.1, 0.05])
+    """
+    option_names = {"arithmetic", "digits", "t0"}
+    for name in set(options) - option_names:
+        raise InputError(
+            name, options[name], f"unknown; allowed: {', '.join(sorted(option_names))}"
+        )
+    values = _list_parameters(parameters)
+    # One value of each parameter is enough to parse H once; each run puts in its own values.
+    hamiltonian = hamiltonian_from(system, {name: x[0] for name, x in values.items()})
+    axes: dict[str, list[Any]] = {
+        "scheme": schemes_from(scheme, hamiltonian),
+        "step_size": [positive(x, "step_size") for x in as_list("step_size", step_size)],
+        "q": [rational(x, "q") for x in as_list("q", q)],
+        "p": [rational(x, "p") for x in as_list("p", p)],
+        **values,
+    }
+    combinations = list(product(*axes.values()))
+    if len(combinations) > _MOST_RUNS:
+        raise InputError("sweep", len(combinations), f"are more than {_MOST_RUNS} runs")
+
+    def start_run(point: Sequence[Any]) -> Course[RunResult]:
+        arguments = dict(zip(axes, point, strict=True))
+        parameter_values = {name: arguments.pop(name) for name in values}
+        return run_in_turn(hamiltonian, parameters=parameter_values, steps=steps, time=time,
+                           observables=observables, progress=False, **options,
+                           **arguments)  # fmt: skip
+
+    runs: dict[int, RunResult] = {}
+    with progress_of(progress, "runs", len(combinations)) as report:
+        # Runs of one kernel wait for each other and are stepped in the lanes of the vector unit;
+        # they end in any order, so the results are sorted by number below.
+        for number, outcome in run_together(map(start_run, combinations), MOST_AT_ONCE):
+            runs[number] = outcome.result()
+            if report:
+                report(len(runs))
+    columns = {name: tuple(map(_format_value, axis)) for name, axis in axes.items()}
+    return Sweep(columns, tuple(runs[k] for k in sorted(runs)), tuple(observables))
+
+
+def _list_parameters(parameters: Mapping[str, Any] | None) -> dict[str, list[Any]]:
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise InputError("parameters", parameters, "is not a mapping of names to values")
+    clashes = {"scheme", "step_size", "q", "p"} & set(parameters or {})
+    if clashes:
+        raise InputError("parameter", min(clashes), "is no parameter's name")
+    return {
+        name: [rational(x, f"parameter {name}") for x in as_list(f"parameter {name}", values)]
+        for name, values in (parameters or {}).items()
+    }
+
+
+def _format_value(x: Any) -> str:
+    return x if isinstance(x, str) else text(x)

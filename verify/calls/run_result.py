@@ -1,16 +1,16 @@
-"""The result of `verify.run`, which does the run again for more than its values."""
+"""Results of runs, and reports with such, which do a run again for more than its values."""
 
 from fractions import Fraction
 from functools import cached_property
 from typing import Self
 
-from verify.scenes.results import run as results
+from verify.scenes.results import report as report_models
+from verify.scenes.results import run as run_models
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.orbit import OrbitTable
-from verify.scenes.results.run import EnergyDrift
+from verify.scenes.results.run import EnergyDrift, OrbitTable
 
 
-class RunResult(results.RunResult):
+class RunResult(run_models.RunResult):
     """One run of N steps of a scheme, in one arithmetic, which can be done again.
 
     `values` holds q, p and the requested observables, each with its bound; `status` says how the
@@ -19,7 +19,7 @@ class RunResult(results.RunResult):
     """
 
     @classmethod
-    def from_result(cls, result: results.RunResult) -> Self:
+    def from_result(cls, result: run_models.RunResult) -> Self:
         """Return the result as one that can do its run again."""
         return cls.model_construct(result.model_fields_set, **dict(result))
 
@@ -27,26 +27,42 @@ class RunResult(results.RunResult):
     def orbit(self) -> OrbitTable:
         """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
 
-        Raises InputError where the run ended without values.
+        Raises InputError if the run ended without values.
         """
-        from verify.runs.orbit import orbit_of
+        from verify.runs.orbit_table import orbit_of
 
         return orbit_of(self, self._points)
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
         """Return (t, |z − φ_t(z₀)|) at so many states at most.
 
-        Raises InputError where no exact solution is known.
+        Raises InputError if no exact solution is known.
         """
-        from verify.runs.solution_error import solution_errors
+        from verify.runs.run_errors import solution_errors
 
         return solution_errors(self, points)
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
         """Return H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
 
-        Raises InputError where the scheme has no H̃ but H.
+        Raises InputError if the scheme has no H̃ but H.
         """
-        from verify.runs.energy_drift import energy_drifts
+        from verify.runs.run_errors import energy_drifts
 
         return energy_drifts(self, order, points)
+
+
+class RepeatableScene(report_models.SceneResult):
+    """A scene's results, whose runs can be done again."""
+
+    runs: tuple[RunResult, ...]
+    series: tuple[RunResult, ...]
+
+
+class Report(report_models.Report):
+    """A report and all its numbers, whose runs can be done again.
+
+    `verify.scenes.results.report.Report` describes all fields.
+    """
+
+    scenes: tuple[RepeatableScene, ...]

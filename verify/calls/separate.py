@@ -3,10 +3,12 @@
 They are parts of Λ or, where H has more degrees of freedom, of W.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any, overload
 
-from verify.arithmetic.exact import Exact, whole
+from verify.arithmetic.exact import Number, NumberOrList, whole
 from verify.calls.inputs import (
     ParametersLike,
     SchemeLike,
@@ -16,7 +18,7 @@ from verify.calls.inputs import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
-from verify.hamiltonians.start import Given, check_start
+from verify.hamiltonians.run_domain import check_start
 from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationGridInDegrees,
@@ -24,13 +26,13 @@ from verify.scenes.results.separation import (
     SeparationResult,
 )
 from verify.scenes.values import AUTO, steps_from
-from verify.studies.separation import separate as study
+from verify.studies.separation import truncation_and_rounding as study
 
 
 @overload
 def separate(
-    system: SystemLike, scheme: SchemeLike, *, q: Exact, p: Exact, step_size: Exact,
-    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    system: SystemLike, scheme: SchemeLike, *, q: Number, p: Number, step_size: Number,
+    steps: int | None = None, time: Number | None = None, t0: Number = 0,
     parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
 ) -> SeparationResult: ...  # fmt: skip
@@ -38,8 +40,8 @@ def separate(
 
 @overload
 def separate(
-    system: SystemLike, scheme: SchemeLike, *, q: Given, p: Given, step_size: Exact,
-    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList, step_size: Number,
+    steps: int | None = None, time: Number | None = None, t0: Number = 0,
     parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
 ) -> SeparationResult | SeparationInDegrees: ...  # fmt: skip
@@ -49,12 +51,12 @@ def separate(
     system: SystemLike,
     scheme: SchemeLike,
     *,
-    q: Given,
-    p: Given,
-    step_size: Exact,
+    q: NumberOrList,
+    p: NumberOrList,
+    step_size: Number,
     steps: int | None = None,
-    time: Exact | None = None,
-    t0: Exact = 0,
+    time: Number | None = None,
+    t0: Number = 0,
     parameters: ParametersLike = None,
     digits: int = 17,
     arithmetic: str = AUTO,
@@ -62,11 +64,18 @@ def separate(
 ) -> SeparationResult | SeparationInDegrees:
     """Split Λ of a float64 run from (q, p) into truncation and four kinds of rounding.
 
-    For an H in time there are five. In n degrees of freedom q and p are lists, and W = MᵀΩM − Ω,
-    M the product of the steps' Jacobians, is split entry by entry: a `SeparationInDegrees`.
+    For an H in time there are five. In n degrees of freedom q and p are lists of n numbers, and
+    W = MᵀΩM − Ω, M the product of the steps' Jacobians, is split entry by entry.
 
-    The arguments are those of `verify.run`; `digits`: requested significant digits of every part;
-    `arithmetic` stands for exact arithmetic, and is not float64. Raises InputError, one line.
+    Parameters
+    ----------
+    system, scheme, q, p, step_size, steps, time, t0, parameters, progress: as in `verify.run`.
+    digits: the requested significant digits of every part.
+    arithmetic: the number system that stands for exact arithmetic, which is not float64.
+
+    Returns a SeparationResult, or for lists q and p a SeparationInDegrees, with `plain` and
+    `closed_form`, two ways to evaluate Λ or W: the `parts` of each have bounds and add up to
+    float64's value. Both are None if the run left its range. Raises InputError, one line.
 
     >>> result = separate("pendulum", "lie2", q=1.5, p=0, step_size=0.1, steps=10)
     >>> result.plain.parts.truncation > result.plain.parts.total
@@ -82,8 +91,8 @@ def separate(
 
 @overload
 def separate_grid(
-    system: SystemLike, scheme: SchemeLike, *, q: Exact, p: Exact, step_sizes: Sequence[Exact],
-    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    system: SystemLike, scheme: SchemeLike, *, q: Number, p: Number, step_sizes: Sequence[Number],
+    steps: int | None = None, time: Number | None = None, t0: Number = 0,
     parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
 ) -> SeparationGrid: ...  # fmt: skip
@@ -91,9 +100,9 @@ def separate_grid(
 
 @overload
 def separate_grid(
-    system: SystemLike, scheme: SchemeLike, *, q: Given, p: Given, step_sizes: Sequence[Exact],
-    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
-    parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
+    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList,
+    step_sizes: Sequence[Number], steps: int | None = None, time: Number | None = None,
+    t0: Number = 0, parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
 ) -> SeparationGrid | SeparationGridInDegrees: ...  # fmt: skip
 
@@ -102,12 +111,12 @@ def separate_grid(
     system: SystemLike,
     scheme: SchemeLike,
     *,
-    q: Given,
-    p: Given,
-    step_sizes: Sequence[Exact],
+    q: NumberOrList,
+    p: NumberOrList,
+    step_sizes: Sequence[Number],
     steps: int | None = None,
-    time: Exact | None = None,
-    t0: Exact = 0,
+    time: Number | None = None,
+    t0: Number = 0,
     parameters: ParametersLike = None,
     digits: int = 17,
     arithmetic: str = AUTO,
@@ -115,16 +124,19 @@ def separate_grid(
 ) -> SeparationGrid | SeparationGridInDegrees:
     """Separate for several step sizes, and find the one below which rounding is the larger part.
 
-    N = `steps` steps, or N = ⌊time / h⌋ of each h. Raises InputError as `separate` does, and where
-    a step size is given twice.
+    The arguments are those of `verify.separate`, with a list of step sizes; N = `steps` steps, or
+    N = ⌊time / h⌋ of each h. Returns a SeparationGrid, or for lists q and p a
+    SeparationGridInDegrees: `points`, a separation for each step size in the order given, and
+    `plain` and `closed_form`, where the parts cross by either way. Raises InputError as `separate`
+    does, and if a step size is given twice.
     """
-    exact = hamiltonian_from(system, parameters)
-    name, sizes = scheme_name(scheme, exact), as_list("step_sizes", step_sizes)
+    hamiltonian = hamiltonian_from(system, parameters)
+    name, sizes = scheme_name(scheme, hamiltonian), as_list("step_sizes", step_sizes)
     steps = None if steps is None else whole("steps", steps, 1)
     # A separation takes several runs of N steps; the bar counts the steps of all of them.
     total = study.RUNS * sum(count for _, count in study.count_steps(sizes, steps, time))
     options: dict[str, Any] = {"q": q, "p": p, "step_sizes": sizes, "steps": steps, "time": time}
     with progress_of(progress, "separating, steps", total, adding=True) as report:
         options |= {"t0": t0, "digits": whole("digits", digits, 1), "arithmetic": arithmetic}
-        check_start(exact, q, p, t0)
-        return study.separate_grid(exact, name, **options, progress=report)
+        check_start(hamiltonian, q, p, t0)
+        return study.separate_grid(hamiltonian, name, **options, progress=report)

@@ -5,19 +5,18 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field
 
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.expressions.formula_text import to_text
-from verify.claims.claim import Claim
-from verify.claims.findings import Findings
-from verify.claims.formulas import condition_text, proof_of, step_map_of, witness_of
-from verify.claims.quantified import QuantifiedClaim
+from verify.claims.base_claim import Claim, Findings
+from verify.claims.formula_claims import condition_text, proof_of, step_map_of, witness_of
+from verify.claims.quantified_claims import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import describe_nearby
-from verify.proof.claimed import Convergence
-from verify.proof.every_proof import EveryProof
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
+from verify.proof.order_conditions import describe_nearby
+from verify.proof.order_for_one_h import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import describe_nearby_defect
+from verify.proof.proof_for_every_h import ProofForEveryH
+from verify.proof.proof_for_one_h import Convergence
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
@@ -31,12 +30,12 @@ _BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
 @dataclass(frozen=True)
 class ProvedOrder:
-    """A proved order in h: at least `least`, and not higher where `exact`.
+    """A proved order in h: at least `least`, and not higher if `exact`.
 
-    `vanishes`: True for the zero function, which has every order; None where that is undecided.
+    `vanishes`: True for the zero function, which has every order; None if that is undecided.
     `evidence` states the order in one line. `domain`: where the map is defined; `exact_for`: the
     parameters for which the order is not higher than `least`. `best_verdict`: the verdict on a
-    claimed order that agrees; ENCLOSED or MEASURED where the order is that of exact coefficients
+    claimed order that agrees; ENCLOSED or MEASURED if the order is that of exact coefficients
     near printed ones.
     """
 
@@ -44,11 +43,11 @@ class ProvedOrder:
     exact: bool
     vanishes: bool | None
     evidence: str
-    domain: Domain = EVERYWHERE
-    exact_for: Domain = EVERYWHERE
+    domain: FormulaDomain = EVERYWHERE
+    exact_for: FormulaDomain = EVERYWHERE
     best_verdict: Verdict = Verdict.PROVED
 
-    def holds_in(self, order: int, *, at_least: bool) -> Domain:
+    def holds_in(self, order: int, *, at_least: bool) -> FormulaDomain:
         """Return the domain of the verdict, which need not depend on the order being exact."""
         # The domain of a lower bound is that of the map; only exactness restricts the parameters.
         is_settled = self.vanishes or order < self.least or (at_least and order == self.least)
@@ -97,7 +96,7 @@ class OrderedClaim(QuantifiedClaim):
     form: ClassVar[Literal["S", "ΔJ"]] = "S"
 
     at_least: bool = False
-    """Whether a higher order is as claimed, too."""
+    """True if a higher order is as claimed, too."""
 
     @property
     def claimed_order(self) -> int:
@@ -107,7 +106,7 @@ class OrderedClaim(QuantifiedClaim):
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_proved(order_of(self, findings, self.form))
 
-    def judge_every(self, proof: EveryProof) -> ClaimResult:
+    def judge_every(self, proof: ProofForEveryH) -> ClaimResult:
         preserves, order = proof.area_preserving, proof.order
         proved_order = ProvedOrder(
             order or 0, order is not None, preserves, proof.reason, proof.domain
@@ -147,12 +146,12 @@ def _with_printed(
         return order
     # Rounded printed coefficients leave a tiny term at a low power of h. `near` is the order for
     # exact coefficients close to them, with their first condition that is wrong, if any.
-    exact = near.wrong is not None
+    is_exact = near.wrong is not None
     return replace(
         order,
         least=near.order + 1,
-        exact=exact,
-        vanishes=False if exact else None,
+        exact=is_exact,
+        vanishes=False if is_exact else None,
         evidence=prose(order.evidence, "; ", describe_nearby_defect(near, form)),
         best_verdict=near.verdict,
     )
@@ -162,15 +161,15 @@ def _order_in_degrees(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> P
     """Return the order of S, or of det J − 1, in several degrees of freedom."""
     proof = proof_of(hamiltonian, scheme)
     vanishes, order = proof.area_preserving, proof.volume_order
-    # S of several degrees can vanish only where det J − 1 does; the other way it may not.
+    # S of several degrees can vanish only if det J − 1 does; the other way it may not.
     if of_s:
         vanishes, order = proof.symplectic, proof.order
     if order is None:
         sentence = prose("det J ≡ 1" if vanishes else "the order of det J − 1 is not decided")
         evidence = proof.reason if of_s else sentence
         return ProvedOrder(_BEYOND if vanishes else 0, False, vanishes, evidence, proof.domain)
-    what, by_entry = ("S", f", by {proof.entry}") if of_s else ("det J − 1", "")
-    evidence = prose(f"{what} has order exactly ", Formula(f"h^{order}"), by_entry)
+    form, by_entry = ("S", f", by {proof.entry}") if of_s else ("det J − 1", "")
+    evidence = prose(f"{form} has order exactly ", Formula(f"h^{order}"), by_entry)
     return ProvedOrder(order, True, False, evidence, proof.domain)
 
 
@@ -209,12 +208,12 @@ def flow_agreement(claim: Claim, findings: Findings) -> ProvedOrder:
 
 
 def _flow_order(
-    convergence: Convergence, near: NearbyOrder | None, domain: Domain, highest: int = 0
+    convergence: Convergence, near: NearbyOrder | None, domain: FormulaDomain, highest: int = 0
 ) -> ProvedOrder:
     """Return the order of agreement with the exact flow, with its evidence.
 
     `highest`: the greatest power of h that was examined, or 0 if that is unknown; it is the proved
-    order where all examined powers agree.
+    order if all examined powers agree.
     """
     if convergence.order is None:
         orders = f"all orders looked at{f', {highest}' if highest else ''}"

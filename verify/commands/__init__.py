@@ -23,13 +23,13 @@ class Commands(Mapping[str, "click.Command"]):
     def __getitem__(self, name: str) -> "click.Command":
         from click import Command
 
-        from verify.commands.shared.as_typed import as_typed
+        from verify.commands.shared.command_group import with_typed_names
 
         if name not in self._loaded:
             command = getattr(_FILES.module(name), name.replace("-", "_"), None)
             if not isinstance(command, Command):  # a file that commands share
                 raise KeyError(name)
-            self._loaded[name] = as_typed(command)
+            self._loaded[name] = with_typed_names(command)
         return self._loaded[name]
 
     def __iter__(self) -> Iterator[str]:

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.cache import cache_option
 from verify.commands.shared.destinations import OUT_FILE
-from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
-from verify.commands.shared.output import plain_json
-from verify.commands.shared.tasks import cluster_option
+from verify.commands.shared.execution_options import cache_option, cluster_option, progress_bar
+from verify.commands.shared.output import CommandAnswer, answering, plain_json
+from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
 from verify.structures import AREA, SYMPLECTIC
 
@@ -46,7 +44,9 @@ _ERRORS = {
 @cluster_option
 @answering
 @cache_option
-def bench(scene: str | None, output: Path | None, cluster: str | None, **options: Any) -> Answer:
+def bench(
+    scene: str | None, output: Path | None, cluster: str | None, **options: Any
+) -> CommandAnswer:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 
     \b
@@ -57,7 +57,7 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **options
     if output is not None and output.suffix != ".svg":
         raise InputError("--output", str(output), "must end in .svg")
     scenes = scenes_of(scene, options, ("q", "p", "time"), _build_section)
-    selected = [each for each in scenes if each.work_precision]
+    selected = [scene_of_work for scene_of_work in scenes if scene_of_work.work_precision]
     if not selected:
         raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]; add one")
     results = list(
@@ -68,21 +68,20 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **options
             # A single figure has the typed name; of several each has the name of its scene, too.
             several = len(results) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
-    return Answer(lambda: _bench_json(results), lambda: _print(results))
+    return CommandAnswer(lambda: _bench_json(results), lambda: _print(results))
 
 
 def _build_section(
-    *, q: Any, p: Any, step_sizes: Sequence[str], peers: bool = False, **rest: Any
+    *, q: Any, p: Any, step_sizes: Sequence[str], peers: bool = False, **keys_of_section: Any
 ) -> dict[str, Any]:
     # The order is the slope of a line through the points of at least two step sizes.
     if len(step_sizes) < 2:
         raise InputError("step_sizes", step_sizes[0], "is one; an order takes two at least")
     keys = {"initial_value": {"q": q, "p": p}, "peers": peers, "step_sizes": step_sizes}
-    return {"work_precision": {**keys, **rest}}
+    return {"work_precision": {**keys, **keys_of_section}}
 
 
 def _measure(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
-    from verify.commands.shared.progress import progress_bar
     from verify.studies.kinds.work_precision import work_precision_task
     from verify.studies.work_precision import peers
 
@@ -104,11 +103,11 @@ def _measure_on_cluster(
     from verify.studies.kinds.work_precision import work_precision_task
 
     calls = [
-        FunctionCall(each.name, compute_task, (work_precision_task(each),), f"scene {each.name}")
-        for each in scenes
+        FunctionCall(scene.name, compute_task, (work_precision_task(scene),), f"scene {scene.name}")
+        for scene in scenes
     ]
-    with open_place(Placement(cluster=cluster)) as place:
-        yield from results_of(place, calls, one_by_one=True)
+    with open_place(Placement(cluster=cluster)) as executor:
+        yield from results_of(executor, calls, one_by_one=True)
 
 
 def _draw(result: "WorkPrecisionResult", path: Path) -> None:
@@ -144,9 +143,9 @@ def _point_json(point: "WorkPoint") -> dict[str, Any]:
         "lambda_plain": point.lam_plain,
         "symplectic_defect": point.symplectic_defect,
     }
-    rest = point.model_dump(mode="json", exclude={"energy", "lam", "lam_plain", *values})
+    other_fields = point.model_dump(mode="json", exclude={"energy", "lam", "lam_plain", *values})
     return {
-        **rest,
+        **other_fields,
         **{name: value.value if value else None for name, value in values.items()},
         "error_bound": {name: value.bound for name, value in values.items() if value},
     }
@@ -177,10 +176,10 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
         console.print(f"{arithmetic}: {outcome} in {_format_seconds(system.seconds_median)} s")
     if result.rounded_down:
         console.print(result.rounded_down)
-    for each in result.comparisons:
-        console.print(each.sentence)
-    for what, why in result.left_out:
-        console.print(f"not drawn: {what} ({why})")
+    for comparison in result.comparisons:
+        console.print(comparison.sentence)
+    for item, reason in result.left_out:
+        console.print(f"not drawn: {item} ({reason})")
     console.print(
         f"{result.clock} on {result.machine}, {result.repeats} rounds; reference: "
         f"{result.reference}, to within {result.reference_bound}; {result.seconds:.3g} s in all"
@@ -227,8 +226,8 @@ def _describe_line(line: "WorkLine", area: str) -> str:
     slopes = []
     for quantity, slope in (("error", line.error_slope), (area, line.lambda_slope)):
         slope_text = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
-        why = f" ({slope.reason})" if slope.reason else ""
-        slopes.append(f"order of {quantity} {slope_text}{why}")
+        reason_note = f" ({slope.reason})" if slope.reason else ""
+        slopes.append(f"order of {quantity} {slope_text}{reason_note}")
     operations = f"; a step is {line.cost.text}" if line.cost else ""
     return f"{line.name}: {'; '.join(slopes)}{operations}; compiled in {line.compile_seconds:.2g} s"
 

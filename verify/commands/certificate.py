@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.command_group import CommandGroup
 from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER
-from verify.commands.shared.group import Group
 from verify.commands.shared.input import PATH
+from verify.commands.shared.output import CommandAnswer, answering
 
 if TYPE_CHECKING:
-    from verify.proof.certificates.established import EstablishedStatement
+    from verify.proof.certificates.established_statement import EstablishedStatement
 
 _LONGEST = 400  # characters of a formula on a terminal
 
 
-@click.group(cls=Group)
+@click.group(cls=CommandGroup)
 def certificate() -> None:
     """Certificates of proofs: `verify prove … --certificate FILE` writes one."""
 
@@ -25,15 +25,17 @@ def certificate() -> None:
 @certificate.command()
 @click.argument("file", type=PATH, metavar="FILE")
 @answering
-def check(file: Path) -> Answer:
+def check(file: Path) -> CommandAnswer:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
-    from verify.proof.certificates.file import check_file
+    from verify.proof.certificates.certificate_file import check_file
 
     outcome = check_file(file)
     if isinstance(outcome, str):
         refusal = {"accepted": False, "reason": outcome}
-        return Answer(lambda: refusal, lambda: click.echo(f"refused: {outcome}"), failed=True)
-    return Answer(lambda: {"accepted": True, **asdict(outcome)}, lambda: _print(outcome))
+        return CommandAnswer(
+            lambda: refusal, lambda: click.echo(f"refused: {outcome}"), failed=True
+        )
+    return CommandAnswer(lambda: {"accepted": True, **asdict(outcome)}, lambda: _print(outcome))
 
 
 def _check_opens(context: click.Context, parameter: click.Parameter, file: Path) -> Path:
@@ -53,7 +55,7 @@ def _check_opens(context: click.Context, parameter: click.Parameter, file: Path)
     help="Import the theory, which `verify certificate theory` installs, in place of holding it.",
 )
 @answering
-def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
+def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:
     """Write what FILE certifies as a proof for Rocq, which `coqc OUT.v` accepts.
 
     It stands alone: it begins with the theory that it needs.
@@ -62,7 +64,7 @@ def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
     verify certificate export lie2.json --coq lie2.v
     """
     from verify.files import write_atomically
-    from verify.proof.assistant.export import check_file_name, export_certificate
+    from verify.proof.assistant.certificate_export import check_file_name, export_certificate
 
     check_file_name(coq)
     proof_file = export_certificate(file, stands_alone=not beside_theory)
@@ -80,15 +82,15 @@ def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
         how = "coqc -Q THEORY AreaPreservation" if beside_theory else "coqc"
         click.echo(f"  check  {how} {coq}")
 
-    return Answer(lambda: data, show)
+    return CommandAnswer(lambda: data, show)
 
 
 @certificate.command()
 @click.argument("folder", type=OUT_FOLDER, metavar="FOLDER")
 @answering
-def theory(folder: Path) -> Answer:
+def theory(folder: Path) -> CommandAnswer:
     """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""
-    from verify.proof.assistant.shipped import LOGICAL, install
+    from verify.proof.assistant.shipped_theory import LOGICAL, install
 
     files = install(folder)
     data = {"written": [str(path) for path in files], "logical_name": LOGICAL}
@@ -97,7 +99,7 @@ def theory(folder: Path) -> Answer:
         click.echo(f"{folder}: {len(files)} files, of the logical name {LOGICAL}")
         click.echo(f"  compile  cd {folder} && coq_makefile -f _CoqProject -o Makefile && make")
 
-    return Answer(lambda: data, show)
+    return CommandAnswer(lambda: data, show)
 
 
 def _print(facts: "EstablishedStatement") -> None:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.hunt import STEPS, hunt
-from verify.commands.shared.answer import Answer
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable_later
+from verify.commands.shared.execution_options import kept_tasks, with_tasks
 from verify.commands.shared.input import FILE, SCHEME
-from verify.commands.shared.tasks import kept_tasks, with_tasks
+from verify.commands.shared.output import CommandAnswer
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.exploration.explore import Exploration
+    from verify.exploration.exploring import Exploration
     from verify.scenes.results.exploration import ExploreReport
 
 _SEEDS = 2**32
@@ -83,8 +83,8 @@ def explore(
     steps: int | None,
     output: Path,
     keep: Path | None,
-    where: "Placement",
-) -> Answer:
+    placement: "Placement",
+) -> CommandAnswer:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
 
     A scene is a Hamiltonian, a scheme, a step size, an initial value and some steps. Scene K of
@@ -106,7 +106,7 @@ def explore(
     """
     import random
 
-    from verify.exploration.explore import Exploration
+    from verify.exploration.exploring import Exploration
     from verify.exploration.sample_space import SampleSpace
 
     # The seed is printed, so that a run without --seed can be repeated.
@@ -125,11 +125,11 @@ def explore(
                 "--maximise", maximise, "takes no CLAIMS and no --property; leave them out"
             )
         steps = STEPS if steps is None else steps
-        return hunt(maximise, seed, examples, steps, sample_space, output, keep, where)
+        return hunt(maximise, seed, examples, steps, sample_space, output, keep, placement)
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
     exploration = Exploration(seed=seed, examples=examples, **looks, drawn=sample_space)
-    return _explore(exploration, left_out, output, keep, where)
+    return _explore(exploration, left_out, output, keep, placement)
 
 
 def _explore(
@@ -137,24 +137,24 @@ def _explore(
     left_out: Mapping[str, Sequence[str]],
     output: Path,
     keep: Path | None,
-    where: "Placement",
-) -> Answer:
+    placement: "Placement",
+) -> CommandAnswer:
     """Explore, write the scenes that fail, and return the answer."""
-    from verify.exploration.explore import explore, load_failures, save_failures
+    from verify.exploration.exploring import explore, load_failures, save_failures
 
     ensure_writable_later(output)
     earlier = load_failures(output) if output.is_dir() else []
     with kept_tasks(exploration.plan.tasks, keep) as (store, on_result):
-        report = explore(exploration, store, where=where, done=on_result, earlier=earlier)
+        report = explore(exploration, store, where=placement, done=on_result, earlier=earlier)
     problem, paths = None, [""] * len(report.failures)
     try:
         paths = [str(path) for path in save_failures(report, output)]
     except OSError as error:  # the findings are printed all the same, and the exit status says so
         problem = InputError("--output", str(output), error.strerror or "cannot be written to")
-    return Answer(
+    return CommandAnswer(
         lambda: _as_json(report, paths, left_out),
         lambda: _print(report, paths, left_out),
-        failed=bool(report.failures) or any(each.message for each in report.again),
+        failed=bool(report.failures) or any(look.message for look in report.again),
         problem=problem,
     )
 
@@ -162,13 +162,13 @@ def _explore(
 def _select_checks(
     claims: str | None, names: Sequence[str]
 ) -> tuple[dict[str, Any], dict[str, list[str]]]:
-    """Return the requested properties and claims: all properties where nothing is named.
+    """Return the requested properties and claims: all properties if nothing is named.
 
     Also the claims that hold of one scene only and are left out, by the reason.
     """
-    from verify.claims.file import load_claims
+    from verify.claims.claims_file import load_claims
     from verify.exploration import properties
-    from verify.exploration.claims import claim_texts, claims_left_out
+    from verify.exploration.claim_properties import claim_texts, claims_left_out
 
     for name in names:
         # Raises InputError for an unknown name, before anything is drawn.
@@ -186,8 +186,8 @@ def _select_checks(
 
 
 def _schemes_of_claims(looks: dict[str, Any]) -> tuple[str, ...]:
-    """Return the claims' schemes where no property is requested; else none, which means any."""
-    from verify.exploration.claims import scheme_of
+    """Return the claims' schemes if no property is requested; else none, which means any."""
+    from verify.exploration.claim_properties import scheme_of
 
     if looks.get("properties") or not looks.get("claims"):
         return ()
@@ -200,27 +200,32 @@ def _as_json(
     data = report.model_dump(mode="json")
     for failure, path in zip(data["failures"], paths, strict=True):
         failure["file"] = path
-    without = [{"claim": name, "reason": why} for why, names in left_out.items() for name in names]
+    without = [
+        {"claim": name, "reason": reason} for reason, names in left_out.items() for name in names
+    ]
     return data | {"left_out": without}
 
 
 def _print(
     report: "ExploreReport", paths: Sequence[str], left_out: Mapping[str, Sequence[str]]
 ) -> None:
-    width = max(len(each.name) for each in report.properties)
-    for each in report.properties:
-        verdict = f"FAILS for {each.failures:,}" if each.failures else "holds"
-        summary = f"{verdict} of {each.looked_at:,}" if each.looked_at else "speaks of none of them"
-        click.echo(f"{each.name:{width}}  {summary}")
-    for why, names in left_out.items():
-        click.echo(f"left out, as {why}: {', '.join(names)}")
-    for again in report.again:
-        now = f"still fails: {again.message}" if again.message else "holds now"
-        click.echo(f"{again.file}: {again.property} {now}")
+    width = max(len(checked_property.name) for checked_property in report.properties)
+    for checked_property in report.properties:
+        verdict = (
+            f"FAILS for {checked_property.failures:,}" if checked_property.failures else "holds"
+        )
+        count = checked_property.looked_at
+        summary = f"{verdict} of {count:,}" if count else "speaks of none of them"
+        click.echo(f"{checked_property.name:{width}}  {summary}")
+    for reason, names in left_out.items():
+        click.echo(f"left out, as {reason}: {', '.join(names)}")
+    for old_failure in report.again:
+        outcome = f"still fails: {old_failure.message}" if old_failure.message else "holds now"
+        click.echo(f"{old_failure.file}: {old_failure.property} {outcome}")
     for failure, path in zip(report.failures, paths, strict=True):
         click.echo(f"\n{failure.property} fails at example {failure.example}, shrunk:")
         click.echo("".join(f"  {line}\n" for line in failure.scene.splitlines()), nl=False)
         click.echo(f"  → {path}, which `verify report` takes" if path else "  → not written")
-    failing = sum(1 for each in report.properties if each.failures)
+    failing = sum(1 for checked_property in report.properties if checked_property.failures)
     summary = f"{report.examples:,} scenes of seed {report.seed}"
     click.echo(f"{summary}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")

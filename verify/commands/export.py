@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import scheme_option, with_hamiltonian
+from verify.commands.shared.output import CommandAnswer, answering
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 )
 @click.option("-o", "--output", type=OUT_FILE, metavar="FILE", help="Write it there instead.")
 def export(
-    exact: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
-) -> Answer:
+    hamiltonian: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
+) -> CommandAnswer:
     """Write a step map, its Jacobian and ΔJ as C, Python, Julia or LaTeX.
 
     A parameter without a value becomes an argument, and so does t where H depends on it. Constants
@@ -46,7 +46,7 @@ def export(
     from verify.files import write_atomically
     from verify.schemes.export import get
 
-    step_program = build_program(exact, scheme, language, name=name)
+    step_program = build_program(hamiltonian, scheme, language, name=name)
     text = get(language).render(step_program)
     if output is not None:
         write_atomically(output, text)
@@ -55,7 +55,7 @@ def export(
         return {
             "language": language.lower(),
             "scheme": step_program.scheme,
-            **exact.texts,
+            **hamiltonian.texts,
             "arguments": list(step_program.arguments),
             "area_preserving": step_program.area_preserving,
             "constants": [asdict(c) for c in step_program.constants],
@@ -63,4 +63,4 @@ def export(
         }
 
     output_text = str(output) if output is not None else text.removesuffix("\n")
-    return Answer(data, lambda: click.echo(output_text))
+    return CommandAnswer(data, lambda: click.echo(output_text))

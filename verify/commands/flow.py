@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.arithmetic.exact import short
-from verify.commands.shared.answer import Answer
-from verify.commands.shared.one_line import scenes_of, with_one_line
-from verify.commands.shared.output import print_once
-from verify.commands.shared.tasks import perform, with_tasks
+from verify.commands.shared.execution_options import perform, with_tasks
+from verify.commands.shared.output import CommandAnswer, print_once
+from verify.commands.shared.scene_options import scenes_of, with_one_line
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -38,7 +37,9 @@ if TYPE_CHECKING:
     click.option("--scale", metavar="S", help="How many times as large.  [default: 1]"),
 )
 @with_tasks
-def flow(scene: str | None, keep: Path | None, where: "Placement", **options: Any) -> Answer:
+def flow(
+    scene: str | None, keep: Path | None, placement: "Placement", **options: Any
+) -> CommandAnswer:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
@@ -55,7 +56,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **options: An
     step_size = 0.01
     steps = [5000, 20000]             # or times = [1, 2, 3]
     """
-    from verify.execution.study import plan_of
+    from verify.execution.plan import plan_of
     from verify.scenes.values import describe_rounding
     from verify.studies.kinds.regions import flow_json, flows_of, need_flows
 
@@ -63,9 +64,13 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **options: An
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
         raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
-    results = perform(plan, keep, where)
-    flows = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
-    sections = [section for each in scenes for section in each.flow]
+    results = perform(plan, keep, placement)
+    flows = [
+        (region_scene.name, flow)
+        for region_scene in scenes
+        for flow in flows_of(region_scene, results)
+    ]
+    sections = [section for region_scene in scenes for section in region_scene.flow]
     notes = [
         describe_rounding(t, [section.step_size]) for section in sections for t in section.times
     ]
@@ -75,7 +80,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **options: An
             _print_flow(name, result)
         print_once(notes)
 
-    return Answer(
+    return CommandAnswer(
         lambda: flow_json(flows),
         show,
         failed=any(image.problem for _, flow in flows for image in flow.images),
@@ -88,13 +93,13 @@ def _build_sections(
     q: "str | list[str] | None" = None,
     p: "str | list[str] | None" = None,
     shape: str = "circle",
-    **rest: Any,
+    **section_keys: Any,
 ) -> dict[str, Any]:
     """Return one [[flow]] section for each step size."""
     if q or p:  # of one that is left out there are as many zeros as of the other
-        rest["centre"] = {"q": q or _zeros(p), "p": p or _zeros(q)}
-    rest["shape"] = shape
-    return {"flow": [{"step_size": h, **rest} for h in step_sizes]}
+        section_keys["centre"] = {"q": q or _zeros(p), "p": p or _zeros(q)}
+    section_keys["shape"] = shape
+    return {"flow": [{"step_size": h, **section_keys} for h in step_sizes]}
 
 
 def _zeros(like: "str | list[str] | None") -> str | list[str]:
@@ -105,10 +110,12 @@ def _print_flow(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
     i = result.plane or ""
-    where = f"{result.shape} at (q{i}, p{i}) = ({q}, {p}), scale {short(Fraction(result.scale))}"
-    where += "".join(f", {n} = {x}" for n, x in result.point.items() if n[1:] != str(i))
+    region_text = (
+        f"{result.shape} at (q{i}, p{i}) = ({q}, {p}), scale {short(Fraction(result.scale))}"
+    )
+    region_text += "".join(f", {n} = {x}" for n, x in result.point.items() if n[1:] != str(i))
     begins = "" if result.t0 is None else f", from t0 = {result.t0}"
-    click.echo(f"{title}{where}, h = {result.step_size}{begins}")
+    click.echo(f"{title}{region_text}, h = {result.step_size}{begins}")
     rows = [_HEAD_IN_DEGREES if i else _HEAD, *map(_format_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, image in zip(rows, (None, *result.images), strict=True):

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared import output as show
-from verify.commands.shared.answer import Answer
 from verify.commands.shared.destinations import check_ours, ensure_writable
-from verify.commands.shared.tasks import kept_tasks
+from verify.commands.shared.execution_options import kept_tasks
+from verify.commands.shared.output import CommandAnswer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,54 +34,53 @@ def hunt(
     sample_space: "SampleSpace",
     output: Path,
     keep: Path | None,
-    where: "Placement",
-) -> Answer:
+    placement: "Placement",
+) -> CommandAnswer:
     """Hunt, write the worst scenes and the page that shows them, and return the answer."""
-    from verify.claims.report import gallery_report
-    from verify.exploration.gallery import gallery
-    from verify.exploration.hunting import Hunt, hunt
+    from verify.claims.verdicts import gallery_report
+    from verify.exploration.hunting import Hunt, gallery, hunt
     from verify.pages.page import write
 
     request = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=sample_space)
     # The folder is checked before hours of work, and must not hold somebody's files.
     check_ours(output, _OUR_FILES)
     ensure_writable(output)
-    begun, tasks = time.perf_counter(), request.plan.tasks
+    start_time, tasks = time.perf_counter(), request.plan.tasks
     with kept_tasks(tasks, keep) as (store, on_result):
-        result = hunt(request, store, where=where, done=on_result)
+        result = hunt(request, store, where=placement, done=on_result)
     if sample_space.degrees > 1:
-        return _answer_in_degrees(request, result, store, output, where)
-    worst_gallery = gallery(request, result, store, where=where)
-    _write_scenes([each.scene for each in worst_gallery.scenes], output)
+        return _answer_in_degrees(request, result, store, output, placement)
+    worst_gallery = gallery(request, result, store, where=placement)
+    _write_scenes([scene.scene for scene in worst_gallery.scenes], output)
     report = gallery_report(
-        worst_gallery, _format_command(request), begun, store.taken, len(tasks), where
+        worst_gallery, _format_command(request), start_time, store.taken, len(tasks), placement
     )
     page = write(report, output)
     summary = {"examples": worst_gallery.examples, "failures": [], "seed": seed}
-    return Answer(
+    return CommandAnswer(
         lambda: summary | {"gallery": show.plain_json(worst_gallery)},
         lambda: _print(worst_gallery, output, page),
     )
 
 
 def _answer_in_degrees(
-    request: "Hunt", result: "HuntResult", store: "Store", output: Path, where: "Placement"
-) -> Answer:
+    request: "Hunt", result: "HuntResult", store: "Store", output: Path, placement: "Placement"
+) -> CommandAnswer:
     """Return the answer in n degrees of freedom, where the page is a report of the scenes."""
     from verify.arithmetic.exact import text
-    from verify.claims.report import make_report
-    from verify.exploration.different_scenes import scene_of
+    from verify.claims.verdicts import make_report
+    from verify.exploration.island_search import scene_of
     from verify.exploration.measures import MEASURES
     from verify.pages.page import write
-    from verify.scenes.toml_text import scene_text
+    from verify.scenes.scene import scene_text
 
     sentence = MEASURES[request.measure].describe(request.drawn.degrees)
     scenes = [
-        scene_of(each).model_copy(
+        scene_of(found_scene).model_copy(
             # Measures are decimal logarithms, so that factors are compared.
-            update={"name": f"worst-{place}", "title": f"10^{each.value:.2f}, {sentence}"}
+            update={"name": f"worst-{rank}", "title": f"10^{found_scene.value:.2f}, {sentence}"}
         )
-        for place, each in enumerate(result.worst, start=1)
+        for rank, found_scene in enumerate(result.worst, start=1)
     ]
     texts = list(map(scene_text, scenes))
     _write_scenes(texts, output)
@@ -91,29 +90,29 @@ def _answer_in_degrees(
         [],
         store,
         command=_format_command(request),
-        where=where,
+        where=placement,
     )
     page = write(report, output)
     summary = {"examples": result.examples, "failures": [], "seed": request.seed}
     pairs = zip(result.worst, texts, strict=True)
-    worst = [{"value": f"{each.value}", "scene": toml} for each, toml in pairs]
+    worst = [{"value": f"{sample.value}", "scene": toml} for sample, toml in pairs]
     details = {"measure": request.measure, "sentence": sentence, "worst": worst}
 
     def print_scenes() -> None:
-        for place, (each, scene) in enumerate(zip(result.worst, scenes, strict=True), start=1):
-            click.echo(f"{place}. 10^{each.value:.2f}  H = {scene.hamiltonian}")
+        for rank, (sample, scene) in enumerate(zip(result.worst, scenes, strict=True), start=1):
+            click.echo(f"{rank}. 10^{sample.value:.2f}  H = {scene.hamiltonian}")
             assert scene.grid is not None  # noqa: S101 - as drawn
             start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
             q, p = (", ".join(map(text, x)) for x in (start.q, start.p) if isinstance(x, tuple))
             click.echo(
                 f"   {scene.schemes[0]}, h = {text(h)}, q = ({q}), p = ({p}); "
-                f"{output / f'worst-{place}.toml'}"
+                f"{output / f'worst-{rank}.toml'}"
             )
         if not scenes:
             click.echo("no scene that was drawn can be measured so")
         click.echo(f"{result.examples:,} scenes of seed {request.seed}, by {sentence} → {page}")
 
-    return Answer(lambda: summary | details, print_scenes)
+    return CommandAnswer(lambda: summary | details, print_scenes)
 
 
 def _format_command(request: "Hunt") -> str:
@@ -136,8 +135,8 @@ def _write_scenes(texts: "Sequence[str]", output: Path) -> None:
     """Write worst-1.toml and so on, and delete those of an earlier hunt that had more."""
     from verify.files import write_atomically
 
-    for place, text in enumerate(texts, start=1):
-        write_atomically(output / f"worst-{place}.toml", text)
+    for rank, text in enumerate(texts, start=1):
+        write_atomically(output / f"worst-{rank}.toml", text)
     for file in output.glob("worst-*.toml"):
         match = _OUR_FILES.fullmatch(file.name)
         if match and match[1] and int(match[1]) > len(texts):
@@ -145,13 +144,13 @@ def _write_scenes(texts: "Sequence[str]", output: Path) -> None:
 
 
 def _print(gallery: "Gallery", output: Path, page: Path) -> None:
-    for place, each in enumerate(gallery.scenes, start=1):
-        separation = each.separation
-        click.echo(f"{place}. 10^{each.value:.2f}  H = {separation.hamiltonian}")
+    for rank, scene in enumerate(gallery.scenes, start=1):
+        separation = scene.separation
+        click.echo(f"{rank}. 10^{scene.value:.2f}  H = {separation.hamiltonian}")
         start = f"h = {separation.step_size}, q = {separation.q}, p = {separation.p}"
         start += f", t0 = {separation.t0}" if separation.t0 != "0" else ""
-        file = output / f"worst-{place}.toml"
-        click.echo(f"   {separation.scheme}, {start}: {_describe_loss(each)}; {file}")
+        file = output / f"worst-{rank}.toml"
+        click.echo(f"   {separation.scheme}, {start}: {_describe_loss(scene)}; {file}")
     if not gallery.scenes:
         click.echo("no scene that was drawn can be measured so")
     click.echo(
@@ -159,9 +158,9 @@ def _print(gallery: "Gallery", output: Path, page: Path) -> None:
     )
 
 
-def _describe_loss(each: "GalleryScene") -> str:
-    separation, after = each.separation, each.meaningless_after
-    longer = each.longer
+def _describe_loss(scene: "GalleryScene") -> str:
+    separation, after = scene.separation, scene.meaningless_after
+    longer = scene.longer
     longer_text = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
     if separation.plain is None:
         return f"over {separation.steps:,} steps it is {separation.status}"
@@ -171,5 +170,5 @@ def _describe_loss(each: "GalleryScene") -> str:
         )
     if after is None:
         return f"over {separation.steps:,} steps truncation is the larger part of Λ{longer_text}"
-    until = f" until {each.meaningful_from:,}" if each.meaningful_from else ""
+    until = f" until {scene.meaningful_from:,}" if scene.meaningful_from else ""
     return f"Λ of float64 is meaningless after {after:,} steps{until}{longer_text}"

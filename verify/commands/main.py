@@ -28,7 +28,7 @@ import click
 
 from verify.arithmetic.compiled import paths
 from verify.commands import Commands
-from verify.commands.shared.group import Group
+from verify.commands.shared.command_group import CommandGroup
 from verify.errors import CONTROL, InputError, PlaceError
 
 TERMINATED = 143
@@ -102,9 +102,9 @@ def _resend_lost_signals() -> Iterator[None]:
 def _send_again(number: int) -> None:
     main = threading.main_thread().ident
     # Python runs signal handlers in the main thread only, so the signal goes there.
-    again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (main, number))
-    again.daemon = True
-    again.start()
+    timer = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (main, number))
+    timer.daemon = True
+    timer.start()
 
 
 def _is_importing(frame: FrameType | None) -> bool:
@@ -161,7 +161,7 @@ class Printable(io.TextIOBase):
 def printable_streams() -> Iterator[None]:
     """Make both streams printable while the command runs; a closed output stays None.
 
-    Where standard input or error is closed, nothing is read, and what is written is dropped.
+    If standard input or error is closed, nothing is read, and what is written is dropped.
     """
     # Descriptors first, then the objects: either may be closed without the other.
     before = sys.stdin, sys.stdout, sys.stderr
@@ -191,7 +191,7 @@ BAD_INPUT = 2
 
 
 @click.group(
-    cls=Group,
+    cls=CommandGroup,
     invoke_without_command=True,
     context_settings={
         "help_option_names": ["-h", "--help"],
@@ -265,7 +265,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _exit_unread() -> None:
-    """Exit where the reader of the output, such as head, has closed it."""
+    """Exit after the reader of the output, such as head, has closed it."""
     _write_nowhere()
     sys.exit(UNREAD)
 

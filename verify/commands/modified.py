@@ -5,18 +5,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared import proof_output as show
 from verify.commands.shared.input import (
     every_options,
     hamiltonian_options,
     one_or_every,
     scheme_option,
 )
-from verify.commands.shared.output import cut
+from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 
 if TYPE_CHECKING:
-    from verify.proof.plane.modified.equation import ModifiedEquation, Term
+    from verify.proof.plane.modified_equation import ModifiedEquation, Term
 
 
 @click.command()
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 @every_options
 def modified(
     scheme: str, order: int, every_hamiltonian: bool, separable: bool, **options: Any
-) -> Answer:
+) -> CommandAnswer:
     """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
 
     The map is the exact flow of a modified field, as a series in h. Where a term is Hamiltonian it
@@ -44,13 +43,13 @@ def modified(
     verify modified --system pendulum --scheme stormer-verlet
     verify modified --every-hamiltonian --scheme implicit-midpoint --order 2
     """
-    from verify.calls.modified import modified_hamiltonian
+    from verify.calls.prove import modified_hamiltonian
 
-    begun = time.perf_counter()
-    exact = one_or_every(every_hamiltonian, options, separable=separable)
-    equation = modified_hamiltonian(scheme, exact, order, separable=separable)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    return Answer(
+    start_time = time.perf_counter()
+    hamiltonian = one_or_every(every_hamiltonian, options, separable=separable)
+    equation = modified_hamiltonian(scheme, hamiltonian, order, separable=separable)
+    seconds = f"{time.perf_counter() - start_time:.6f}"
+    return CommandAnswer(
         lambda: _json(equation, seconds),
         lambda: _print(equation),
         failed=equation.verdict == "REFUTED",

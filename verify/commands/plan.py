@@ -5,8 +5,8 @@ from typing import Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.input import SCENE, load_target
+from verify.commands.shared.output import CommandAnswer, answering
 from verify.prose import count
 
 Task = Mapping[str, Any]  # as JSON has it
@@ -15,17 +15,17 @@ Task = Mapping[str, Any]  # as JSON has it
 @click.command()
 @click.argument("scene", type=SCENE, metavar="SCENE")
 @answering
-def plan(scene: str) -> Answer:
+def plan(scene: str) -> CommandAnswer:
     """Show what SCENE needs computed, what is left out, and why.
 
     SCENE is a TOML file, `paper`, `stiff` or `extreme`. The processor time is estimated by what
     such tasks cost, within a factor of four or so; workers share it.
     """
-    from verify.studies.plan import plan_scenes
+    from verify.studies.tasks_of_scenes import plan_scenes
 
     _, scenes, _ = load_target(scene)
     planned = plan_scenes(scenes).as_json()
-    return Answer(lambda: planned, lambda: _print(planned))
+    return CommandAnswer(lambda: planned, lambda: _print(planned))
 
 
 def _print(planned: dict[str, Any]) -> None:
@@ -46,7 +46,7 @@ def _format_seconds(seconds: float) -> str:
     """
     if seconds < 1:
         return "less than 1 s of processor time"
-    _, size, unit = next(each for each in _UNITS if seconds >= each[0])
+    _, size, unit = next(entry for entry in _UNITS if seconds >= entry[0])
     number = f"{seconds / size:.0f}" if unit == "s" else f"{seconds / size:.1f}"
     return f"about {number} {unit} of processor time"
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared import proof_output as show
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import (
     every_options,
@@ -16,15 +15,15 @@ from verify.commands.shared.input import (
     one_or_every,
     scheme_option,
 )
-from verify.commands.shared.output import cut, print_line
+from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.proof.every_proof import EveryProof
-    from verify.proof.proof import Proof
+    from verify.proof.proof_for_every_h import ProofForEveryH
+    from verify.proof.proof_for_one_h import Proof
     from verify.proof.special_values import SpecialValue
     from verify.schemes.scheme import Scheme
 
@@ -60,7 +59,7 @@ def prove(
     degrees: int | None,
     certificate: Path | None,
     **options: Any,
-) -> Answer:
+) -> CommandAnswer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
     A parameter without a value stays a symbol, and the proof holds for all its values but those
@@ -75,50 +74,58 @@ def prove(
     verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
-    only = {"separable": separable, "time_dependent": time_dependent, "degrees": degrees}
-    exact = one_or_every(every_hamiltonian, options, **only)
-    if exact is not None:
-        return _prove_one(exact, scheme, certificate)
+    options_of_every = {
+        "separable": separable,
+        "time_dependent": time_dependent,
+        "degrees": degrees,
+    }
+    hamiltonian = one_or_every(every_hamiltonian, options, **options_of_every)
+    if hamiltonian is not None:
+        return _prove_one(hamiltonian, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
 
 
 def _prove_every(
     scheme: str, separable: bool, timed: bool, degrees: int | None, certificate: Path | None
-) -> Answer:
-    from verify.proof.every import prove_every
+) -> CommandAnswer:
+    from verify.proof.order_for_every_h import prove_for_every_h
 
-    begun = time.perf_counter()
-    proof = prove_every(scheme, separable, timed=timed, degrees=1 if degrees is None else degrees)
-    seconds = f"{time.perf_counter() - begun:.6f}"
+    start_time = time.perf_counter()
+    proof = prove_for_every_h(
+        scheme, separable, timed=timed, degrees=1 if degrees is None else degrees
+    )
+    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
-        from verify.proof.certificates.every import certify_every
+        from verify.proof.certificates.certification import certify_for_every_h
 
-        _write(certify_every(proof), certificate)
+        _write(certify_for_every_h(proof), certificate)
     texts = {"hamiltonian": proof.quantifier}
     print_in_degrees = partial(show.print_symplectic, texts, proof.scheme)
-    return Answer(
+    return CommandAnswer(
         lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
         lambda: (_print_every if proof.planar else print_in_degrees)(proof),
         failed=proof.verdict == "REFUTED",
     )
 
 
-def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
-    from verify.proof.certificates.one import certify_one
-    from verify.proof.order import prove as prove_order
+def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None) -> CommandAnswer:
+    from verify.proof.certificates.certification import certify_for_one_h
+    from verify.proof.order_for_one_h import prove as prove_order
     from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
     from verify.schemes import get
 
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     integrator = get(scheme)
-    proof = prove_order(integrator.step_map(exact), integrator)
+    proof = prove_order(integrator.step_map(hamiltonian), integrator)
     potential = potential_of(proof, integrator) if proof.planar else None
     special = () if potential is None else special_values(proof, integrator)
-    seconds = f"{time.perf_counter() - begun:.6f}"
+    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
         _write(
-            _build_certificate(partial(certify_one, proof, potential), proof, exact, integrator),
+            _build_certificate(
+                partial(certify_for_one_h, proof, potential), proof, hamiltonian, integrator
+            ),
             certificate,
         )
 
@@ -131,12 +138,12 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
 
     def show_proof() -> None:
         if potential is None:  # of p1 … pn and q1 … qn: S in place of ΔJ
-            show.print_symplectic(exact.texts, integrator.name, proof)
+            show.print_symplectic(hamiltonian.texts, integrator.name, proof)
         else:
-            show.print_proof(exact, integrator.name, proof, potential, special)
+            show.print_proof(hamiltonian, integrator.name, proof, potential, special)
 
-    return Answer(
-        lambda: show.proof_json(exact.texts, integrator.name, proof, seconds, **extra_json()),
+    return CommandAnswer(
+        lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, seconds, **extra_json()),
         show_proof,
         failed=proof.verdict == "REFUTED",
     )
@@ -154,15 +161,15 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
 def _build_certificate(
     make: "Callable[[], dict[str, Any]]",
     proof: "Proof",
-    exact: "Hamiltonian",
+    hamiltonian: "Hamiltonian",
     scheme: "Scheme",
 ) -> dict[str, Any]:
     """Return the certificate of this proof; or of that for every H.
 
-    The latter where the checker does not know H's functions.
+    The latter if the checker does not know H's functions.
     """
-    from verify.proof.certificates.every import certify_every
-    from verify.proof.every import prove_every
+    from verify.proof.certificates.certification import certify_for_every_h
+    from verify.proof.order_for_every_h import prove_for_every_h
 
     try:
         return make()
@@ -171,8 +178,8 @@ def _build_certificate(
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
         # The proof for every H must be of the same class as this H, or it would not speak of it.
-        timed, degrees = exact.time_dependent, exact.degrees
-        return certify_every(prove_every(scheme.name, timed=timed, degrees=degrees))
+        timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
+        return certify_for_every_h(prove_for_every_h(scheme.name, timed=timed, degrees=degrees))
 
 
 def _write(data: dict[str, Any], path: Path) -> None:
@@ -190,7 +197,7 @@ def _write(data: dict[str, Any], path: Path) -> None:
     write_atomically(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
 
 
-def _print_every(proof: "EveryProof") -> None:
+def _print_every(proof: "ProofForEveryH") -> None:
     click.echo(f"{proof.verdict}: {proof.reason}")
     print_line("H", proof.quantifier)
     print_line("scheme", proof.scheme)
@@ -200,8 +207,8 @@ def _print_every(proof: "EveryProof") -> None:
         if proof.formula:
             print_line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:
-        by = "D" if proof.timed else "X"
-        print_line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
+        operator = "D" if proof.timed else "X"
+        print_line("G", f"{cut(proof.potential or '')}, the leading coefficient is {operator}·G")
     if proof.telescopes is not None:
         print_line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:

@@ -1,5 +1,6 @@
 """The commands `verify reference make` and `check`: numbers for others to test against; `compare`
-is in `verify.commands.reference_compare`."""
+is in `verify.commands.reference_compare`.
+"""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -7,22 +8,27 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.reference_compare import compare
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.command_group import CommandGroup
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable
-from verify.commands.shared.group import Group
+from verify.commands.shared.execution_options import (
+    counting_bar,
+    perform,
+    with_placement,
+    with_tasks,
+)
 from verify.commands.shared.input import FILE, PATH
-from verify.commands.shared.tasks import perform, with_placement, with_tasks
+from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import NOT_GIVEN, InputError, without_controls
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.reference.check.check import CheckResult
+    from verify.reference.check.folder_check import CheckResult
 
 _SHARE = 0.05
 _MOST_STEPS = 10**6  # a minute or two
 
 
-@click.group(cls=Group)
+@click.group(cls=CommandGroup)
 def reference() -> None:
     """Reference data: numbers whose every digit is known, to test an integrator against."""
 
@@ -46,8 +52,8 @@ def make(
     output: Path | None,
     parquet: bool,
     keep: Path | None,
-    where: "Placement",
-) -> Answer:
+    placement: "Placement",
+) -> CommandAnswer:
     """Make the reference data that SCENE asks for, in DIR; without SCENE, the committed set.
 
     SCENE is a TOML file with [[reference]] sections. The same scene gives the same bytes, however
@@ -60,26 +66,26 @@ def make(
     steps = [0, 1, 10, 100, 1000]     # after which state, ΔJ, MSE and Λ are given
     digits = 30
     """
-    from verify.reference.make import make as making
+    from verify.reference.make import data_folder as making
     from verify.reference.make.scene_plan import plan_references
 
     if parquet:
-        from verify.reference.make.parquet import require
+        from verify.reference.make.file_contents import require_pyarrow
 
-        require()
+        require_pyarrow()
     sources = making.load([Path(x) for x in scenes] or making.committed_scenes())
     folder = output or Path(f"{sources[0].scene.name}-reference" if scenes else "reference-data")
     ensure_writable(folder)
     making.check_is_alone(folder, sources, parquet=parquet)
-    results = perform(plan_references([x.scene for x in sources]), keep, where)
+    results = perform(plan_references([x.scene for x in sources]), keep, placement)
     data = [making.data_of(x.scene, results) for x in sources]
     files = making.files_of(data, parquet=parquet)
     manifest = making.manifest_of(sources, files, making.command_of(scenes, parquet))
     making.write(folder, files, manifest)
-    rows = sum(each.count for each in data)
+    rows = sum(data_set.count for data_set in data)
     size = sum(map(len, files.values()))
     summary: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
-    return Answer(
+    return CommandAnswer(
         lambda: summary | {"files": [x.model_dump(mode="json") for x in manifest.files]},
         lambda: click.echo(f"{rows:,} rows in {len(files)} files, {size:,} bytes → {folder}"),
     )
@@ -107,8 +113,8 @@ def check(
     everything: bool,
     most_steps: int | None,
     seed: int | None,
-    where: "Placement",
-) -> Answer:
+    placement: "Placement",
+) -> CommandAnswer:
     """Check the reference data in DIR; without it, the committed set.
 
     Hashes, sizes, schemas, each form against the other, how every number is printed, and a random
@@ -117,9 +123,8 @@ def check(
     """
     from random import SystemRandom
 
-    from verify.commands.shared.progress import counting_bar
-    from verify.reference.check import check as checking
-    from verify.reference.make.make import PUBLISHED, SCENES
+    from verify.reference.check import folder_check as checking
+    from verify.reference.make.data_folder import PUBLISHED, SCENES
 
     if not 0 <= share <= 1:
         raise InputError("--share", share, "must be 0 … 1")
@@ -136,10 +141,12 @@ def check(
             seed=seed,
             scenes_folder=SCENES if folder is None else None,
             most_steps=most_steps,
-            where=where,
+            where=placement,
             done=lambda count, total: advance(1000 * count // total),
         )
-    return Answer(lambda: _as_json(report), lambda: _print(report), failed=bool(report.differences))
+    return CommandAnswer(
+        lambda: _as_json(report), lambda: _print(report), failed=bool(report.differences)
+    )
 
 
 def _as_json(report: "CheckResult") -> dict[str, Any]:
@@ -154,9 +161,11 @@ def _as_json(report: "CheckResult") -> dict[str, Any]:
 def _print(report: "CheckResult") -> None:
     for line in (*report.not_recomputed, *report.not_compared):
         click.echo(f"not looked at: {without_controls(line)}")
-    again = f"{report.recomputed:,} computed again (--seed {report.seed})"
+    recomputation = f"{report.recomputed:,} computed again (--seed {report.seed})"
     if report.differences:
-        more = len(report.differences) - 1
-        click.echo(f"DIFFERS: {report.differences[0]}" + (f"; and {more:,} more" if more else ""))
+        further = len(report.differences) - 1
+        click.echo(
+            f"DIFFERS: {report.differences[0]}" + (f"; and {further:,} more" if further else "")
+        )
     else:
-        click.echo(f"agrees: {report.files} files, {report.rows:,} rows, of which {again}")
+        click.echo(f"agrees: {report.files} files, {report.rows:,} rows, of which {recomputation}")

@@ -7,15 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.execution_options import progress_bar
 from verify.commands.shared.input import PATH, SCHEME
+from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from verify.reference.compare.compare import Column, Comparison, Explanation, WorstSeparation
-    from verify.reference.compare.rows import SubmittedTable
+    from verify.reference.compare.comparison import (
+        Column,
+        Explanation,
+        TableComparison,
+        WorstSeparation,
+    )
+    from verify.reference.compare.submitted_table import SubmittedTable
 
 _MOST_SHOWN = 5
 _MOST_NAMED = 4  # mistakes of which one fits
@@ -56,7 +62,7 @@ def compare(
     scene: str | None,
     columns: tuple[str, ...],
     **options: str | None,
-) -> Answer:
+) -> CommandAnswer:
     """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
 
     THEIRS.csv has a header line; columns step (or time), some of p, q, delta_j, mse and lambda, and
@@ -71,11 +77,10 @@ def compare(
     A table of p1 … pn, q1 … qn, energy, symplectic_defect_max, symplectic_defect and lambda is held
     against data in n degrees of freedom, with q0_1 … q0_n, p0_1 … p0_n, or --q 0.3,0.1 --p 0,0.2.
     """
-    from verify.commands.shared.progress import progress_bar
-    from verify.reference.compare.compare import compare as compare_tables
-    from verify.reference.compare.published import load
-    from verify.reference.compare.submitted import has_degrees, read
-    from verify.reference.make.make import PUBLISHED
+    from verify.reference.compare.comparison import compare as compare_tables
+    from verify.reference.compare.published_data import load
+    from verify.reference.compare.submitted_table import has_degrees, read
+    from verify.reference.make.data_folder import PUBLISHED
 
     labels = {name: x for name, x in {"scene": scene, **options}.items() if x is not None}
     names, folder = _parse_names(columns), data or PUBLISHED
@@ -84,7 +89,7 @@ def compare(
     table = read(theirs, ours, labels, names)
     with progress_bar("compared", len(table.runs), unit="run") as advance:
         comparison = compare_tables(ours, table, lambda *_: advance(1))
-    return Answer(
+    return CommandAnswer(
         lambda: _as_json(table, comparison),
         lambda: _print(table, comparison),
         failed=not comparison.agrees,
@@ -106,7 +111,7 @@ def _parse_names(columns: tuple[str, ...]) -> dict[str, str]:
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def _as_json(table: "SubmittedTable", comparison: "Comparison") -> dict[str, Any]:
+def _as_json(table: "SubmittedTable", comparison: "TableComparison") -> dict[str, Any]:
     return {
         **pick(comparison, "agrees", "rows", "runs"),
         "rows_read": table.rows,
@@ -118,7 +123,7 @@ def _as_json(table: "SubmittedTable", comparison: "Comparison") -> dict[str, Any
                 "column": x.name,
                 "verdict": _KEYS[x.verdict],
                 "rows": x.rows,
-                # Infinite where every printed digit agrees; JSON has no infinity.
+                # Infinite if every printed digit agrees; JSON has no infinity.
                 "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
                 **pick(x, "run", "step"),
                 "parts_in": x.parts_run,
@@ -129,7 +134,7 @@ def _as_json(table: "SubmittedTable", comparison: "Comparison") -> dict[str, Any
         "diagnoses": [
             {
                 "runs": x.runs,
-                "mistakes": [{"id": name, "says": says} for name, says in x.mistakes],
+                "mistakes": [{"id": name, "says": sentence} for name, sentence in x.mistakes],
                 "certain": len(x.mistakes) == 1,
             }
             for x in comparison.diagnoses
@@ -150,7 +155,7 @@ def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
 # -- for people -----------------------------------------------------------------------------------
 
 
-def _print(table: "SubmittedTable", comparison: "Comparison") -> None:
+def _print(table: "SubmittedTable", comparison: "TableComparison") -> None:
     from verify.arithmetic.exact import short
 
     rows, runs = _format_count(comparison.rows, "row"), _format_count(comparison.runs, "run")
@@ -182,8 +187,8 @@ def _print(table: "SubmittedTable", comparison: "Comparison") -> None:
     _print_few(unknown, " that none fits")
 
 
-def _format_count(number: int, what: str) -> str:
-    return f"{number:,} {what}" + ("" if number == 1 else "s")
+def _format_count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
 def _shorten_label(label: str) -> str:
@@ -195,9 +200,9 @@ def _shorten_number(text: str) -> str:
     """Return a long decimal or quotient as a decimal with an exponent, its middle left out."""
     from verify.arithmetic.exact import decimal, rational
 
-    exact = decimal(rational(text), _MOST_DIGITS)
+    decimal_text = decimal(rational(text), _MOST_DIGITS)
     # `decimal` writes all digits, then e and a signed exponent.
-    digits, _, exponent = exact.partition("e")
+    digits, _, exponent = decimal_text.partition("e")
     short = digits.rstrip("0").rstrip(".") if "." in digits else digits
     if len(short) > _DIGITS_SHOWN:
         short = f"{short[: _DIGITS_SHOWN // 2]}…{short[-_DIGITS_SHOWN // 2 :]}"
@@ -221,17 +226,19 @@ def _describe_column(x: "Column") -> str:
     )
 
 
-def _print_steps(steps: "Mapping[str, int]", says: str) -> None:
-    lines = [f"{_shorten_label(label)}: {says.format(step=step)}" for label, step in steps.items()]
+def _print_steps(steps: "Mapping[str, int]", template: str) -> None:
+    lines = [
+        f"{_shorten_label(label)}: {template.format(step=step)}" for label, step in steps.items()
+    ]
     _print_few(lines, ", likewise")
 
 
-def _print_few(lines: "Sequence[str]", rest: str) -> None:
+def _print_few(lines: "Sequence[str]", ending: str) -> None:
     """Print the first of the runs' lines, and the number of the others."""
     for line in lines[:_MOST_SHOWN]:
         click.echo(line)
     if len(lines) > _MOST_SHOWN:
-        click.echo(f"… and {_format_count(len(lines) - _MOST_SHOWN, 'more run')}{rest}")
+        click.echo(f"… and {_format_count(len(lines) - _MOST_SHOWN, 'more run')}{ending}")
 
 
 def _describe_separation(x: "WorstSeparation") -> str:
@@ -249,9 +256,11 @@ def _describe_separation(x: "WorstSeparation") -> str:
 
 def _describe_diagnosis(x: "Explanation") -> str:
     many = _format_count(x.runs, "run")
-    says = [says for _, says in x.mistakes]
-    if len(says) == 1:
-        return f"in {many}: {says[0]}"
-    if len(says) > _MOST_NAMED:
-        says = [*says[: _MOST_NAMED - 1], f"{len(says) - _MOST_NAMED + 1} others"]
-    return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(says)
+    sentences = [sentences for _, sentences in x.mistakes]
+    if len(sentences) == 1:
+        return f"in {many}: {sentences[0]}"
+    if len(sentences) > _MOST_NAMED:
+        sentences = [*sentences[: _MOST_NAMED - 1], f"{len(sentences) - _MOST_NAMED + 1} others"]
+    return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(
+        sentences
+    )

@@ -11,26 +11,26 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared import output as show
-from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.destinations import (
     OUT_FOLDER,
     check_ours,
     ensure_keepable,
     ensure_writable,
 )
+from verify.commands.shared.execution_options import kept_tasks, with_placement
 from verify.commands.shared.input import hamiltonian_of, load_target
-from verify.commands.shared.one_line import (
+from verify.commands.shared.output import CommandAnswer, answering
+from verify.commands.shared.scene_options import (
     check_scene_alone,
     line_of,
     scenes_of,
     start_options,
     with_one_line,
 )
-from verify.commands.shared.tasks import kept_tasks, with_placement
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.claims.file import ClaimsFile
+    from verify.claims.claims_file import ClaimsFile
     from verify.execution.executors import Placement
     from verify.scenes.results.report import Report
     from verify.scenes.scene import Scene
@@ -77,9 +77,9 @@ def report(
     full: bool,
     findings: Path | None,
     force: bool,
-    where: "Placement",
+    placement: "Placement",
     **options: Any,
-) -> Answer:
+) -> CommandAnswer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff`, `extreme`, `several-degrees` or `integrators`; or a
@@ -95,22 +95,26 @@ def report(
     clocks, against what is found: those of the extras peers and heavy-peers that are installed, and
     coefficient tables as libraries and papers print them. It runs their code.
     """
-    more = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
+    typed_options = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     if full:
         if _PAGE not in formats:
             raise InputError("--full", ", ".join(formats), "is of --format html, which folds")
-        more += " --full"
+        typed_options += " --full"
     if findings is not None and scene != _INTEGRATORS:
         raise InputError("--findings", str(findings), "is of `verify report integrators`")
     if scene == _INTEGRATORS:
-        folder, result = _verify_integrators(scene, output, more, where, force)
+        folder, result = _verify_integrators(scene, output, typed_options, placement, force)
     else:
-        folder, result = _verify_scene(_read_request(scene, options), output, more, where, force)
+        folder, result = _verify_scene(
+            _read_request(scene, options), output, typed_options, placement, force
+        )
     # Each format once, in the order in which they were typed.
     paths = [_select_writer(name, full)(result, folder) for name in dict.fromkeys(formats)]
     if findings is not None:
         paths += _write_notes(result, findings)
-    return Answer(lambda: result.model_dump(mode="json"), lambda: show.print_report(result, *paths))
+    return CommandAnswer(
+        lambda: result.model_dump(mode="json"), lambda: show.print_report(result, *paths)
+    )
 
 
 @dataclass(frozen=True)
@@ -143,12 +147,12 @@ def _build_sections(
     from verify.arithmetic.exact import positive
     from verify.scenes.observables import carries_defect
 
-    exact = hamiltonian_of(options["system"], options["hamiltonian"], options["params"])
+    hamiltonian = hamiltonian_of(options["system"], options["hamiltonian"], options["params"])
     start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
-    grid |= {"separate": True} if carries_defect(exact) else {}
-    plane = exact.planar  # which alone has the criteria and a law of growth
-    grid |= {"growth": True} if plane and not exact.time_dependent else {}
+    grid |= {"separate": True} if carries_defect(hamiltonian) else {}
+    plane = hamiltonian.planar  # which alone has the criteria and a law of growth
+    grid |= {"growth": True} if plane and not hamiltonian.time_dependent else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
         **({"criteria": [1, 2, 3, 4], "every_hamiltonian": True} if plane else {}),
@@ -158,11 +162,10 @@ def _build_sections(
 
 
 def _verify_scene(
-    request: _Request, output: Path | None, more: str, where: "Placement", force: bool
+    request: _Request, output: Path | None, typed_options: str, placement: "Placement", force: bool
 ) -> "tuple[Path, Report]":
-    from verify.claims.judging import add_claims
-    from verify.claims.report import make_report
-    from verify.studies.plan import plan_scenes
+    from verify.claims.verdicts import add_claims, make_report
+    from verify.studies.tasks_of_scenes import plan_scenes
 
     file, scenes = request.claims, request.scenes
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
@@ -177,43 +180,43 @@ def _verify_scene(
             scenes,
             claims,
             store,
-            command=f"verify report {request.arguments} -o {folder.name}{more}",
+            command=f"verify report {request.arguments} -o {folder.name}{typed_options}",
             claim_scenes=claim_scenes,
             causes=file.causes if file else (),
             figures=file.figures if file else (),
             preface=file.about if file else (),
             not_claimed=file.left_out if file else (),
             plan=planned,
-            where=where,
+            where=placement,
             done=on_result,
         )
     return folder, result
 
 
 def _verify_integrators(
-    scene: str, output: Path | None, more: str, where: "Placement", force: bool
+    scene: str, output: Path | None, typed_options: str, placement: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     """Audit other libraries on this machine, one a process."""
-    from verify.audits.report import make_integrators_report
+    from verify.audits.integrators_report import make_integrators_report
 
-    if where.cluster is not None:
-        raise InputError("--cluster", where.cluster, "the integrators of others are run here")
+    if placement.cluster is not None:
+        raise InputError("--cluster", placement.cluster, "the integrators of others are run here")
     folder = output or Path(f"{scene}-report")
     _check_folder(folder, force)
     ensure_writable(folder)
-    command = f"verify report {scene} -o {folder.name}{more}"
-    workers = where.workers or min(_MOST, os.cpu_count() or 1)
+    command = f"verify report {scene} -o {folder.name}{typed_options}"
+    workers = placement.workers or min(_MOST, os.cpu_count() or 1)
     return folder, make_integrators_report(command, _show_progress, workers)
 
 
 def _write_notes(result: "Report", folder: Path) -> list[Path]:
     """Write the notes, and return their paths; standard error says why one was not written."""
-    from verify.audits.findings.markdown import write_findings
+    from verify.audits.mistake_note import write_findings
 
     ensure_writable(folder)
     paths, unwritten = write_findings(result, folder, _show_progress)
-    for name, why in unwritten.items():
-        click.echo(f"{name}.md is not written: {why}", err=True)
+    for name, reason in unwritten.items():
+        click.echo(f"{name}.md is not written: {reason}", err=True)
     return paths
 
 

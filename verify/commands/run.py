@@ -9,26 +9,25 @@ import click
 
 from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
-from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.cache import cache_option
 from verify.commands.shared.destinations import (
     OUT_FILE,
     OUT_FOLDER,
     STANDARD_OUTPUT,
     ensure_keepable,
 )
+from verify.commands.shared.execution_options import cache_option, counting_bar
 from verify.commands.shared.input import (
     parse_coordinates,
     scheme_option,
     start_options,
     with_kept_hamiltonian,
 )
+from verify.commands.shared.output import CommandAnswer, answering
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.scenes.results.orbit import OrbitTable
-    from verify.scenes.results.run import RunResult
+    from verify.scenes.results.run import OrbitTable, RunResult
 
 
 @click.command()
@@ -67,7 +66,7 @@ if TYPE_CHECKING:
     metavar="DIR",
     help="Keep checkpoints there; the same command goes on from them.",
 )
-def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
+def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswer:
     """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
 
     With --keep, an interruption costs at most some seconds of work. The file of --csv begins with
@@ -78,7 +77,7 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
            --csv orbit.csv
     """
     from verify.arithmetic.exact import whole
-    from verify.scenes.results.orbit import MOST_POINTS
+    from verify.scenes.results.run import MOST_POINTS
 
     table, points = options.pop("table"), options.pop("points")
     if table == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
@@ -87,7 +86,7 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
         raise InputError("--points", points, "goes with --csv")
     if points is not None:
         whole("points", points, 1, MOST_POINTS)
-    result, note = _run_scheme(exact, scheme, **options)
+    result, note = _run_scheme(hamiltonian, scheme, **options)
     if table is not None:
         _write_orbit(result, table, MOST_POINTS if points is None else points)
 
@@ -101,7 +100,7 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
         for line in filter(None, (show.explain_unfinished(result), note)):
             click.echo(line, err=True)
 
-    return Answer(
+    return CommandAnswer(
         lambda: show.run_json(result),
         show_status if table == STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
@@ -109,7 +108,7 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
 
 
 def _run_scheme(
-    exact: "Hamiltonian",
+    hamiltonian: "Hamiltonian",
     scheme: str,
     *,
     steps: int | None,
@@ -124,29 +123,40 @@ def _run_scheme(
 ) -> "tuple[RunResult, str]":
     """Return the run, and a note on a time that is no multiple of the step size."""
     from verify.arithmetic.exact import positive
-    from verify.commands.shared.progress import counting_bar
-    from verify.execution.keeping import Keeper, name_of
-    from verify.hamiltonians.start import check_start
-    from verify.runs.run import run as run_scheme
+    from verify.execution.keeper import Keeper, name_of
+    from verify.hamiltonians.run_domain import check_start
+    from verify.runs.requested_run import run as run_scheme
     from verify.scenes.observables import REPORTED, carries
     from verify.scenes.values import AUTO, describe_rounding, steps_from
 
     start: dict[str, Any] = {
-        "q": parse_coordinates(q, exact),
-        "p": parse_coordinates(p, exact),
+        "q": parse_coordinates(q, hamiltonian),
+        "p": parse_coordinates(p, hamiltonian),
         "t0": t0,
     }
-    check_start(exact, **start)
+    check_start(hamiltonian, **start)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:
         ensure_keepable(keep)
     # The name of the checkpoints: a command with any other argument must not go on from them.
-    identity = (exact.formula, exact.values, scheme, step_size, count, start, digits, arithmetic)
-    keeper, reported = Keeper(keep, name_of(identity)), all(carries(exact, n) for n in REPORTED)
+    identity = (
+        hamiltonian.formula,
+        hamiltonian.values,
+        scheme,
+        step_size,
+        count,
+        start,
+        digits,
+        arithmetic,
+    )
+    keeper, reported = (
+        Keeper(keep, name_of(identity)),
+        all(carries(hamiltonian, n) for n in REPORTED),
+    )
     with counting_bar("stepping", count) as advance:
         result = run_scheme(
-            exact,
+            hamiltonian,
             scheme,
             step_size=step_size,
             steps=count,
@@ -167,11 +177,10 @@ def _run_scheme(
 def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
     """Write so many states after the initial one at most; `path`: see `OUT_FILE`.
 
-    InputError where the file cannot be written, and where no digits of the states are known.
+    InputError if the file cannot be written, and if no digits of the states are known.
     """
-    from verify.commands.shared.progress import counting_bar
     from verify.files import write_atomically
-    from verify.runs.orbit import orbit_of
+    from verify.runs.orbit_table import orbit_of
 
     with counting_bar("stepping again, for the states", result.steps) as advance:
         table = orbit_of(result, points, advance)

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.output import CommandAnswer, answering, pick
 
 if TYPE_CHECKING:
     from verify.schemes.scheme import Scheme
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @answering
-def schemes() -> Answer:
+def schemes() -> CommandAnswer:
     """List the schemes: order, whether symplectic, for which H, what a step costs.
 
     What is listed are claims, which `verify prove` proves. lie1, lie2, … go on to lie100.
@@ -24,14 +24,14 @@ def schemes() -> Answer:
     from verify.schemes import aliases, get, names
 
     entries = [get(name) for name in names()]
-    others: dict[str, list[str]] = {}
+    aliases_of: dict[str, list[str]] = {}
     for alias, name in aliases().items():
-        others.setdefault(name, []).append(alias)
-    rows = [_row_json(scheme, others.get(scheme.name, [])) for scheme in entries]
-    return Answer(lambda: {"schemes": rows}, lambda: _print(rows))
+        aliases_of.setdefault(name, []).append(alias)
+    rows = [_row_json(scheme, aliases_of.get(scheme.name, [])) for scheme in entries]
+    return CommandAnswer(lambda: {"schemes": rows}, lambda: _print(rows))
 
 
-def _row_json(scheme: "Scheme", others: list[str]) -> dict[str, Any]:
+def _row_json(scheme: "Scheme", aliases: list[str]) -> dict[str, Any]:
     return {
         **pick(scheme, "name", "order"),
         "symplectic": scheme.area_preserving,
@@ -39,7 +39,7 @@ def _row_json(scheme: "Scheme", others: list[str]) -> dict[str, Any]:
         "hamiltonian": "H = T(p) + V(q)" if scheme.needs_separable else "every smooth H",
         "cost": getattr(scheme.every_h, "a_step", ""),
         "evaluations": scheme.evaluations,
-        "aliases": others,
+        "aliases": aliases,
         "source": scheme.source,
     }
 

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, pick
-from verify.commands.shared.cache import cache_option
+from verify.commands.shared.execution_options import cache_option, progress_bar
 from verify.commands.shared.input import (
     parse_coordinates,
     scheme_option,
     start_options,
     with_kept_hamiltonian,
 )
-from verify.commands.shared.output import plain_json, print_once
+from verify.commands.shared.output import CommandAnswer, answering, pick, plain_json, print_once
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -72,8 +71,8 @@ def print_separation(grid: "AnyGrid") -> None:
     for point in grid.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
         if point.status != "finished":
-            place = f" at step {point.failed_step}" if point.failed_step else ""
-            click.echo(f"  {point.status}{place}: {point.reason}")
+            step_note = f" at step {point.failed_step}" if point.failed_step else ""
+            click.echo(f"  {point.status}{step_note}: {point.reason}")
         else:
             _print_parts(point)
     if len(grid.points) > 1:
@@ -115,8 +114,8 @@ def _format_cell(point: Any, value: Any) -> str:
     """Return a number as text; of a matrix the greatest entry and its name."""
     if not hasattr(value, "largest"):
         return str(value.value)
-    place = point.name_of(value.place) if value.largest.exact else ""
-    return f"{value.largest.value:24} {place}"
+    entry_name = point.name_of(value.place) if value.largest.exact else ""
+    return f"{value.largest.value:24} {entry_name}"
 
 
 def _describe_growth(way: "AnyEvaluation", label: str) -> str:
@@ -155,8 +154,8 @@ def _describe_crossover(way: "CrossoverResult") -> str:
     "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
 )
 def separate(
-    exact: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
-) -> Answer:
+    hamiltonian: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
+) -> CommandAnswer:
     """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
 
     Of an H(p, q, t) float64's clock, t + h + h + …, is a kind of its own.
@@ -166,18 +165,17 @@ def separate(
     With several step sizes also the one below which rounding is the larger part.
     """
     from verify.arithmetic.exact import positive
-    from verify.commands.shared.progress import progress_bar
-    from verify.hamiltonians.start import check_start
+    from verify.hamiltonians.run_domain import check_start
     from verify.scenes.values import describe_rounding
-    from verify.studies.separation.separate import RUNS, count_steps, separate_grid
+    from verify.studies.separation.truncation_and_rounding import RUNS, count_steps, separate_grid
 
     # q and p are checked before the runs, so that a missing number is refused at once.
-    options |= {name: parse_coordinates(options[name], exact) for name in ("q", "p")}
-    check_start(exact, options["q"], options["p"], options["t0"])
+    options |= {name: parse_coordinates(options[name], hamiltonian) for name in ("q", "p")}
+    check_start(hamiltonian, options["q"], options["p"], options["t0"])
     counts = count_steps(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
-        result = separate_grid(exact, scheme, **options)
+        result = separate_grid(hamiltonian, scheme, **options)
     time = options["time"]
     note = describe_rounding(time and positive(time, "time"), [h for h, _ in counts])
 
@@ -185,4 +183,4 @@ def separate(
         print_separation(result)
         print_once([note])
 
-    return Answer(lambda: separation_json(result), show)
+    return CommandAnswer(lambda: separation_json(result), show)

@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer
+from verify.commands.shared.execution_options import perform, with_tasks
 from verify.commands.shared.input import hamiltonian_of, parse_coordinates
-from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
-from verify.commands.shared.output import print_once
-from verify.commands.shared.tasks import perform, with_tasks
+from verify.commands.shared.output import CommandAnswer, print_once
+from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.studies.stability.equilibrium import LinearAtEquilibrium
-    from verify.studies.stability.linear import LinearStability
+    from verify.studies.stability.linear_stability import LinearStability
 
 _OF_H = ("system", "hamiltonian", "params", "q", "p", "step_sizes")
 _SHOWN = 12  # digits on a terminal
@@ -31,7 +30,7 @@ _BOUNDED_TEXT = {
 }
 
 
-def linear_answer(scene: str | None, options: Mapping[str, Any]) -> Answer:
+def linear_answer(scene: str | None, options: Mapping[str, Any]) -> CommandAnswer:
     """Return the answer of linear theory; InputError for options that do not go with it."""
     if scene is not None:
         raise InputError("SCENE", scene, "does not go with --linear; leave it out")
@@ -49,9 +48,9 @@ def linear_answer(scene: str | None, options: Mapping[str, Any]) -> Answer:
     return _answer_at_equilibrium(scheme, options) if of_h else _answer_for_oscillator(scheme)
 
 
-def _answer_for_oscillator(scheme: str) -> Answer:
+def _answer_for_oscillator(scheme: str) -> CommandAnswer:
     from verify.algebra.expressions.formula_text import to_text
-    from verify.studies.stability.nearby_linear import linear_stability
+    from verify.studies.stability.scheme_interval import linear_stability
 
     theory = linear_stability(scheme)
     data = {
@@ -61,7 +60,7 @@ def _answer_for_oscillator(scheme: str) -> Answer:
         "note": theory.note,
         "delta_j": to_text(theory.delta_j),
     }
-    return Answer(lambda: data, lambda: _print_oscillator(theory, data["delta_j"]))
+    return CommandAnswer(lambda: data, lambda: _print_oscillator(theory, data["delta_j"]))
 
 
 def _print_oscillator(theory: "LinearStability", delta_j: str) -> None:
@@ -75,29 +74,29 @@ def _print_oscillator(theory: "LinearStability", delta_j: str) -> None:
     click.echo(f"  ΔJ       {delta_j}, y = hω")
 
 
-def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> Answer:
+def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> CommandAnswer:
     from verify.arithmetic.exact import positive
-    from verify.hamiltonians.start import point_of
+    from verify.hamiltonians.run_domain import point_of
     from verify.studies.stability.equilibrium import linear_at_equilibrium
 
-    exact = hamiltonian_of(options["system"], options["hamiltonian"], options["params"])
-    origin = ",".join(["0"] * exact.degrees)
-    q, p = (parse_coordinates(options[name] or origin, exact) for name in ("q", "p"))
+    hamiltonian = hamiltonian_of(options["system"], options["hamiltonian"], options["params"])
+    origin = ",".join(["0"] * hamiltonian.degrees)
+    q, p = (parse_coordinates(options[name] or origin, hamiltonian) for name in ("q", "p"))
     sizes = [positive(h, "step_size") for h in options["step_sizes"]]
-    theory = linear_at_equilibrium(exact, scheme, point_of(exact, q, p), sizes)
-    return Answer(lambda: _equilibrium_json(theory), lambda: _print_equilibrium(theory))
+    theory = linear_at_equilibrium(hamiltonian, scheme, point_of(hamiltonian, q, p), sizes)
+    return CommandAnswer(lambda: _equilibrium_json(theory), lambda: _print_equilibrium(theory))
 
 
 def _equilibrium_json(theory: "LinearAtEquilibrium") -> dict[str, Any]:
     from verify.arithmetic.exact import text
-    from verify.hamiltonians.start import shown_of
+    from verify.hamiltonians.run_domain import coordinate_texts
 
-    exact, interval = theory.hamiltonian, theory.interval
+    hamiltonian, interval = theory.hamiltonian, theory.interval
     return {
         "scheme": theory.scheme,
-        **exact.texts,
-        "q": shown_of(exact, theory.point, "q"),
-        "p": shown_of(exact, theory.point, "p"),
+        **hamiltonian.texts,
+        "q": coordinate_texts(hamiltonian, theory.point, "q"),
+        "p": coordinate_texts(hamiltonian, theory.point, "p"),
         "frequencies": [
             {"value": f.decimal(), "exact": f.exact, "multiplicity": f.multiplicity}
             for f in theory.frequencies
@@ -147,8 +146,8 @@ def _format_frequencies(theory: "LinearAtEquilibrium") -> str:
     # The lowest and the highest frequencies tell most: the highest limits the step size.
     if len(values) > _MOST_SHOWN:
         values = [values[0], values[1], "…", *values[-2:]]
-    rest = "" if theory.oscillates else "none for the other degrees of freedom"
-    return ", ".join(filter(None, (*values, rest)))
+    remark = "" if theory.oscillates else "none for the other degrees of freedom"
+    return ", ".join(filter(None, (*values, remark)))
 
 
 if TYPE_CHECKING:
@@ -172,8 +171,8 @@ _WIDTH, _IN = 100, " " * 6
 )
 @with_tasks
 def stability(
-    scene: str | None, linear: bool, keep: Path | None, where: "Placement", **options: Any
-) -> Answer:
+    scene: str | None, linear: bool, keep: Path | None, placement: "Placement", **options: Any
+) -> CommandAnswer:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
 
     stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow;
@@ -189,7 +188,7 @@ def stability(
     """
     if linear:
         return linear_answer(scene, options)
-    from verify.execution.study import plan_of
+    from verify.execution.plan import plan_of
     from verify.scenes.values import describe_rounding
     from verify.studies.kinds.stability import findings_of, need_stability
 
@@ -198,22 +197,22 @@ def stability(
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]], [[stability_map]] or [[orbit_map]]"
         raise InputError("SCENE", scene or NOT_GIVEN, problem)
-    findings = findings_of(scenes, perform(plan, keep, where))
+    findings = findings_of(scenes, perform(plan, keep, placement))
     notes = [
         describe_rounding(section.time, section.step_sizes)
-        for each in scenes
-        for section in each.stability
+        for scene in scenes
+        for section in scene.stability
     ]
 
     def show() -> None:
         _print(findings)
         print_once(notes)
 
-    return Answer(findings.as_json, show)
+    return CommandAnswer(findings.as_json, show)
 
 
-def _build_section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
-    return {"stability": [{**rest, "initial_values": [{"q": q, "p": p}]}]}
+def _build_section(*, q: Any, p: Any, **section_keys: Any) -> dict[str, Any]:
+    return {"stability": [{**section_keys, "initial_values": [{"q": q, "p": p}]}]}
 
 
 def _print(findings: "StabilityFindings") -> None:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.output import CommandAnswer, answering, pick
 
 if TYPE_CHECKING:
     from verify.hamiltonians.named_system import System
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @answering
-def systems() -> Answer:
+def systems() -> CommandAnswer:
     """List the named systems: H, its parameters, regimes, whether the exact flow is known.
 
     \b
@@ -22,7 +22,7 @@ def systems() -> Answer:
     from verify.hamiltonians.systems import all_systems
 
     rows = [_row_json(system) for system in all_systems(None).values()]
-    return Answer(lambda: {"systems": rows}, lambda: _print(rows))
+    return CommandAnswer(lambda: {"systems": rows}, lambda: _print(rows))
 
 
 def _row_json(system: "System") -> dict[str, Any]:

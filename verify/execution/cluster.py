@@ -9,7 +9,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from verify.errors import InputError, PlaceError
-from verify.execution.keeping import fingerprint
+from verify.execution.keeper import fingerprint
 from verify.execution.processes import safe_path
 
 _PATIENCE = 5.0  # seconds for a scheduler to answer, and to have a worker

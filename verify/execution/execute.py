@@ -14,7 +14,6 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from verify.errors import InputError
-from verify.execution.ensembles import MOST_AT_ONCE, Group, groups
 from verify.execution.executors import (
     ANYWHERE,
     THIS_PROCESS,
@@ -24,7 +23,7 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import (
+from verify.execution.keeper import (
     KEPT,
     NOTHING,
     Keeper,
@@ -33,7 +32,7 @@ from verify.execution.keeping import (
     seal,
     tasks_with_checkpoints,
 )
-from verify.execution.plan import Plan, keys_supplied_by
+from verify.execution.plan import MOST_AT_ONCE, Group, Plan, groups, keys_supplied_by
 from verify.execution.task import Task
 from verify.files import check_replaceable, clear_unfinished, write_atomically
 from verify.lockstep import Course, run_together
@@ -196,18 +195,16 @@ def _modules(tasks: Mapping[str, Task]) -> list[str]:
     for all."""
     kinds = {type(task) for task in tasks.values()}
     modules = {name for kind in kinds for name in (kind.__module__, *kind.imports)}
-    return sorted(
-        {*modules, "sympy"}
-    )  # which each reads its H with, and which comes late by itself
+    return sorted({*modules, "sympy"})  # with which each reads its H, and which is imported late
 
 
-def _choose_placement(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placement:
+def _choose_placement(tasks: Mapping[str, Task], calls: int, requested: Placement) -> Placement:
     """Choose as many processes as are worth their start, where the caller leaves it open.
 
     What is prepared beside the tasks is not worth a process by itself.
     """
-    if where != ANYWHERE:
-        return where
+    if requested != ANYWHERE:
+        return requested
     if sum(task.cost for task in tasks.values()) < _WORTH_A_POOL:
         return THIS_PROCESS
     return Placement(workers=max(1, min(os.cpu_count() or 1, calls)))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 from verify.errors import InputError, PlaceError
-from verify.execution.keeping import fingerprint
+from verify.execution.keeper import fingerprint
 from verify.execution.processes import Processes
 
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
@@ -93,7 +93,7 @@ class Place(Protocol):
 
 @contextlib.contextmanager
 def open_place(
-    where: Placement,
+    placement: Placement,
     modules: Sequence[str] = (),
     after_end: Callable[[Sequence[int]], None] = lambda _: None,
 ) -> Iterator[Place]:
@@ -105,15 +105,15 @@ def open_place(
     Processes are started as they are needed. Raises InputError where the cluster does not answer,
     has no workers, or has other code than this.
     """
-    if where.cluster is not None:
+    if placement.cluster is not None:
         from verify.execution.cluster import connect
 
-        with connect(where.cluster) as place:
+        with connect(placement.cluster) as place:
             yield place
-    elif where.workers == 1:
+    elif placement.workers == 1:
         yield _ThisProcess()
     else:
-        processes = Processes(where.workers or os.cpu_count() or 1, modules)
+        processes = Processes(placement.workers or os.cpu_count() or 1, modules)
         try:
             yield processes
         except BaseException:
@@ -135,35 +135,35 @@ def results_of(
         for call in calls:
             yield call.name, call.function(*call.arguments)
         return
-    course = _Course(place, calls, one_by_one)
+    queue = _CallQueue(place, calls, one_by_one)
     try:
-        while course.send():
-            course.take()
-            while course.ready:
-                name, future = course.ready.popleft()
+        while queue.send():
+            queue.take()
+            while queue.ready:
+                name, future = queue.ready.popleft()
                 yield name, future.result()
     # The consumer has stopped: yielding the rest would be an error.
     except GeneratorExit:
         raise
     except BaseException:
-        yield from course.rest()
+        yield from queue.finished_results()
         raise
 
 
-class _Course:
+class _CallQueue:
     """The calls of one `results_of`: those under way, those lost, and those that are finished."""
 
     def __init__(self, place: Place, calls: Iterable[FunctionCall], one_by_one: bool) -> None:
         self.place, self.calls, self.one_by_one = place, iter(calls), one_by_one
         self.under_way: dict[Future[Any], FunctionCall] = {}
-        self.again: deque[FunctionCall] = deque()
+        self.requeued: deque[FunctionCall] = deque()
         self.ready: deque[tuple[str, Future[Any]]] = deque()
         self.losses: Counter[str] = Counter()
 
     def send(self) -> bool:
         """Send as many as there is room for; return True if any is under way."""
         while len(self.under_way) < self._room():
-            call = self.again.popleft() if self.again else next(self.calls, None)
+            call = self.requeued.popleft() if self.requeued else next(self.calls, None)
             if call is None:
                 break
             future = self.place.submit(call_in_worker, fingerprint(), call.function, call.arguments)
@@ -173,7 +173,8 @@ class _Course:
     def _room(self) -> int:
         # Where a place does not tell which call killed its worker, the suspects go one at a time:
         # so the guilty one is found, and no innocent one reaches the limit of attempts.
-        suspects = bool(self.again) or any(c.name in self.losses for c in self.under_way.values())
+        names = (call.name for call in self.under_way.values())
+        suspects = bool(self.requeued) or any(name in self.losses for name in names)
         alone = self.one_by_one or (suspects and not self.place.names_lost_call)
         return 1 if alone else self.place.room
 
@@ -193,10 +194,10 @@ class _Course:
             if self.losses[call.name] >= self.place.attempts:
                 problem = "its worker was lost again and again: killed, or out of memory?"
                 raise PlaceError(f"{call.description or call.name}: {problem}")
-            self.again.append(call)
+            self.requeued.append(call)
         self.place.check()
 
-    def rest(self) -> Iterator[tuple[str, Any]]:
+    def finished_results(self) -> Iterator[tuple[str, Any]]:
         """Yield the results that are finished and were not yet yielded; errors among them are
         left out."""
         finished = [(call.name, future) for future, call in self.under_way.items() if future.done()]
@@ -207,7 +208,9 @@ class _Course:
 
 # -- in the worker --------------------------------------------------------------------------------
 
-_ONE = threading.Lock()  # libraries below have settings that all threads of a process share
+_ONE_AT_A_TIME = (
+    threading.Lock()
+)  # libraries below have settings that all threads of a process share
 
 
 def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
@@ -216,7 +219,7 @@ def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[A
     if fingerprint() != source:  # it may have joined the others, or been started again, since
         worker = f"{socket.gethostname()}, process {os.getpid()}"
         raise PlaceError(f"worker {worker}: its areaproof or a library is not the one used here")
-    with _ONE:
+    with _ONE_AT_A_TIME:
         return function(*arguments)
 
 

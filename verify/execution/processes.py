@@ -87,7 +87,7 @@ class Processes:
         until = time.monotonic() + _TO_END
         while alive and time.monotonic() < until:
             done = connection.wait(alive, until - time.monotonic())
-            alive = [each for each in alive if each not in done]
+            alive = [sentinel for sentinel in alive if sentinel not in done]
         for pool in pools:  # whose thread, not waited for, may close what Python's exit writes to
             pool.shutdown(wait=not alive, cancel_futures=True)
         return [pid for pid in sentinels if pid is not None]
@@ -123,7 +123,7 @@ def _fork_server(modules: Sequence[str]) -> Any:
     return context
 
 
-class _Safe:
+class _SafePathState:
     """The value of the variable before it was set, and the number of users of the safe path."""
 
     def __init__(self) -> None:
@@ -131,7 +131,7 @@ class _Safe:
         self.before: str | None = None
 
 
-_SAFE = _Safe()
+_SAFE = _SafePathState()
 
 
 @contextmanager

@@ -8,11 +8,11 @@ import json
 from abc import abstractmethod
 from typing import Any, ClassVar
 
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lockstep import Course
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import Coordinates, Number
+from verify.scenes.values import Coordinates, ExactNumber
 
 
 class Task(Frozen):
@@ -93,7 +93,7 @@ class HamiltonianTask(Task):
     """A task on H, which is given by its formula, with its parameter values."""
 
     hamiltonian: str
-    parameters: dict[str, Number]
+    parameters: dict[str, ExactNumber]
 
     def exact_hamiltonian(self) -> Hamiltonian:
         return Hamiltonian.parse(self.hamiltonian, self.parameters)

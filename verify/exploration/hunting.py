@@ -1,25 +1,48 @@
-"""The search for the worst scenes for a measure, on islands that are searched independently.
+"""The hunt for the worst scenes for a measure, and their gallery for a report.
 
-Each island has a seed of its own. The worst scenes of all islands are merged, with one for each
-shape of H, so that they are not variants of a single scene.
+Islands with seeds of their own are searched independently. The worst scenes of all islands are
+merged, with one for each shape of H, so that they are not variants of a single scene. The gallery
+shows each with its orbit, and with Λ split into its parts.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 
+from verify.arithmetic.exact import decimal, text
 from verify.errors import InputError, unknown_name
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
-from verify.exploration.different_scenes import select_by_shape, select_different
-from verify.exploration.island_search import KEPT, MOST_EXAMPLES, hunted_scenes, sorting_key
-from verify.exploration.measures import MEASURES
+from verify.exploration.island_search import (
+    COEFFICIENTS,
+    MOST_EXAMPLES,
+    REACH,
+    SCENES_IN_RESULT,
+    STEP_SIZES,
+    hunted_scenes,
+    scene_of,
+    select_by_shape,
+    select_different,
+    sorting_key,
+)
+from verify.exploration.measures import MEASURES, orbit
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.tasks import HuntTask
-from verify.scenes.results.exploration import HuntResult
+from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult, Worst
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_parts import PartsAt
+from verify.scenes.scene import scene_text
+from verify.studies.kinds.separation import SeparationTask
 
 _MOST_STEPS = 10**6
 _ISLAND = 200  # scenes that one task looks at
+# Of the gallery: the run that is shown, in runs of the hunt, and its most steps.
+_LONGER, _MOST_SHOWN_STEPS = 100, 10_000
+_SHOWN_DIGITS = 6  # digits of a point
+_DIGITS = 8  # of Λ's parts
 
 
 @dataclass(frozen=True)
@@ -78,8 +101,126 @@ def hunt(
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     # Islands may find the same scene: the best of each shape is taken over all of them.
-    together = sorted((each for island in islands for each in island.worst), key=sorting_key)
+    together = sorted((worst for island in islands for worst in island.worst), key=sorting_key)
     examples = sum(island.examples for island in islands)
     return HuntResult(
-        worst=tuple(select_different(select_by_shape(together))[:KEPT]), examples=examples
+        worst=tuple(select_different(select_by_shape(together))[:SCENES_IN_RESULT]),
+        examples=examples,
     )
+
+
+# -- the gallery ----------------------------------------------------------------------------------
+
+
+def gallery(
+    request: Hunt,
+    hunted: HuntResult,
+    store: Store,
+    *,
+    where: Placement = ANYWHERE,
+    done: OnResult | None = None,
+) -> Gallery:
+    """Build the gallery of the worst scenes, with runs longer than those of the hunt.
+
+    If such a run does not finish, the run of the hunt is shown instead.
+    """
+    longer = min(request.steps * _LONGER, max(request.steps, _MOST_SHOWN_STEPS))
+
+    def separate_all(scenes: Sequence[Worst], steps: int) -> list[SeparationResult]:
+        plan, tasks = Plan(), [_task(scene, steps) for scene in scenes]
+        for task in tasks:
+            plan.need(task, "the gallery of the worst scenes")
+        results = execute(plan, store, where=where, done=done)
+        of_tasks = [results[task.key] for task in tasks]
+        return [result for result in of_tasks if isinstance(result, SeparationResult)]
+
+    runs = separate_all(hunted.worst, longer)
+    # A longer run that leaves the range is replaced by one as long as the hunt's.
+    unfinished = [w for w, run in zip(hunted.worst, runs, strict=True) if run.status != "finished"]
+    short = iter(separate_all(unfinished, request.steps))
+    return Gallery(
+        measure=request.measure,
+        sentence=MEASURES[request.measure].sentence,
+        seed=request.seed,
+        examples=hunted.examples,
+        steps=request.steps,
+        reach=text(REACH),
+        step_sizes=(text(STEP_SIZES[0]), text(STEP_SIZES[1])),
+        coefficients=(str(COEFFICIENTS[0]), str(COEFFICIENTS[1])),
+        scenes=tuple(
+            _gallery_scene(worst, run if run.status == "finished" else next(short), run)
+            for worst, run in zip(hunted.worst, runs, strict=True)
+        ),
+    )
+
+
+def _task(worst: Worst, steps: int) -> SeparationTask:
+    sample = Sample.from_scene(scene_of(worst))
+    return SeparationTask(
+        **sample.scene.hamiltonian_fields(),
+        scheme=sample.scheme.name,
+        **sample.run_arguments | {"steps": steps},
+        digits=_DIGITS,
+    )
+
+
+def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
+    points = orbit(Sample.from_scene(scene_of(worst)))
+    lost = find_meaningless_span(run.plain.series if run.plain else ())
+    return GalleryScene(
+        value=worst.value,
+        scene=_separating(worst),
+        orbit=tuple((decimal(q, _SHOWN_DIGITS), decimal(p, _SHOWN_DIGITS)) for q, p in points),
+        separation=run,
+        longer=longer if longer is not run else None,
+        meaningless_after=lost.first,
+        meaningful_from=lost.over,
+    )
+
+
+def _separating(worst: Worst) -> str:
+    """Return the scene's text, with the request to separate Λ as the gallery does."""
+    scene = scene_of(worst)
+    assert scene.grid is not None  # noqa: S101 - as drawn
+    grid = scene.grid.model_copy(update={"separate": True})
+    return scene_text(scene.model_copy(update={"grid": grid}))
+
+
+@dataclass(frozen=True)
+class MeaninglessSpan:
+    """The steps between which Λ is meaningless; None where there is no such checkpoint.
+
+    `first`: the first checkpoint, in steps, at which no digit of Λ is right. `over`: the checkpoint
+    from which on some digits are right again up to the end of the run.
+    """
+
+    first: int | None
+    over: int | None
+
+
+def find_meaningless_span(series: Sequence[PartsAt]) -> MeaninglessSpan:
+    """Find the checkpoints at which max |rounding| so far is not below max |truncation| so far.
+
+    `series`: Λ's parts at checkpoints of one run, in the order of steps.
+
+    The greatest parts so far are compared, as Λ itself may pass through 0. A part that is exactly
+    0, or has no known digit, is "0": a part with known digits is then the greater one, and two such
+    parts are not compared.
+    """
+    lost = [
+        checkpoint.steps
+        for checkpoint, is_below in zip(series, _below(series), strict=True)
+        if not is_below
+    ]
+    if not lost:
+        return MeaninglessSpan(None, None)
+    later = (checkpoint.steps for checkpoint in series if checkpoint.steps > lost[-1])
+    return MeaninglessSpan(lost[0], next(later, None))
+
+
+def _below(series: Sequence[PartsAt]) -> Iterator[bool]:
+    rounding = truncation = Fraction(0)
+    for checkpoint in series:
+        rounding = max(rounding, abs(Fraction(checkpoint.total)))
+        truncation = max(truncation, abs(Fraction(checkpoint.truncation)))
+        yield rounding < truncation or not rounding

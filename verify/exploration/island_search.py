@@ -1,9 +1,11 @@
 """The search on one island of a hunt: by hypothesis's `target`, then refined by single numbers.
 
-A local search moves to neighbours, scenes that differ slightly in a single number. Each scene of
-the result was measured twice, the second time with twice the digits.
+A local search moves to neighbours, scenes that differ slightly in a single number. Scenes of one
+shape of H count as one, so that what comes out is no repetition of what is out already. Each scene
+of the result was measured twice, the second time with twice the digits.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from fractions import Fraction
@@ -18,20 +20,86 @@ from hypothesis.errors import Unsatisfiable
 from verify import strategies
 from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
-from verify.exploration.different_scenes import scene_of, select_by_shape, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import hamiltonians_of
+from verify.exploration.scenes_of_seed import hamiltonians_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.exploration import HuntResult, Worst
-from verify.scenes.scene import Scene, scene_from
-from verify.scenes.toml_text import scene_text
-from verify.strategies.numbers import starts
+from verify.scenes.scene import Scene, scene_from, scene_text
+from verify.scenes.toml_file import toml_data
+from verify.strategies.exact_numbers import starts
 
 _FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
 _MOVES = tuple(sign * Fraction(1, 10**k) for k in (1, 2) for sign in (1, -1))
 _PLACES = 3  # decimals of a coefficient or a step size
+REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
+_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)  # of drawn step sizes
+SIZE = 7  # of the coefficients' numerators and denominators: the greatest that is drawn
+COEFFICIENTS = Fraction(1, SIZE), Fraction(SIZE)
+MOST_EXAMPLES = 10**7  # of a hunt, so that no two islands of two seeds draw the same
+SCENES_IN_RESULT = 6  # of a hunt, at most
+_DIRECTED = Fraction(3, 5)  # of the scenes, by hypothesis; the others are neighbours of the worst
+_TENTHS = 20
+_AGREEMENT = 0.01  # of lg of a measure, with twice the digits
+_NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
+_NEAR_VALUES = 0.1  # of lg of a measure: a quarter more, or less
+
+
+# -- scenes that are alike ------------------------------------------------------------------------
+
+
+def scene_of(worst: Worst) -> Scene:
+    """Parse the scene from its text."""
+    return scene_from(toml_data(worst.scene, "scene"), "scene")
+
+
+def select_by_shape(scenes: Iterable[Worst]) -> list[Worst]:
+    """Return the first scene of each shape of H, in the given order."""
+    first_of_shape: dict[str, Worst] = {}
+    for worst in scenes:
+        first_of_shape.setdefault(shape_of(worst), worst)
+    return list(first_of_shape.values())
+
+
+def shape_of(worst: Worst) -> str:
+    """Return H's terms without coefficients, and with all numbers but exponents replaced by n."""
+    return " + ".join(sorted(_terms(worst)))
+
+
+def select_different(scenes: Iterable[Worst]) -> list[Worst]:
+    """Return the scenes in the given order, without near repetitions of an earlier one.
+
+    Two scenes are alike if they are about as bad, have the same scheme, and have the same start or
+    an H whose terms include those of the other.
+    """
+    selected: list[Worst] = []
+    for worst in scenes:
+        if not any(_are_alike(worst, other) for other in selected):
+            selected.append(worst)
+    return selected
+
+
+def _are_alike(a: Worst, b: Worst) -> bool:
+    # By logarithms, as values are: equal badness is a matter of a factor.
+    if abs(a.value - b.value) > _NEAR_VALUES:
+        return False
+    one, other = (Sample.from_scene(scene_of(each)) for each in (a, b))
+    if one.scheme.name != other.scheme.name:
+        return False
+    of_one, of_other = _terms(a), _terms(b)
+    same_start = one.run_arguments == other.run_arguments
+    return same_start or of_one <= of_other or of_other <= of_one
+
+
+def _terms(worst: Worst) -> set[str]:
+    terms = sympy.Add.make_args(scene_of(worst).exact_hamiltonian().exact)
+    # The content of a term is its rational factor; what remains is the term's shape.
+    primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
+    return {_NUMBERS.sub("n", str(term)) for term in primitive}
+
+
+# -- neighbours -----------------------------------------------------------------------------------
 
 
 def neighbours(
@@ -59,17 +127,17 @@ def neighbours(
         (*place[:k], place[k] + move, *place[k + 1 :]) for move in _MOVES for k in order
     ]
     sizes = [min(max(_round(h * factor), steps[0]), steps[1]) for factor in _FACTORS]
-    others = chain(
+    candidates = chain(
         ((formula, place, size) for size in sizes),
-        ((formula, other, h) for other in moved_places if max(map(abs, other)) <= reach),
-        ((other, place, h) for other in _formulas(sample.hamiltonian, coefficients)),
+        ((formula, moved, h) for moved in moved_places if max(map(abs, moved)) <= reach),
+        ((changed, place, h) for changed in _formulas(sample.hamiltonian, coefficients)),
     )
     yielded = {(formula, place, h)}
-    for other in others:
-        if other not in yielded:
-            yielded.add(other)
+    for candidate in candidates:
+        if candidate not in yielded:
+            yielded.add(candidate)
             with suppress(InputError):  # such as an H that is not defined there
-                yield _scene(sample, *other)
+                yield _scene(sample, *candidate)
 
 
 def _scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction) -> Scene:
@@ -82,18 +150,18 @@ def _scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction)
 
 def _formulas(hamiltonian: Hamiltonian, bounds: tuple[Fraction, Fraction]) -> Iterator[str]:
     """Yield H with one coefficient of its sum changed."""
-    least, greatest = bounds
+    lowest, highest = bounds
     terms = sympy.Add.make_args(hamiltonian.exact)
     for k, term in enumerate(terms):
         content, primitive = term.as_content_primitive()  # 1/(2*p**2 + 2) has a factor of ½
-        sign, rest = primitive.as_coeff_Mul()
+        sign, shape = primitive.as_coeff_Mul()
         coefficient = content * sign
-        if not coefficient.is_Rational or rest.is_number:
+        if not coefficient.is_Rational or shape.is_number:
             continue
         for factor in (*_FACTORS, Fraction(-1)):
             value = _round(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
-            if least <= abs(value) <= greatest:
-                changed_term = sympy.Rational(value) * rest
+            if lowest <= abs(value) <= highest:
+                changed_term = sympy.Rational(value) * shape
                 yield to_text(sympy.Add(*terms[:k], changed_term, *terms[k + 1 :]))
 
 
@@ -102,15 +170,7 @@ def _round(x: Fraction) -> Fraction:
     return round(x, _PLACES)
 
 
-REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
-_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)  # of drawn step sizes
-SIZE = 7  # of the coefficients' numerators and denominators: the greatest that is drawn
-COEFFICIENTS = Fraction(1, SIZE), Fraction(SIZE)
-MOST_EXAMPLES = 10**7  # of a hunt, so that no two islands of two seeds draw the same
-KEPT = 6
-_DIRECTED = Fraction(3, 5)  # of the scenes, by hypothesis; the others are neighbours of the worst
-_TENTHS = 20
-_AGREEMENT = 0.01  # of lg of a measure, with twice the digits
+# -- the search -----------------------------------------------------------------------------------
 
 
 def search_island(
@@ -122,7 +182,7 @@ def search_island(
     chance = seed * MOST_EXAMPLES + island
     _search_directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
     _refine(look)
-    return HuntResult(worst=tuple(_confirm_worst(look)), examples=len(look.seen))
+    return HuntResult(worst=tuple(_confirm_worst(look)), examples=len(look.values))
 
 
 class MeasuredScenes:
@@ -130,46 +190,46 @@ class MeasuredScenes:
 
     def __init__(self, measure: Measure, limit: int) -> None:
         self.measure, self.limit = measure, limit
-        self.seen: dict[str, float | None] = {}
+        self.values: dict[str, float | None] = {}
 
     def __call__(self, scene: Scene) -> float | None:
         """Measure a scene; None also if the limit of scenes is reached."""
         # The text identifies a scene, so that a scene drawn twice is measured once.
         text = scene_text(scene)
-        if text not in self.seen and self.has_room:
-            self.seen[text] = self.measure.evaluate(Sample.from_scene(scene), DIGITS)
-        return self.seen.get(text)
+        if text not in self.values and self.has_room:
+            self.values[text] = self.measure.evaluate(Sample.from_scene(scene), DIGITS)
+        return self.values.get(text)
 
     @property
     def has_room(self) -> bool:
         """True if one more scene may be measured."""
-        return len(self.seen) < self.limit
+        return len(self.values) < self.limit
 
     def worst(self) -> list[Worst]:
         """Return all scenes that have a value, the worst first."""
-        values = ((text, value) for text, value in self.seen.items() if value is not None)
-        return sorted((Worst(value=value, scene=text) for text, value in values), key=sorting_key)
+        pairs = ((text, value) for text, value in self.values.items() if value is not None)
+        return sorted((Worst(value=value, scene=text) for text, value in pairs), key=sorting_key)
 
 
-def sorting_key(each: Worst) -> tuple[float, int, str]:
+def sorting_key(worst: Worst) -> tuple[float, int, str]:
     """Return the sorting key: the worst first, among equal ones the shortest."""
-    return -each.value, len(each.scene), each.scene
+    return -worst.value, len(worst.scene), worst.scene
 
 
 def _confirm_worst(look: MeasuredScenes) -> Iterator[Worst]:
     """Yield the worst scene of each shape whose value is confirmed with twice the digits."""
     shapes: set[str] = set()
-    for each in look.worst():
-        shape = shape_of(each)
-        if len(shapes) == KEPT:
+    for worst in look.worst():
+        shape = shape_of(worst)
+        if len(shapes) == SCENES_IN_RESULT:
             return
         if shape in shapes:
             continue
-        again = look.measure.evaluate(Sample.from_scene(scene_of(each)), 2 * DIGITS)
+        confirmed_value = look.measure.evaluate(Sample.from_scene(scene_of(worst)), 2 * DIGITS)
         # A value that changes with more digits is made of rounding errors, and is no measure.
-        if again is not None and abs(again - each.value) <= _AGREEMENT:
+        if confirmed_value is not None and abs(confirmed_value - worst.value) <= _AGREEMENT:
             shapes.add(shape)
-            yield Worst(value=again, scene=each.scene)
+            yield Worst(value=confirmed_value, scene=worst.scene)
 
 
 def _search_directed(
@@ -209,12 +269,12 @@ def _climb(begin: Worst, look: MeasuredScenes) -> None:
     value, scene, has_moved = begin.value, scene_of(begin), True
     while has_moved:
         has_moved = False
-        for other in neighbours(scene, reach=REACH, steps=STEP_SIZES, coefficients=COEFFICIENTS):
+        for moved in neighbours(scene, reach=REACH, steps=STEP_SIZES, coefficients=COEFFICIENTS):
             if not look.has_room:
                 return
-            measured_value = look(other)
+            measured_value = look(moved)
             if measured_value is not None and measured_value > value:
-                value, scene, has_moved = measured_value, other, True
+                value, scene, has_moved = measured_value, moved, True
                 break
 
 

@@ -14,14 +14,14 @@ from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Sample
 from verify.kernels.stepping import RunOutcome
 from verify.lockstep import run_alone
+from verify.studies.separation.chain import Trail
 from verify.studies.separation.links import separate_chains
-from verify.studies.separation.stepper.run import Stopped
-from verify.studies.separation.stepper.trail import Trail
+from verify.studies.separation.mixed_run import Stopped
 
 DIGITS = 40  # of what stands for exact arithmetic
 _SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves
 _POINTS = 100  # of an orbit that is drawn
-_FAR = 10  # a run that goes farther from the origin is of no ordinary scene
+_FARTHEST = 10  # a run that goes farther from the origin is of no ordinary scene
 # 2⁻⁵³, the greatest relative rounding error of float64.
 _ROUNDOFF = Fraction(1, 2**53)
 
@@ -78,17 +78,17 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     The error is relative to the greatest coordinate along the orbit: near the origin a relative
     error may be large without any loss that matters.
     """
-    exact = _stays(sample, digits)
-    if exact is None:
+    accurate = _stays(sample, digits)
+    if accurate is None:
         return None
     outcome = sample.run("float64", 17)
-    return None if outcome.done < sample.steps else _lost(sample, exact, outcome)
+    return None if outcome.done < sample.steps else _lost(sample, accurate, outcome)
 
 
-def _lost(sample: Sample, exact: RunOutcome, outcome: RunOutcome) -> float | None:
+def _lost(sample: Sample, accurate: RunOutcome, outcome: RunOutcome) -> float | None:
     names = tuple(sample.point)
-    size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
-    error = max(abs(outcome.values[n] - exact.values[n]) for n in names)
+    size = max(abs(x[n]) for x in (sample.point, *accurate.trail) for n in names)
+    error = max(abs(outcome.values[n] - accurate.values[n]) for n in names)
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
@@ -138,8 +138,8 @@ def _stays(sample: Sample, digits: int, *observables: str) -> RunOutcome | None:
     outcome = sample.run("mpfr", digits, *observables)
     if outcome.done < sample.steps:
         return None
-    near = all(abs(x[name]) <= _FAR for x in outcome.trail for name in sample.point)
-    return outcome if near else None
+    is_near = all(abs(x[name]) <= _FARTHEST for x in outcome.trail for name in sample.point)
+    return outcome if is_near else None
 
 
 def _lg(x: Fraction) -> float:

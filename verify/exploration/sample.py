@@ -10,16 +10,16 @@ from typing import Any, NamedTuple, Self
 from verify import arithmetic as number_systems
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.flows.extrapolation import Flow
+from verify.flows.extrapolation import NumericalFlow
 from verify.functions.function import CIRCLE
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of, start_texts
+from verify.hamiltonians.run_domain import point_of, start_texts
 from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.stepping import KernelRun, RunOutcome
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import Potential, potential_of
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
@@ -28,7 +28,7 @@ from verify.schemes.scheme import Scheme
 from verify.structures import AREA, SYMPLECTIC
 
 
-class Most(NamedTuple):
+class TermLimits(NamedTuple):
     """The greatest numbers of terms for which each computation still takes only a moment.
 
     `proof`: a proof; `kernels`: writing a kernel; `points`: evaluating the map at a few points;
@@ -45,9 +45,9 @@ class Most(NamedTuple):
 
 
 # The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
-_MOST = {
-    AREA: Most(40, 20, 150, inf, unproved=False, runs=True),
-    SYMPLECTIC: Most(30, 60, 250, 250, unproved=True, runs=False),
+_TERM_LIMITS = {
+    AREA: TermLimits(40, 20, 150, inf, unproved=False, runs=True),
+    SYMPLECTIC: TermLimits(30, 60, 250, 250, unproved=True, runs=False),
 }
 _MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
 _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
@@ -115,9 +115,9 @@ class Sample:
     # -- how long it is ---------------------------------------------------------------------------
 
     @property
-    def limits(self) -> Most:
+    def limits(self) -> TermLimits:
         """The limits of terms for its number of degrees of freedom."""
-        return _MOST[self.hamiltonian.structure]
+        return _TERM_LIMITS[self.hamiltonian.structure]
 
     @cached_property
     def terms(self) -> float:
@@ -152,8 +152,8 @@ class Sample:
             return False
         if not self.hamiltonian.planar:
             # The series of other functions have many terms, which make proofs long.
-            exact = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
-            return exact and scheme.order <= _MOST_ORDER
+            short = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
+            return short and scheme.order <= _MOST_ORDER
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
         return scheme.needs_separable and not self._kinds & {"inverse", "root"}
@@ -183,9 +183,9 @@ class Sample:
         """The canonical field of H, with its derivatives by the coordinates."""
         return canonical_field(self.hamiltonian)[0]
 
-    def flow(self, digits: int) -> Flow:
+    def flow(self, digits: int) -> NumericalFlow:
         """Return the exact flow, to so many digits."""
-        return Flow(self.field, digits)
+        return NumericalFlow(self.field, digits)
 
     @property
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:

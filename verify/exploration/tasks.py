@@ -3,7 +3,7 @@
 from typing import Literal
 
 from verify.arithmetic import step_cost
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.execution.task import Task
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import ExploreResult, HuntResult, ShrunkResult
@@ -30,7 +30,7 @@ class ExploreTask(_OnProperties):
     """Hold properties against `count` scenes: those of this seed from number `first` on."""
 
     result = ExploreResult
-    imports = ("verify.exploration.property_checks",)
+    imports = ("verify.exploration.scenes_of_seed",)
     kind: Literal["explore"] = "explore"
     first: int
     count: int
@@ -40,7 +40,7 @@ class ExploreTask(_OnProperties):
         return _SCENE_COST * self.count * (len(self.properties) + len(self.claims))
 
     def compute(self, keeper: Keeper) -> ExploreResult:
-        from verify.exploration.property_checks import check_properties, properties_of
+        from verify.exploration.scenes_of_seed import check_properties, properties_of
 
         properties = properties_of(self.properties, self.claims)
         numbers = range(self.first, self.first + self.count)
@@ -51,12 +51,12 @@ class ShrinkTask(_OnProperties):
     """Shrink one sampled scene for which a property (the only one here) does not hold."""
 
     result = ShrunkResult
-    imports = ("verify.exploration.property_checks",)
+    imports = ("verify.exploration.scenes_of_seed",)
     kind: Literal["shrink"] = "shrink"
     example: int
 
     def compute(self, keeper: Keeper) -> ShrunkResult:
-        from verify.exploration.property_checks import properties_of, shrink
+        from verify.exploration.scenes_of_seed import properties_of, shrink
 
         (violated,) = properties_of(self.properties, self.claims)
         return shrink(violated, self.drawn, self.seed, self.example)

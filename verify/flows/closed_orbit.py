@@ -21,17 +21,18 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
+from verify.algebra.limits import substitute
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.substitution import substitute
 from verify.errors import InputError
-from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State
-from verify.flows.functions import functions_at
+from verify.flows.compiled_functions import functions_at
+from verify.flows.extrapolation import LOST, NoFlowError, Number, NumericalFlow, State
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 
 Element = tuple[Ring, Poly]
 Start = tuple[Fraction, Fraction]  # p, q
+Shift = tuple[Fraction, Fraction]  # of p and q, in units of 2π
 
 _ROUGH = 16  # digits with which the period is looked for
 _MORE = (0, 15, 30)  # digits that an orbit near a separatrix may lose
@@ -43,14 +44,14 @@ _HALVINGS, _BISECTIONS, _NEWTON = 100, 6, 8
 
 
 @dataclass(frozen=True)
-class Orbit:
+class ClosedOrbit:
     """The closed orbit through z₀ at the M equally spaced times k P / M.
 
     `period` is None for an equilibrium, which has one point. `shift`: z(P) − z₀, not zero for a
     rotation. `flow` is the exact flow with the digits that the points have.
     """
 
-    flow: Flow
+    flow: NumericalFlow
     points: tuple[State, ...]
     period: Number | None
     shift: State
@@ -64,7 +65,7 @@ class Orbit:
     def values(self, element: Element) -> list[Number]:
         """Evaluate a function of p and q at the points.
 
-        Raises NoFlowError where it is not defined.
+        Raises NoFlowError if it is not defined.
         """
         function = functions_at(self.flow.arithmetic, [element])
         try:
@@ -73,12 +74,12 @@ class Orbit:
         except (ArithmeticError, ValueError):
             raise NoFlowError("the function is not defined along the whole orbit") from None
 
-    def finer(self) -> "Orbit":
+    def finer(self) -> "ClosedOrbit":
         """Return the orbit with one more point between each two. Raises NoFlowError."""
         time = self.time(Fraction(1, 2 * len(self.points)))
         between = [self.flow.advance(z, time) for z in self.points]
         points = tuple(z for pair in zip(self.points, between, strict=True) for z in pair)
-        return Orbit(self.flow, points, self.period, self.shift)
+        return ClosedOrbit(self.flow, points, self.period, self.shift)
 
     def time(self, part: Fraction) -> Number:
         """Return that part of the period."""
@@ -87,18 +88,20 @@ class Orbit:
             return self.period * self.flow.number(part)
 
 
-def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
+def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> ClosedOrbit:
     """Return the orbit through z₀ = (p, q) at `count` times. Raises NoFlowError if not closed."""
     hamiltonian.check_planar()
     field, _ = canonical_field(hamiltonian)
     if is_equilibrium(hamiltonian, field, start):
-        flow = Flow(field, digits)
+        flow = NumericalFlow(field, digits)
         zero = flow.number(Fraction(0))
         p, q = (flow.number(x) for x in start)
-        return Orbit(flow, ((p, q),), None, (zero, zero))
+        return ClosedOrbit(flow, ((p, q),), None, (zero, zero))
     first_return = _first_return(hamiltonian, start)
     for more in _MORE:
-        orbit = _refine_period(Flow(field, digits + more), start, first_return, digits, count)
+        orbit = _refine_period(
+            NumericalFlow(field, digits + more), start, first_return, digits, count
+        )
         if orbit is not None:
             return orbit
     raise NoFlowError(
@@ -108,7 +111,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
 
 
 def is_equilibrium(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bool:
-    """Return True if z₀ is an equilibrium, by algebra; NoFlowError where H is not defined."""
+    """Return True if z₀ is an equilibrium, by algebra; NoFlowError if H is not defined."""
     ring = field.ring
     numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
     point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
@@ -124,7 +127,7 @@ def is_equilibrium(hamiltonian: Hamiltonian, field: CanonicalField, start: Start
     return False not in zero
 
 
-def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
+def shifts(hamiltonian: Hamiltonian) -> Iterator[Shift]:
     """Yield (0, 0) and ± the periods of H in p and in q, in units of 2π."""
     zero = Fraction(0)
     yield zero, zero
@@ -147,21 +150,21 @@ class _Return:
     """
 
     time: float
-    shift: tuple[Fraction, Fraction]
+    shift: Shift
     reach: float
 
 
 @lru_cache(maxsize=8)
 def _first_return(hamiltonian: Hamiltonian, start: Start) -> _Return:
     # An average asks for the same orbit twice and more, each time to other digits.
-    rough = Flow(canonical_field(hamiltonian)[0], _ROUGH)
+    rough = NumericalFlow(canonical_field(hamiltonian)[0], _ROUGH)
     return _ReturnSearch(rough, start, list(shifts(hamiltonian))).find_return()
 
 
 class _ReturnSearch:
     """A search that follows the flow from z₀ until it returns."""
 
-    def __init__(self, flow: Flow, start: Start, shifts: list[tuple[Fraction, Fraction]]) -> None:
+    def __init__(self, flow: NumericalFlow, start: Start, shifts: list[Shift]) -> None:
         self.flow = flow
         self.z0: State = flow.number(start[0]), flow.number(start[1])
         self.f0 = flow.slope(self.z0)
@@ -175,11 +178,9 @@ class _ReturnSearch:
         for _ in range(_MOST_STEPS):
             step, after, cosine = self.take_step(z, step)
             self.reach = max(self.reach, _distance(after, self.z0))
-            crossings = [
-                back for t in self.targets if (back := self.find_crossing(z, step, after, t))
-            ]
-            if crossings:
-                first, shift = min(crossings)
+            crossings = [self.find_crossing(z, step, after, target) for target in self.targets]
+            if any(crossings):
+                first, shift = min(crossing for crossing in crossings if crossing)
                 return _Return(time + first, shift, self.reach)
             if self.reach > _FAR * span:
                 raise NoFlowError("the orbit is not closed: it goes far away")
@@ -207,8 +208,8 @@ class _ReturnSearch:
         return float(self.f0[0] * (z[0] - target[0]) + self.f0[1] * (z[1] - target[1]))
 
     def find_crossing(
-        self, z: State, step: float, after: State, goal: tuple[tuple[Fraction, Fraction], State]
-    ) -> tuple[float, tuple[Fraction, Fraction]] | None:
+        self, z: State, step: float, after: State, goal: tuple[Shift, State]
+    ) -> tuple[float, Shift] | None:
         """Return the time after z at which the orbit meets the target, if the step crosses it."""
         shift, target = goal
         if not self.height(z, target) < 0 <= self.height(after, target):
@@ -235,9 +236,9 @@ class _ReturnSearch:
 
 
 def _refine_period(
-    flow: Flow, start: Start, first_return: _Return, digits: int, count: int
-) -> Orbit | None:
-    """Return the orbit with its period to all digits; None where it does not close to so many."""
+    flow: NumericalFlow, start: Start, first_return: _Return, digits: int, count: int
+) -> ClosedOrbit | None:
+    """Return the orbit with its period to all digits; None if it does not close to so many."""
     z0: State = flow.number(start[0]), flow.number(start[1])
     target = _shift_state(flow, z0, first_return.shift)
     period, z = _exactly(flow, first_return.time), z0
@@ -261,19 +262,19 @@ def _refine_period(
         points.append(flow.advance(points[-1], time))
     with flow.arithmetic.context():
         shift = target[0] - z0[0], target[1] - z0[1]
-    return Orbit(flow, tuple(points), period, shift)
+    return ClosedOrbit(flow, tuple(points), period, shift)
 
 
 def _pieces(count: int) -> int:
     return max(16, count)
 
 
-def _part(flow: Flow, period: Number, count: int) -> Number:
+def _part(flow: NumericalFlow, period: Number, count: int) -> Number:
     with flow.arithmetic.context():
         return period / count
 
 
-def _shift_state(flow: Flow, z: State, shift: tuple[Fraction, Fraction]) -> State:
+def _shift_state(flow: NumericalFlow, z: State, shift: Shift) -> State:
     if not any(shift):
         return z
     turn = flow.arithmetic.functions["pi"]
@@ -282,12 +283,12 @@ def _shift_state(flow: Flow, z: State, shift: tuple[Fraction, Fraction]) -> Stat
     return p, q
 
 
-def _exactly(flow: Flow, time: float) -> Number:
+def _exactly(flow: NumericalFlow, time: float) -> Number:
     return flow.number(Fraction(time))
 
 
-def _distance(z: State, other: State) -> float:
-    return math.hypot(float(z[0] - other[0]), float(z[1] - other[1]))
+def _distance(z: State, target: State) -> float:
+    return math.hypot(float(z[0] - target[0]), float(z[1] - target[1]))
 
 
 def _cosine(x: State, y: State) -> float:

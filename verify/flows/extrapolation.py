@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import ElementCode
+from verify.flows.compiled_functions import ElementCode
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.prose import read_prose
 
@@ -47,7 +47,7 @@ def columns_for(digits: int) -> int:
     return 6 + digits // 3
 
 
-class Flow:
+class NumericalFlow:
     """The exact flow of a field without symbols, in n degrees of freedom, to `digits` digits.
 
     A state has all coordinates, and t where H depends on it.
@@ -75,7 +75,7 @@ class Flow:
         return tuple(self.number(point[name]) for name in self.names)
 
     def slope(self, z: State) -> State:
-        """Return f(z). Raises NoFlowError where it is not defined."""
+        """Return f(z). Raises NoFlowError if it is not defined."""
         try:
             with self.arithmetic.context():
                 return self._slopes(*z)
@@ -83,7 +83,7 @@ class Flow:
             raise NoFlowError("the orbit leaves where H is defined") from None
 
     def step(self, z: State, time: Number) -> State | None:
-        """Return φ_time(z) by one extrapolated step; None where that does not give the digits."""
+        """Return φ_time(z) by one extrapolated step; None if that does not give the digits."""
         try:
             with self.arithmetic.context():
                 return self._extrapolate(z, time)

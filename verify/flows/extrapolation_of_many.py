@@ -15,8 +15,8 @@ from typing import Any
 from verify.arithmetic.float_context import WIDE
 from verify.arithmetic.number_system import Arithmetic, interpret
 from verify.arithmetic.systems import float64
+from verify.flows.compiled_functions import functions_at
 from verify.flows.extrapolation import LOST, NoFlowError
-from verify.flows.functions import functions_at
 from verify.functions import in_rings
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -194,13 +194,13 @@ class CommonSteps:
         h = WIDE.mpf(time) / count
         twice = 2 * h
         before, current = np.zeros_like(z), first * h
-        place, change = np.empty_like(z), np.empty_like(z)  # one array each for all steps
+        midpoint, change = np.empty_like(z), np.empty_like(z)  # one array each for all steps
         for k in range(1, count):
-            _fill(change, self.slopes(*np.add(z, current, out=place), t + k * h))
+            _fill(change, self.slopes(*np.add(z, current, out=midpoint), t + k * h))
             change *= twice
             change += before
             before, current, change = current, change, before
-        _fill(change, self.slopes(*np.add(z, current, out=place), t + time))
+        _fill(change, self.slopes(*np.add(z, current, out=midpoint), t + time))
         change *= h
         current += before
         current += change

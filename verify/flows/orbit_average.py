@@ -16,7 +16,7 @@ from fractions import Fraction
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import is_representable, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.flows.closed_orbit import Element, Orbit, Start, closed_orbit
+from verify.flows.closed_orbit import ClosedOrbit, Element, Start, closed_orbit
 from verify.flows.extrapolation import NoFlowError, Number, State
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -39,14 +39,14 @@ class Average:
     value: Fraction
     bound: Fraction
     period: tuple[Fraction, Fraction] | None  # with its bound
-    orbit: Orbit
+    orbit: ClosedOrbit
     values: tuple[float, ...]
 
 
 def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> Average:
     """Return ⟨g⟩ along the exact orbit through start = (p, q), to so many digits of max |g|.
 
-    g: a ring element in p and q alone. Raises NoFlowError where the orbit is not closed, is not
+    g: a ring element in p and q alone. Raises NoFlowError if the orbit is not closed, is not
     known to be, or so many digits are not reached.
     """
     for more, fewest in _ATTEMPTS:
@@ -56,27 +56,31 @@ def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> 
         first, mean = _refine_until_settled(first, g, digits)
         finest = digits + more + _CHECK
         # 3/2 as many points alias other harmonics, so that equal means are no accident.
-        again = closed_orbit(hamiltonian, start, finest, len(first.points) * 3 // 2)
-        better = _compute_mean(again, g)
-        exact = again.flow.arithmetic.exact
-        before, period = exact(first.period), exact(again.period)
+        finer = closed_orbit(hamiltonian, start, finest, len(first.points) * 3 // 2)
+        finer_mean = _compute_mean(finer, g)
+        to_fraction = finer.flow.arithmetic.exact
+        before, period = to_fraction(first.period), to_fraction(finer.period)
         period_error = abs(period - before) + _last_digit(finest) * period
-        bound = abs(better.value - mean.value) + _last_digit(finest) * better.size
+        bound = abs(finer_mean.value - mean.value) + _last_digit(finest) * finer_mean.size
         if (
             period_error <= _last_digit(digits) * period
-            and bound <= _last_digit(digits) * better.size
+            and bound <= _last_digit(digits) * finer_mean.size
         ):
-            return Average(better.value, bound, (period, period_error), again, better.values)
+            return Average(
+                finer_mean.value, bound, (period, period_error), finer, finer_mean.values
+            )
     raise NoFlowError(f"{digits} digits of the average were not reached")
 
 
-def _refine_until_settled(orbit: Orbit, g: Element, digits: int) -> tuple[Orbit, "_Mean"]:
+def _refine_until_settled(
+    orbit: ClosedOrbit, g: Element, digits: int
+) -> tuple[ClosedOrbit, "_Mean"]:
     """Return the orbit with so many points that the mean over every second one is the same."""
     mean = _compute_mean(orbit, g)
     while len(orbit.points) < _MOST:
-        half, orbit = mean, orbit.finer()
+        half_mean, orbit = mean, orbit.finer()
         mean = _compute_mean(orbit, g)
-        if abs(mean.value - half.value) <= _last_digit(digits) * mean.size:
+        if abs(mean.value - half_mean.value) <= _last_digit(digits) * mean.size:
             return orbit, mean
     raise NoFlowError(f"{_MOST} points are too few for {digits} digits of the average")
 
@@ -88,7 +92,7 @@ class _Mean:
     values: tuple[float, ...]
 
 
-def _compute_mean(orbit: Orbit, g: Element) -> _Mean:
+def _compute_mean(orbit: ClosedOrbit, g: Element) -> _Mean:
     numbers = [orbit.flow.arithmetic.exact(x) for x in orbit.values(g)]
     mean = sum(numbers, Fraction(0)) / len(numbers)
     return _Mean(mean, max(map(abs, numbers)), tuple(map(float, numbers)))
@@ -98,7 +102,7 @@ def _last_digit(digits: int) -> Fraction:
     return Fraction(1, 10**digits)
 
 
-def _at_rest(orbit: Orbit, g: Element, start: Start, digits: int) -> Average:
+def _at_rest(orbit: ClosedOrbit, g: Element, start: Start, digits: int) -> Average:
     """Return the average at an equilibrium, g(z₀), enclosed."""
     ring, x = g
     bits = 4 * digits + 64
@@ -135,7 +139,7 @@ def bounded_part(orbit_average: Average) -> Callable[[State], float]:
     return evaluate
 
 
-def phase(orbit: Orbit, z: State) -> float:
+def phase(orbit: ClosedOrbit, z: State) -> float:
     """Return the time t at which φ_t(z₀) is nearest to z, which must be near the orbit."""
     # A rotation runs on by whole periods of H, while the orbit's points cover one.
     z = _remove_turns(orbit, z)
@@ -153,7 +157,7 @@ def phase(orbit: Orbit, z: State) -> float:
     return time
 
 
-def _remove_turns(orbit: Orbit, z: State) -> State:
+def _remove_turns(orbit: ClosedOrbit, z: State) -> State:
     """Subtract whole shifts from z, so that it lies beside the orbit's points."""
     first = orbit.points[0]
     coordinates = []
@@ -164,5 +168,5 @@ def _remove_turns(orbit: Orbit, z: State) -> State:
     return coordinates[0], coordinates[1]
 
 
-def _squared_distance(z: State, other: State) -> Number:
-    return (z[0] - other[0]) ** 2 + (z[1] - other[1]) ** 2
+def _squared_distance(z: State, target: State) -> Number:
+    return (z[0] - target[0]) ** 2 + (z[1] - target[1]) ** 2

@@ -1,4 +1,4 @@
-"""The exact orbit followed by the flow with few digits: see `verify.flows.orbit`."""
+"""The search for an exact orbit by the flow with few digits: see `verify.flows.exact_orbit`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ from typing import ClassVar, Literal
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.closed_orbit import shifts
-from verify.flows.extrapolation import Flow, NoFlowError, Number, State
-from verify.flows.functions import functions_at
+from verify.flows.compiled_functions import functions_at
+from verify.flows.extrapolation import NoFlowError, Number, NumericalFlow, State
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, read_prose
@@ -43,10 +43,8 @@ class ExactOrbit:
     `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
     runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
     det Hess H on the orbit; `period`: that of a closed one, about. `more_digits`: those that z₀ is
-    given with, beyond those of ordinary numbers.
-
-    `has_neighbours`: True if it is followed beside neighbours, which show how fast they part,
-    instead of until it closes.
+    given with, beyond those of ordinary numbers. `has_neighbours`: True if it is followed
+    beside neighbours, which show how fast they part, instead of until it closes.
     """
 
     kind: Kind
@@ -75,11 +73,7 @@ class OrbitSearch:
     """A search that follows the flow from z₀ until it closes, leaves, or the time is over."""
 
     def __init__(
-        self,
-        hamiltonian: Hamiltonian,
-        start: tuple[Fraction, Fraction],
-        time: Fraction,
-        t0: Fraction,
+        self, hamiltonian: Hamiltonian, start: Coordinates, time: Fraction, t0: Fraction
     ) -> None:
         field, _ = canonical_field(hamiltonian)
         (force, speed), diff = field.slopes, field.ring.diff
@@ -87,8 +81,8 @@ class OrbitSearch:
         h_pp, h_pq = diff(speed, "p"), diff(speed, "q")
         # det Hess H = H_pp H_qq − H_pq², with force = −H_q and speed = H_p.
         stiffness = ring.reduce(-h_pp * diff(force, "q") - h_pq * h_pq)
-        self.more_digits = initial_value_digits(start)
-        self.flow = Flow(field, _DIGITS + self.more_digits)
+        self.more_digits = _initial_value_digits(start)
+        self.flow = NumericalFlow(field, _DIGITS + self.more_digits)
         self.arithmetic = self.flow.arithmetic
         elements = [(ring, x) for x in (force, speed, stiffness, field.energy)]
         self.evaluate_at = functions_at(self.arithmetic, elements, self.flow.names)
@@ -118,10 +112,8 @@ class OrbitSearch:
         if not self.timed and not any(self.rates[0][:2]):
             return self.build_orbit("at rest", "stays where it is, an equilibrium")
         if not self.timed and any(self.free):
-            names = ("p", "q") if self.free[0] else ("q", "p")
-            summary = (
-                f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
-            )
+            moving, still = ("p", "q") if self.free[0] else ("q", "p")
+            summary = f"H does not depend on {moving}: {still} stays and {moving} moves evenly"
             return self.build_orbit("rotates", summary, self.free)
         try:
             return self.integrate()
@@ -129,7 +121,7 @@ class OrbitSearch:
             return self.build_orbit("unknown", error.reason)
 
     def record_rates(self, z: State) -> None:
-        """Record f and ω² at a point of the orbit; NoFlowError where they are not defined."""
+        """Record f and ω² at a point of the orbit; NoFlowError if they are not defined."""
         try:
             with self.arithmetic.context():
                 dp, dq, stiffness, _ = self.evaluate_at(*z)  # H too has to be defined there
@@ -167,9 +159,9 @@ class OrbitSearch:
                     "and goes on"
                 )
                 return self.build_orbit("escapes", summary)
-            back = None if self.timed else self.find_return(z, after)
-            if back is not None:
-                shift, part = back
+            crossing = None if self.timed else self.find_return(z, after)
+            if crossing is not None:
+                shift, part = crossing
                 with self.arithmetic.context():
                     period = time - (1 - part) * step
                 if not cut:
@@ -178,14 +170,11 @@ class OrbitSearch:
                 summary = f"{kind}, with a period of about `{float(period):.3g}`"
                 return self.build_orbit(kind, summary, shift, period=self.arithmetic.exact(period))
             z = after
-            if time >= self.time and self.timed:
-                return self.build_orbit(
-                    "driven", f"is driven; followed to its end, t = `{self.clock(time):.6g}`"
-                )
             if time >= self.time:
-                return self.build_orbit(
-                    "open", f"is still under way at t = `{self.clock(time):.6g}`"
-                )
+                end = f"t = `{self.clock(time):.6g}`"
+                if self.timed:
+                    return self.build_orbit("driven", f"is driven; followed to its end, {end}")
+                return self.build_orbit("open", f"is still under way at {end}")
         return self.build_orbit("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
 
     def clock(self, time: Number) -> float:
@@ -235,7 +224,7 @@ class OrbitSearch:
     def _find_crossing(self, z: State, after: State, target: State, reach: State) -> Number | None:
         """Return the part of the chord from z to `after` that lies before the target's normal.
 
-        None where it does not cross the line, which is normal to f(z₀), near the target.
+        None if it does not cross the line, which is normal to f(z₀), near the target.
         """
         slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
 
@@ -268,26 +257,26 @@ class OrbitSearch:
         shift: Sequence[Number] = (0, 0),
         period: Fraction | None = None,
     ) -> ExactOrbit:
-        exact, zero = self.arithmetic.exact, self.number(Fraction(0))
+        to_fraction, zero = self.arithmetic.exact, self.number(Fraction(0))
         with self.arithmetic.context():
             centre, half_widths = self._ends()
             fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
             stiffest = max((r[2] for r in self.rates), default=zero)
         # An orbit that has hardly moved in that time is measured by where it is.
         reach = tuple(
-            exact(r) if exact(r) > abs(x) / _STILL else abs(x)
+            to_fraction(r) if to_fraction(r) > abs(x) / _STILL else abs(x)
             for r, x in zip(half_widths, self.start, strict=True)
         )
         # H_p = q' and H_q = −p': H changes by about so much across the orbit.
-        scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
+        scale = (to_fraction(fastest[1]) * reach[0] + to_fraction(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,
             summary=read_prose(summary),
-            centre=tuple(map(exact, centre)),
+            centre=tuple(map(to_fraction, centre)),
             reach=reach,
             turns=self.find_turns(half_widths, shift),
             scale=scale,
-            stiffness=exact(stiffest),
+            stiffness=to_fraction(stiffest),
             period=period,
             more_digits=self.more_digits,
         )
@@ -304,7 +293,7 @@ class OrbitSearch:
         return tuple(any(2 * x > abs(s[k]) > 0 for s in self.shifts) for k, x in farthest)
 
 
-def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:
+def _initial_value_digits(start: Coordinates) -> int:
     """Return the number of digits of an initial value, beyond those of ordinary numbers."""
     digits = max(len(str(x.numerator).rstrip("0")) for x in start)
     return min(digits, _MOST_DIGITS) if digits > _DIGITS else 0

@@ -22,14 +22,14 @@ from flint import arb, fmpq
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.flows import closed_form
+from verify.flows import ball_evaluation
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.extrapolation_of_many import follow
 from verify.flows.solution import solution_from
-from verify.hamiltonians import known_flows
+from verify.hamiltonians import flow_recognition
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.motion import Motion, exactly
+from verify.hamiltonians.named_system import Motion, exactly
 from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
@@ -40,7 +40,7 @@ _MOTIONS = 1 << 15  # some 4 kB each
 _FLOWS = 3  # for which so many points are, in some 30 MB each
 _RoundedState = tuple[float, float, float]
 _Evaluation = tuple[str, tuple[_RoundedState, ...]]
-_BITS = closed_form.first_precision(16)
+_BITS = ball_evaluation.first_precision(16)
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 COLUMNS = 8, 7  # of the two extrapolations
 UNIT = 2.0**-53  # the rounding of a result, relative to it
@@ -58,14 +58,14 @@ class Points:
     a column for each point.
 
     `bound` ≥ |error| of each of them: certified where a closed form is known, and mostly the
-    rounding to float64; else an estimate. `method` says how; `alone` are the points that were left
-    out of a numerical flow, and found one by one.
+    rounding to float64; else an estimate. `method` says how; `outliers` are the points that were
+    left out of a numerical flow, and solved one by one.
     """
 
     points: Mapping[str, Array]
     bound: float
     method: str
-    alone: tuple[int, ...] = ()
+    outliers: tuple[int, ...] = ()
 
 
 def exact_points(
@@ -79,8 +79,8 @@ def exact_points(
     `points`: an array of float64 for each coordinate, by its name, all of one length.
 
     Raises InputError for a parameter without a value and for points that are not such arrays, and
-    NoFlowError, naming the point, where one blows up before the last of the times or cannot be
-    followed so far, and where a numerical flow fails the check at the sample.
+    NoFlowError, naming the point, if one blows up before the last of the times or cannot be
+    followed so far, and if a numerical flow fails the check at the sample.
     """
     import numpy as np
 
@@ -99,9 +99,9 @@ def exact_points(
     if plane and len(z[0]) and _motions(hamiltonian)(*(float(x[0]) for x in z)) is not None:
         return _in_closed_form(hamiltonian, z, tuple(times))
     together = _CommonFlow(hamiltonian, np.array(z), tuple(times), t0, extreme=plane)
-    ends, bound, alone = together.follow_all()
+    ends, bound, outliers = together.follow_all()
     method = METHOD if len(ends[0]) else "no points"
-    return Points(dict(zip(names, ends, strict=True)), bound, method, alone)
+    return Points(dict(zip(names, ends, strict=True)), bound, method, outliers)
 
 
 def _in_closed_form(
@@ -149,7 +149,7 @@ def _closed_form_evaluator(
         motion = motion_from(p, q)
         assert motion is not None  # noqa: S101 - as another point has one
         for time in ends:
-            closed_form.check_no_blow_up(motion, time)
+            ball_evaluation.check_no_blow_up(motion, time)
         return motion.method, tuple(
             [_round_state(motion, p, q, exact_time) for exact_time in exact_times]
         )
@@ -160,21 +160,21 @@ def _closed_form_evaluator(
 @lru_cache(maxsize=_FLOWS)
 def _motions(hamiltonian: Hamiltonian) -> Callable[[float, float], Motion | None]:
     """Return (p, q) ↦ the motion from there; its exact part serves for all times."""
-    motion_from = known_flows.motions(hamiltonian)
+    motion_from = flow_recognition.motions(hamiltonian)
     return lru_cache(maxsize=_MOTIONS)(lambda p, q: motion_from(Fraction(p), Fraction(q)))
 
 
 def _round_state(motion: Motion, p: float, q: float, time: fmpq) -> _RoundedState:
     """Return p, q in float64 and a bound of the error of each."""
-    if time == 0 or motion.rest:
+    if time == 0 or motion.is_at_rest:
         return p, q, 0.0
     evaluate = partial(_round_to_float64, motion, max(abs(p), abs(q)), time)
     # Most states are rounded at the precision that is set; a wide ball takes more bits.
-    return evaluate() or closed_form.try_precisions_from(evaluate, 2 * _BITS)
+    return evaluate() or ball_evaluation.try_precisions_from(evaluate, 2 * _BITS)
 
 
 def _round_to_float64(motion: Motion, least: float, time: fmpq) -> _RoundedState | None:
-    """Return the same, or None where flint's precision is not enough.
+    """Return the same, or None if flint's precision is not enough.
 
     `least`: a lower bound of the orbit's size.
     """
@@ -213,7 +213,7 @@ class _CommonFlow:
         The states are an array (coordinate, time, point); the bound is an estimate that holds for
         each number.
 
-        Raises NoFlowError, naming the point, where one cannot be followed so far, and where the
+        Raises NoFlowError, naming the point, if one cannot be followed so far, and if the
         sample's errors are larger than they are estimated.
         """
         import numpy as np
@@ -223,16 +223,20 @@ class _CommonFlow:
         differences = np.abs(fine - rough).max(axis=0)  # (time, point)
         # A difference that is nan, of a point that could not be followed, compares as False.
         is_trusted = differences <= TRUSTED * self._scale(fine)
-        alone = tuple(map(int, np.flatnonzero(~is_trusted.all(axis=0))))
-        for i in alone:
+        outliers = tuple(map(int, np.flatnonzero(~is_trusted.all(axis=0))))
+        for i in outliers:
             for k, time in enumerate(times):
                 fine[:, k, i], differences[k, i] = self.solve_exactly(i, time)
         estimate = float((differences + UNIT * self._scale(fine)).max(initial=0.0))
         if not times:
-            return fine, _SAFETY * estimate, alone
+            return fine, _SAFETY * estimate, outliers
         # Digits of a numerical flow take long: the sample is solved for the longest time only.
         k = max(range(len(times)), key=lambda k: abs(times[k]))
-        return fine, self._check_sample(fine[:, k], times[k], alone, _SAFETY * estimate), alone
+        return (
+            fine,
+            self._check_sample(fine[:, k], times[k], outliers, _SAFETY * estimate),
+            outliers,
+        )
 
     def _scale(self, ends: Array) -> Array:
         """Return the largest |coordinate| at both ends, for each time and point."""
@@ -254,12 +258,12 @@ class _CommonFlow:
             raise name_point(error, i, start, time) from None
 
     def _check_sample(
-        self, ends: Array, time: Fraction, alone: Sequence[int], estimate: float
+        self, ends: Array, time: Fraction, outliers: Sequence[int], estimate: float
     ) -> float:
         """Return a bound of the errors that the sample confirms; NoFlowError if it does not."""
         worst = 0.0
         # Points solved alone are exact; only those that were followed together need a check.
-        for i in self._sample(alone):
+        for i in self._sample(outliers):
             true, bound = self.solve_exactly(i, time)
             error = max(abs(float(x) - y) for x, y in zip(ends[:, i], true, strict=True))
             worst = max(worst, error + bound)
@@ -270,11 +274,11 @@ class _CommonFlow:
                 )
         return max(estimate, _SAFETY * worst)
 
-    def _sample(self, alone: Sequence[int]) -> list[int]:
+    def _sample(self, outliers: Sequence[int]) -> list[int]:
         """Select evenly spaced points among those that were followed together."""
         import numpy as np
 
-        together = np.setdiff1d(np.arange(self.starts.shape[1]), alone)
+        together = np.setdiff1d(np.arange(self.starts.shape[1]), outliers)
         if len(together) <= SAMPLE:
             return [int(i) for i in together]
         evenly = np.linspace(0, len(together) - 1, SAMPLE - self.extreme).round().astype(int)
@@ -288,5 +292,7 @@ def name_point(
     """Return the error as a NoFlowError that names its point; an overflow is beyond float64."""
     reason = error.reason if isinstance(error, NoFlowError) else "it is beyond float64"
     names = sorted(start, key=lambda name: name[0] != "q")
-    where = ", ".join(f"{name} = `{float(start[name]):.6g}`" for name in names)
-    return NoFlowError(read_prose(f"point {i}, {where}, to t = `{float(time):.6g}`: ") + reason)
+    coordinates = ", ".join(f"{name} = `{float(start[name]):.6g}`" for name in names)
+    return NoFlowError(
+        read_prose(f"point {i}, {coordinates}, to t = `{float(time):.6g}`: ") + reason
+    )

@@ -20,79 +20,43 @@ from functools import lru_cache
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.arithmetic.exact import plain
+from verify.arithmetic.exact import NumberOrList, plain
 from verify.effort import MOST, answer_unless_long
 from verify.errors import InputError
-from verify.flows import closed_form
+from verify.flows import ball_evaluation
 from verify.flows.closed_orbit import is_equilibrium
-from verify.flows.extrapolation import Flow, NoFlowError
-from verify.hamiltonians import kepler_motion, known_flows
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
+from verify.hamiltonians import flow_recognition
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.flow_recognition import uncouple
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of
+from verify.hamiltonians.run_domain import find_first_fault, point_of
 from verify.hamiltonians.systems import get
-from verify.hamiltonians.times_on_the_way import find_first_fault
-from verify.hamiltonians.uncoupled import uncouple
+from verify.hamiltonians.systems.several.kepler import is_ellipse, state_on_ellipse
 from verify.structures import AREA, SYMPLECTIC
 
+Point = Mapping[str, Fraction]
 METHOD = "numerical flow: Gragg's method, extrapolated"
+_FORCED = "closed form of the forced oscillator"  # the one that is known in time
+_ELLIPSE = "closed form of Kepler's ellipse"
+ITSELF = "the initial value itself"
+NOT_KNOWN = "not known"
+_FROM_START = Fraction(0)
 _GUARD = 6  # digits of the first flow, beyond those requested
 _MORE = 10  # further digits of each flow after the first
 _TRIES = 6
 _SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
 _PARTS = 1024  # of the time, in which poles of H are looked for
-
-
-def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
-    """Raise NoFlowError if H is not smooth at some time on the way."""
-    part = time / _PARTS
-    parts, words = find_first_fault(hamiltonian, t0, part, _PARTS)
-    if words:
-        between = f"t = {plain(t0 + parts * part, 6)} and {plain(t0 + (parts + 1) * part, 6)}"
-        raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
-
-
-def follow_confirmed(
-    field: CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
-) -> tuple[list[Fraction], Fraction]:
-    """Follow the numerical flow with more and more digits until two runs agree.
-
-    Returns the coordinates after the time and a bound of the error of each, which is an estimate.
-    `start`: the coordinates, and t where H depends on it. Raises NoFlowError.
-    """
-    coordinates = len(field.names)
-    before: list[Fraction] | None = None
-    for k in range(_TRIES):
-        flow = Flow(field, digits + _GUARD + k * _MORE)
-        z = flow.follow(tuple(map(flow.number, start)), time)
-        after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
-        if before is not None:
-            # The finer flow is nearer to the truth than the two are to each other; the factor
-            # allows for a coarser one that is right by luck.
-            bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
-            if bound * 10**digits <= max(map(abs, (*start[:coordinates], *after))):
-                return after, bound
-        before = after
-    raise NoFlowError("the digits asked for are lost along the orbit")
-
-
 _TIME_DIGITS = 12  # digits of a time at which a solution ends
-NOT_KNOWN = "not known"
-
-_FORCED = "closed form of the forced oscillator"  # the one that is known in time
-_ELLIPSE = "closed form of Kepler's ellipse"
-_FROM_START = Fraction(0)
-Point = Mapping[str, Fraction]
-ITSELF = "the initial value itself"
 
 
 @dataclass(frozen=True)
-class Solution:
+class ExactSolution:
     """The state z = φ_time(z₀), by coordinates' names: `bound` ≥ |error| of each.
 
-    `method` names the way it was computed. In closed form the bound is `enclosed`, by ball
-    arithmetic, and 0 where the solution is exact; else it is an estimate, by a second evaluation
-    with more digits.
+    `point` has a rational for each coordinate. `method` names the way it was computed. In closed
+    form the bound is `enclosed`, by ball arithmetic, and 0 where the solution is exact; else it is
+    an estimate, by a second evaluation with more digits.
     """
 
     point: Point
@@ -114,29 +78,39 @@ class Solution:
 def exact_solution(
     hamiltonian: Hamiltonian,
     *,
-    p: Given,
-    q: Given,
+    p: NumberOrList,
+    q: NumberOrList,
     time: Fraction,
     digits: int,
     t0: Fraction = _FROM_START,
-) -> Solution:
-    """Return φ_time(p, q), for numbers in the plane and lists in n degrees: see `solution_from`."""
+) -> ExactSolution:
+    """Return the exact solution of Hamilton's equations after a time, φ_time(q, p), with its bound.
+
+    `p`, `q`: the initial value, a number each in the plane and a list of n numbers each in n
+    degrees of freedom. `time`: how long the solution lasts, in the unit of t; it may be negative.
+    `digits`: from 1 to 10,000; the bound of each coordinate is at most 10^−digits times the largest
+    coordinate, in size, at the two ends. `t0`: the time at which it begins, where H depends on t.
+
+    Returns an `ExactSolution`. Raises InputError for a parameter without a value, a number of
+    digits out of range and lists of another length, and NoFlowError, whose message says why, if
+    no solution reaches that time or if it could not be followed so far.
+    """
     return solution_from(hamiltonian, point_of(hamiltonian, q, p), time, digits, t0)
 
 
 def solution_from(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
-) -> Solution:
+) -> ExactSolution:
     """Return φ_time(point), with a bound of at most 10^−digits times the orbit's scale.
 
     Where H depends on time the orbit begins at t0, and `time` is how long it lasts.
     The orbit's scale is the largest coordinate, in size, at its two ends. Time may be negative.
-    Raises InputError for a parameter without a value, and NoFlowError, saying why, where no
-    solution reaches that time or where it could not be followed so far.
+    Raises InputError for a parameter without a value, and NoFlowError, saying why, if no
+    solution reaches that time or if it could not be followed so far.
     """
     _check(hamiltonian, digits)
     if time == 0:
-        return Solution(point, Fraction(0), ITSELF)
+        return ExactSolution(point, Fraction(0), ITSELF)
     coordinates: dict[str, Fraction] = {}
     solutions = []
     for part, names in uncouple(hamiltonian):
@@ -145,7 +119,7 @@ def solution_from(
         solution = solve_closed_form(part, part_point, time, digits, t0)
         solutions.append(solution or numerical_solution(part, part_point, time, digits, t0))
         coordinates |= dict(zip(names, solutions[-1].point.values(), strict=True))
-    return Solution(
+    return ExactSolution(
         {name: coordinates[name] for name in hamiltonian.coordinates},
         max(solution.bound for solution in solutions),
         "; ".join(dict.fromkeys(solution.method for solution in solutions)),
@@ -153,53 +127,63 @@ def solution_from(
     )
 
 
+def _check(hamiltonian: Hamiltonian, digits: int) -> None:
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
+    if not 1 <= digits <= ball_evaluation.MOST_DIGITS:
+        raise InputError("digits", digits, f"must be 1 … {ball_evaluation.MOST_DIGITS}")
+
+
+# -- in closed form -------------------------------------------------------------------------------
+
+
 def _closed_form_solution(
-    point: Point, evaluation: closed_form.Evaluation, method: str
-) -> Solution:
+    point: Point, evaluation: ball_evaluation.Evaluation, method: str
+) -> ExactSolution:
     after, bound = evaluation
-    return Solution(dict(zip(point, after, strict=True)), bound, method)
+    return ExactSolution(dict(zip(point, after, strict=True)), bound, method)
 
 
 def _solve_in_plane(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> Solution | None:
-    """Return the solution in closed form, or None where no closed form is known."""
+) -> ExactSolution | None:
+    """Return the solution in closed form, or None if no closed form is known."""
     p, q = start = tuple(point.values())
     if hamiltonian.time_dependent:
-        state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
+        state = flow_recognition.state_in_time(hamiltonian, (p, q, t0), time)
         if state is None:
             return None
         return _closed_form_solution(
-            point, closed_form.evaluate_enclosure(state, start, digits), _FORCED
+            point, ball_evaluation.evaluate_enclosure(state, start, digits), _FORCED
         )
-    motion = known_flows.closed_form(hamiltonian, p, q)
-    rest = (
-        motion.rest
+    motion = flow_recognition.closed_form(hamiltonian, p, q)
+    is_at_rest = (
+        motion.is_at_rest
         if motion
         else is_equilibrium(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
     )
-    if rest:
-        return Solution(point, Fraction(0), ITSELF)
+    if is_at_rest:
+        return ExactSolution(point, Fraction(0), ITSELF)
     if motion is None:
         return None
     return _closed_form_solution(
-        point, closed_form.evaluate(motion, start, time, digits), motion.method
+        point, ball_evaluation.evaluate(motion, start, time, digits), motion.method
     )
 
 
 def _solve_ellipse(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> Solution | None:
+) -> ExactSolution | None:
     """Return the solution in closed form where H is Kepler's and the orbit is bound, else None."""
     mu = answer_unless_long(lambda: _kepler_strength(hamiltonian), None, MOST)
     if mu is None:
         return None
     p1, p2, q1, q2 = start = tuple(point.values())
     q, p = (q1, q2), (p1, p2)
-    if not kepler_motion.is_ellipse(mu, q, p):
+    if not is_ellipse(mu, q, p):
         return None
-    after = closed_form.evaluate_enclosure(
-        lambda: kepler_motion.after(mu, q, p, time), start, digits
+    after = ball_evaluation.evaluate_enclosure(
+        lambda: state_on_ellipse(mu, q, p, time), start, digits
     )
     return _closed_form_solution(point, after, _ELLIPSE)
 
@@ -220,19 +204,8 @@ def _kepler_strength(hamiltonian: Hamiltonian) -> Fraction | None:
     if value is None or not value.is_Rational:
         return None
     difference = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
-    same = difference.is_number and not difference.free_symbols
-    return Fraction(int(value.p), int(value.q)) if same else None
-
-
-def numerical_solution(
-    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
-) -> Solution:
-    """Solve by the numerical flow with more and more digits, until two of them agree."""
-    check_poles(hamiltonian, t0, time)
-    field, _ = canonical_field(hamiltonian)
-    start = [*point.values(), *([t0] if field.timed else [])]
-    after, bound = follow_confirmed(field, start, time, digits)
-    return Solution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
+    is_constant = difference.is_number and not difference.free_symbols
+    return Fraction(int(value.p), int(value.q)) if is_constant else None
 
 
 def leaves_by_algebra(
@@ -251,24 +224,67 @@ def leaves_by_algebra(
         raise InputError("time", str(time), "must not be negative")
     if hamiltonian.time_dependent:
         raise InputError("hamiltonian", hamiltonian.formula, "depends on t; allowed: one without")
-    motion = known_flows.closed_form(hamiltonian, p, q)
+    motion = flow_recognition.closed_form(hamiltonian, p, q)
     if motion is not None:
-        end = closed_form.blow_up(motion, 1, _TIME_DIGITS)
+        end = ball_evaluation.blow_up(motion, 1, _TIME_DIGITS)
         if end is None:
             return motion.goes()
         return (
-            f"it blows up at t = {plain(end, 6)}" if closed_form.may_end_by(motion, time) else None
+            f"it blows up at t = {plain(end, 6)}"
+            if ball_evaluation.may_end_by(motion, time)
+            else None
         )
     if is_equilibrium(hamiltonian, canonical_field(hamiltonian)[0], (p, q)):
         return None
-    for match in known_flows.named_systems(hamiltonian):
+    for match in flow_recognition.named_systems(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)
     return NOT_KNOWN
 
 
-def _check(hamiltonian: Hamiltonian, digits: int) -> None:
-    if hamiltonian.symbols:
-        raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
-    if not 1 <= digits <= closed_form.MOST_DIGITS:
-        raise InputError("digits", digits, f"must be 1 … {closed_form.MOST_DIGITS}")
+# -- by the numerical flow ------------------------------------------------------------------------
+
+
+def numerical_solution(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
+) -> ExactSolution:
+    """Solve by the numerical flow with more and more digits, until two of them agree."""
+    check_poles(hamiltonian, t0, time)
+    field, _ = canonical_field(hamiltonian)
+    start = [*point.values(), *([t0] if field.timed else [])]
+    after, bound = follow_confirmed(field, start, time, digits)
+    return ExactSolution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
+
+
+def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
+    """Raise NoFlowError if H is not smooth at some time on the way."""
+    part = time / _PARTS
+    fault = find_first_fault(hamiltonian, t0, part, _PARTS)
+    if fault is not None:
+        begin = t0 + fault.step * part
+        between = f"t = {plain(begin, 6)} and {plain(begin + part, 6)}"
+        raise NoFlowError(f"between {between} H is not smooth; it is where `{fault.condition}`")
+
+
+def follow_confirmed(
+    field: CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
+) -> tuple[list[Fraction], Fraction]:
+    """Follow the numerical flow with more and more digits until two runs agree.
+
+    Returns the coordinates after the time and a bound of the error of each, which is an estimate.
+    `start`: the coordinates, and t where H depends on it. Raises NoFlowError.
+    """
+    coordinates = len(field.names)
+    before: list[Fraction] | None = None
+    for k in range(_TRIES):
+        flow = NumericalFlow(field, digits + _GUARD + k * _MORE)
+        z = flow.follow(tuple(map(flow.number, start)), time)
+        after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
+        if before is not None:
+            # The finer flow is nearer to the truth than the two are to each other; the factor
+            # allows for a coarser one that is right by luck.
+            bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
+            if bound * 10**digits <= max(map(abs, (*start[:coordinates], *after))):
+                return after, bound
+        before = after
+    raise NoFlowError("the digits asked for are lost along the orbit")

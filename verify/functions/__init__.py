@@ -27,4 +27,4 @@ def by_name() -> dict[str, Function]:
 def in_rings() -> dict[str, Function]:
     """Return the functions that a ring has generators of, and so a kernel calls: the others are
     made of them."""
-    return {name: each for name, each in by_name().items() if each.image is not None}
+    return {name: function for name, function in by_name().items() if function.image is not None}

@@ -37,11 +37,11 @@ class Domain:
 
 @dataclass(frozen=True)
 class FixedPoint:
-    """The accuracy of a function in fixed point, and how it is computed where it is made of others.
+    """The accuracy of a function in fixed point, and how it is computed if it is made of others.
 
     A result is off by `units` in the last place at most, and by its size divided by `share` more,
-    where that is not 0. `composed`: the function in finer numbers, from these and its argument (see
-    `verify.arithmetic.wide.composed`); None where `verify.arithmetic.wide` has code for it.
+    if that is not 0. `composed`: the function in finer numbers, from these and its argument (see
+    `verify.arithmetic.wide.newton`); None if `verify.arithmetic.wide` has code for it.
     """
 
     units: str
@@ -57,18 +57,18 @@ class Function:
     - `slope`: its derivative, from the argument; or `equation`, from the value. Without a pair it
       is made with "inverse" and "sqrt" alone, which a ring has.
     - `lipschitz`: a bound on |slope|, which is 1: the function then stays in a range that its
-      argument is in, such as fixed point's; None where the slope has no bound.
+      argument is in, such as fixed point's; None if the slope has no bound.
     - `domain`: where it is defined; None: everywhere.
     - `pair`, `parts`: the pair whose odd and even function it is made of, and how, with a quotient.
-    - `image`: its image in the field of `verify.algebra.identities.translation`, from its
+    - `image`: its image in the field of `verify.algebra.identities.field_image`, from its
       argument's image. None: it is made of others, and a ring has no generator of it.
     - `turns`: whether sums of it, as of arctangents, are the same but for multiples of π.
     - `bounded`: whether it is between −1 and 1. `positive`: whether it is > 0 everywhere, or an
       expression of its argument that is > 0 where the function is.
-    - `ball`: a ball around its values on one, where arb's own method is too wide.
+    - `ball`: a ball around its values on one, if arb's own method is too wide.
     - `fixed`: in fixed point; None: that has none.
     - `numpy`: its name there; `shown`: on pages; `tex`: a command of TeX's; each follows from the
-      name where it is empty. `synonyms`: other names for it, which the message for a refused
+      name if it is empty. `synonyms`: other names for it, which the message for a refused
       formula mentions.
     """
 

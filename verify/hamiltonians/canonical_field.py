@@ -1,25 +1,28 @@
-"""The vector field of H(p1 … pn, q1 … qn), and derivatives along it.
+"""The vector field of H(p1 … pn, q1 … qn), of one H or of every H at once; derivatives along it.
 
 z = (p1 … pn, q1 … qn); z' = f with f = −∂H/∂q for a momentum and ∂H/∂p for a coordinate; X = f·∂ is
-the Lie derivative, and D = ∂_t + X takes its place where H depends on t.
+the Lie derivative, and D = ∂_t + X takes its place where H depends on t. The field of one H has its
+components in a ring with the coordinates; that of every H in the ring of H's derivatives, the jets.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
 from verify.algebra.embedding import MAX_TERMS
+from verify.algebra.jets import Jets, JetsInDegrees
+from verify.algebra.power_series import CoefficientRing, Derivatives
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import CoefficientRing, Derivatives
+from verify.hamiltonians.coordinates import numbered_names
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 
-class Flow(ABC):
+class VectorField(ABC):
     """Derivatives along a field over any ring; `names` are p1 … pn, q1 … qn."""
 
     names: tuple[str, ...]
@@ -93,7 +96,7 @@ class Flow(ABC):
         return tuple(self.ring.diff(x, name) for name in self.names)
 
 
-class CanonicalField(Flow):
+class CanonicalField(VectorField):
     """The canonical field of one H, an element of a ring with the coordinates, h, t where H has it,
     and parameters."""
 
@@ -142,13 +145,13 @@ class CanonicalField(Flow):
 
 
 def canonical_field(
-    hamiltonian: Hamiltonian, *others: sympy.Expr, most_terms: int = MAX_TERMS
+    hamiltonian: Hamiltonian, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
 ) -> tuple[CanonicalField, list[Poly]]:
     """Return the field of `exact`, and other expressions as elements of its ring, in which each
     symbol that H does not have is a variable too. Raises InputError."""
-    if not others and most_terms == MAX_TERMS:
+    if not expressions and most_terms == MAX_TERMS:
         return _cached_field(hamiltonian), []
-    ring, energy, elements = hamiltonian.embed_in_ring(*others, most_terms=most_terms)
+    ring, energy, elements = hamiltonian.embed_in_ring(*expressions, most_terms=most_terms)
     return CanonicalField(ring, hamiltonian.coordinates, energy), elements
 
 
@@ -164,3 +167,42 @@ def energy_of(hamiltonian: Hamiltonian) -> tuple[Ring, Poly]:
     """Return the ring of H's field, and H in it."""
     field, _ = canonical_field(hamiltonian)
     return field.ring, field.energy
+
+
+class JetField(VectorField):
+    """The flow of f = (−∂H/∂q, ∂H/∂p) for every H, in the jets of H."""
+
+    def __init__(self, jets: JetsInDegrees) -> None:
+        self._jets = jets
+        self.names = tuple(name for name in jets.variables if name != "t")
+
+    @classmethod
+    def with_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> JetField:
+        """Return the flow for that number of degrees of freedom, with derivatives of H up to this
+        order."""
+        if degrees == 1:
+            return cls.from_jets(Jets(order, separable=separable and not timed, timed=timed))
+        names = numbered_names(degrees)
+        return cls.from_jets(JetsInDegrees(names, order, separable=separable, timed=timed))
+
+    @classmethod
+    @lru_cache(maxsize=4)
+    def from_jets(cls, jets: JetsInDegrees) -> JetField:
+        """Return the flow in these jets; the last ones are cached with their derivatives."""
+        return cls(jets)
+
+    @property
+    def ring(self) -> JetsInDegrees:
+        """The jets."""
+        return self._jets
+
+    @cached_property
+    def slopes(self) -> tuple[Poly, ...]:
+        """The components −∂H/∂q and ∂H/∂p."""
+        n, first = self.degrees, self._jets.first
+        return (*(-first(q) for q in self.names[n:]), *map(first, self.names[:n]))
+
+    @property
+    def at_rest(self) -> Mapping[str | int, int]:
+        """The values of jets that make f vanish."""
+        return {f"H_{name}": 0 for name in self.names}

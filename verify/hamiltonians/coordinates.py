@@ -11,7 +11,7 @@ from collections.abc import Collection
 from verify.algebra.expressions.monomials import names_in
 from verify.errors import InputError
 from verify.functions import names as names_of_functions
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 _LIKELY = {
     "p": re.compile(r"[vPy]|[pPv]_?([1-9xyzr]|theta|phi)|(mom|vel)\w*|[xpq]_?dot|dp|dx"),

@@ -44,11 +44,11 @@ def jacobi(m: Real) -> Functions:
     return partial(_by_theta, 2 * period, tau, arb(m).root(4), arb(1 - m).root(4))
 
 
-def _by_theta(turn: arb, tau: acb, modulus: arb, other: arb, u: Real) -> tuple[arb, arb, arb]:
+def _by_theta(turn: arb, tau: acb, modulus: arb, complement: arb, u: Real) -> tuple[arb, arb, arb]:
     one, two, three, four = acb(u / turn).modular_theta(tau, 0)
     below = four.real
     sn_below = modulus * below
-    return one.real / sn_below, other * two.real / sn_below, other * three.real / below
+    return one.real / sn_below, complement * two.real / sn_below, complement * three.real / below
 
 
 def _beyond_one(m: Real) -> Functions:

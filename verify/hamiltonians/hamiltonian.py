@@ -12,20 +12,19 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Any
 
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.embedding import MAX_TERMS, embed
 from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.expressions.function_nodes import requirements_of_expression
 from verify.algebra.expressions.monomials import names_in, reads_back
 from verify.algebra.formula import MAX_DEPTH, MAX_LENGTH, parameter_name, parse, read, symbol
-from verify.algebra.requirement import requirements_of_expression
-from verify.algebra.ring import Poly, Ring
-from verify.algebra.ring_record import ring_from_record
-from verify.algebra.substitution import substitute
-from verify.arithmetic.exact import Exact, rational, text
+from verify.algebra.limits import substitute
+from verify.algebra.ring import Poly, Ring, ring_from_record
+from verify.arithmetic.exact import Number, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.notebook import aligned_latex, cut, short_latex
 from verify.structures import AREA, SYMPLECTIC, Structure
 
@@ -41,16 +40,17 @@ def _parse_formula(formula: str) -> Hamiltonian:
     expression, requirements = read(formula, source="hamiltonian")
     # The loop goes on to a fixed point: the text of the expression must be read as that expression.
     for _ in range(MAX_DEPTH):
-        same = reads_back(expression, MAX_LENGTH)
-        again = (
-            expression if same else parse(to_text(expression), source="hamiltonian, written out")
-        )
-        if again == expression:
+        read_again = expression
+        if not reads_back(expression, MAX_LENGTH):
+            read_again = parse(to_text(expression), source="hamiltonian, written out")
+        if read_again == expression:
             hamiltonian = Hamiltonian(expression)
-            text_domain = Domain.from_requirements(requirements) if requirements else EVERYWHERE
+            text_domain = (
+                FormulaDomain.from_requirements(requirements) if requirements else EVERYWHERE
+            )
             is_implied = hamiltonian.domain & text_domain == hamiltonian.domain
             return hamiltonian if is_implied else replace(hamiltonian, text_domain=text_domain)
-        expression = again
+        expression = read_again
     raise InputError("hamiltonian", formula, "is read otherwise each time that it is written out")
 
 
@@ -84,13 +84,13 @@ class Hamiltonian:
 
     expression: sympy.Expr = _ReadAgain()
     values: tuple[tuple[str, Fraction], ...] = ()
-    text_domain: Domain = EVERYWHERE
+    text_domain: FormulaDomain = EVERYWHERE
     _record: Mapping[str, Any] | None = field(default=None, init=False, repr=False)
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> Hamiltonian:
-        """Return H from its record (see `verify.hamiltonians.kept`); its expression is parsed only
-        when it is used."""
+        """Return H from its record (see `verify.hamiltonians.hamiltonian_store`); its expression is
+        parsed only when it is used."""
         hamiltonian = cls.__new__(cls)
         vars(hamiltonian).update(
             formula=record["formula"],
@@ -122,7 +122,7 @@ class Hamiltonian:
 
     @classmethod
     def parse(
-        cls, formula: str, parameters: Mapping[str, Exact | None] | None = None
+        cls, formula: str, parameters: Mapping[str, Number | None] | None = None
     ) -> Hamiltonian:
         """Return H from a formula (see `verify.algebra.formula`) and parameter values; None leaves
         a symbol.
@@ -139,8 +139,13 @@ class Hamiltonian:
         check_coordinates(formula, hamiltonian.expression, result.symbols)
         return result
 
-    def with_values(self, parameters: Mapping[str, Exact | None]) -> Hamiltonian:
-        """Return the same H with these parameter values instead of its present ones."""
+    def with_values(self, parameters: Mapping[str, Number | None]) -> Hamiltonian:
+        """Return the same H with these parameter values instead of its present ones.
+
+        `parameters`: exact numbers, or texts of them, by name; one with None, and one that is not
+        named, has no value in the result. Raises InputError for a name that H does not have, a bad
+        value, and values for which H is not defined.
+        """
         numbers = {}
         for name, value in parameters.items():
             if parameter_name(name) not in self.parameters:
@@ -207,10 +212,10 @@ class Hamiltonian:
         return self.substitute_values(self.expression)
 
     @cached_property
-    def domain(self) -> Domain:
+    def domain(self) -> FormulaDomain:
         """The conditions under which `exact` is smooth, and the text it was read from is
         defined."""
-        return Domain.from_requirements(
+        return FormulaDomain.from_requirements(
             requirements_of_expression(self.exact, smooth=True)
         ) & self.text_domain.substitute(self.value_substitutions)
 
@@ -293,20 +298,20 @@ class Hamiltonian:
         return Hamiltonian(self.expression.subs(zeros))
 
     def embed_in_ring(
-        self, *others: sympy.Expr, most_terms: int = MAX_TERMS
+        self, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple[Ring, Poly, list[Poly]]:
         """Return a ring with the coordinates, h, t where H has it and the parameters; `exact` as
         its element, and other expressions, each symbol of which is a variable too.
 
         Raises InputError where one has more than `most_terms` terms, or is not defined.
         """
-        if self._record and not others and most_terms == MAX_TERMS:
+        if self._record and not expressions and most_terms == MAX_TERMS:
             return *ring_from_record(self._record["ring"]), []
         time = ("t",) if self.time_dependent else ()
         variables = (*self.coordinates, "h", *time, *self.symbols)
         # Symbols of the other expressions that H does not have become variables of the ring as
         # well.
-        symbols = {x.name for other in others for x in other.free_symbols}
+        symbols = {x.name for expression in expressions for x in expression.free_symbols}
         variables = (*variables, *sorted(symbols.difference(variables)))
-        ring, (energy, *elements) = embed([self.exact, *others], variables, most_terms)
+        ring, (energy, *elements) = embed([self.exact, *expressions], variables, most_terms)
         return ring, energy, elements

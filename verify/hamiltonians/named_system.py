@@ -1,17 +1,58 @@
-"""A named system: a Hamiltonian with its source, and its exact flow where that is known."""
+"""A named system: a Hamiltonian with its source, and its motion in closed form where that is known.
+
+`Motion` is the exact solution through one initial value, as a system's flow provides it.
+"""
 
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from verify.arithmetic.exact import Exact, rational
+from flint import arb, fmpq
+
+from verify.arithmetic.exact import Number, rational
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import MOST_DEGREES, coordinates_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.motion import Flow, State, Values
 
-FlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], State]
+Values = Mapping[str, Fraction]  # a system's parameters
+State = tuple[arb, arb]  # p, q
+
+
+@dataclass(frozen=True)
+class Motion:
+    """t ↦ (p, q) through one initial value, in closed form and in balls.
+
+    `state(t)`, t ≠ 0, and `blow_up(sign)` hold the true values, or are not finite, where flint's
+    precision does not suffice: the caller then raises it. `blow_up`: |t| where the solution ends,
+    forwards (1) or backwards (−1) in time, None where it does not; itself None where no such
+    solution does. `goes()`: how it goes to infinity as t grows, where it does so without an end;
+    None where it stays bounded or blows up. `is_at_rest`: it stays at its start.
+    """
+
+    state: Callable[[arb], State]
+    method: str
+    blow_up: Callable[[int], arb | None] | None = None
+    goes: Callable[[], str | None] = lambda: None
+    is_at_rest: bool = False
+
+
+def at_rest(p: Fraction, q: Fraction) -> Motion:
+    """Return the motion that stays at an equilibrium."""
+    return Motion(lambda _: (arb(exactly(p)), arb(exactly(q))), "at rest", is_at_rest=True)
+
+
+# (parameters, (p, q, t) at the start, how long) ↦ p and q.
+
+
+def exactly(x: Fraction) -> fmpq:
+    """Return flint's rational."""
+    return fmpq(x.numerator, x.denominator)
+
+
+# (parameters, p, q) ↦ the motion; None where these parameters have no closed form.
+ClosedFormFlow = Callable[[Values, Fraction, Fraction], Motion | None]
+ClosedFormFlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], State]
 Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 
@@ -34,8 +75,8 @@ class System:
     formula: str
     source: str
     parameters: Mapping[str, str] = field(default_factory=dict)
-    flow: Flow | None = None
-    flow_in_time: FlowInTime | None = None
+    flow: ClosedFormFlow | None = None
+    flow_in_time: ClosedFormFlowInTime | None = None
     goes: Callable[[Values, Fraction, Fraction], str | None] | None = None
     regimes: Mapping[str, Regime] = field(default_factory=dict)
     family: Callable[[int], str] | None = None
@@ -46,10 +87,11 @@ class System:
     def _repr_latex_(self) -> str:
         return self.hamiltonian()._repr_latex_()
 
-    def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
+    def hamiltonian(self, values: Mapping[str, Number | None] | None = None) -> Hamiltonian:
         """Return H with these parameter values; parameters without one stay symbols.
 
-        Of a family n is no symbol of H: InputError where it is no whole number, 2 … 64.
+        `values`: exact numbers, or texts of them, by name. Of a family n is no symbol of H. Raises
+        InputError as `Hamiltonian.parse` does, and for an n that is no whole number, 2 … 64.
         """
         if self.family is None or not isinstance(values, Mapping):
             return Hamiltonian.parse(self.formula, values)
@@ -74,13 +116,16 @@ class System:
         return (self.flow or self.flow_in_time) is not None
 
     def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
-        """Return the parameters, p and q of an example."""
+        """Return the parameters by their names, p and q of an example, one of `regimes`, exactly.
+
+        Of systems of the plane; raises KeyError for a name that is none of them.
+        """
         # A regime has p and q of the start among its parameters.
         values = {key: rational(text, key) for key, text in self.regimes[name].items()}
         return values, values.pop("p"), values.pop("q")
 
 
-def _whole_number(number: Exact) -> int:
+def _whole_number(number: Number) -> int:
     """Return n of a family; InputError unless it is a whole number in its range."""
     value = rational(number, "parameter n")
     if value.denominator != 1 or not 2 <= value <= MOST_DEGREES:

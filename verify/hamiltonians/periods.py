@@ -6,14 +6,14 @@ import math
 from fractions import Fraction
 from functools import lru_cache
 
-from verify.algebra.expressions.functions_used import waves_in
+from verify.algebra.expressions.function_nodes import waves_in
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
 from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 
 def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
@@ -24,9 +24,11 @@ def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
     """
     if not hamiltonian.time_dependent:
         return
-    same = _is_invariant(hamiltonian, "t", sympy.Rational(period.numerator, period.denominator))
-    if same is not True:
-        relation = "is not known to be" if same is None else "is not"
+    is_invariant = _is_invariant(
+        hamiltonian, "t", sympy.Rational(period.numerator, period.denominator)
+    )
+    if is_invariant is not True:
+        relation = "is not known to be" if is_invariant is None else "is not"
         problem = f"H {relation} the same at t + {text(period)} as at t"
         raise InputError("period", text(period), problem)
 

@@ -24,13 +24,13 @@ from flint import arb, fmpq, fmpq_poly
 
 from verify.arithmetic.flint_precision import AtEachPrecision, working_precision
 from verify.hamiltonians.elliptic import NOT_KNOWN, Real, Weierstrass, double_root, waves
-from verify.hamiltonians.motion import Flow, Motion, State, Values, at_rest, exactly
+from verify.hamiltonians.named_system import ClosedFormFlow, Motion, State, Values, at_rest, exactly
 
 _METHOD = "closed form: Weierstrass's ℘ by Jacobi's elliptic functions"
 _ELEMENTARY = "closed form: elementary functions"
 
 
-def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
+def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> ClosedFormFlow:
     """Return the flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
 
     def flow(values: Values, p: Fraction, q: Fraction) -> Motion:
@@ -42,10 +42,10 @@ def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
 def motions(alpha: fmpq, potential: Sequence[fmpq]) -> Callable[[Fraction, Fraction], Motion]:
     """Return (p, q) ↦ the solution for H = α p²/2 + V(q) from there, α ≠ 0 and V of degree up to
     4."""
-    return partial(_motion, Field.from_potential(alpha, potential))
+    return partial(_motion, PotentialField.from_potential(alpha, potential))
 
 
-def _motion(field: "Field", p: Fraction, q: Fraction) -> Motion:
+def _motion(field: "PotentialField", p: Fraction, q: Fraction) -> Motion:
     curve = Curve.from_point(field, exactly(p), exactly(q))
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
@@ -55,7 +55,7 @@ def _motion(field: "Field", p: Fraction, q: Fraction) -> Motion:
 
 
 @dataclass(frozen=True)
-class Field:
+class PotentialField:
     """q'² = a₀ + f(q) with q' = α p: the part common to all motions, each of which has its own a₀.
 
     The invariants of a₀ + f are g₂ = `g2[0]` + `g2[1]` a₀, and g₃ likewise.
@@ -67,7 +67,7 @@ class Field:
     g3: tuple[fmpq, fmpq]
 
     @classmethod
-    def from_potential(cls, alpha: fmpq, potential: Sequence[fmpq]) -> "Field":
+    def from_potential(cls, alpha: fmpq, potential: Sequence[fmpq]) -> "PotentialField":
         """Return the field for H = α p²/2 + V(q)."""
         f = fmpq_poly([0, *(-2 * alpha * c for c in potential[1:])])
         a1, a2, a3, a4 = (f[k] for k in range(1, 5))
@@ -94,7 +94,7 @@ class Curve:
     function: Callable[[], Callable[[Real], tuple[arb, arb]]]
 
     @classmethod
-    def from_point(cls, field: Field, p: fmpq, q: fmpq) -> "Curve":
+    def from_point(cls, field: PotentialField, p: fmpq, q: fmpq) -> "Curve":
         """Return the curve through (p, q)."""
         shifted, v = field.f(fmpq_poly([q, 1])), field.alpha * p
         b = v * v, shifted[1], shifted[2], shifted[3], shifted[4]
@@ -158,8 +158,8 @@ class Curve:
     # -- where the motion goes --------------------------------------------------------------------
 
     def blow_up(self, sign: int) -> arb | None:
-        """Return |t| of the blow-up, see `verify.hamiltonians.motion.Motion`; of degree 3 or 4,
-        where the motion goes to infinity in a finite time."""
+        """Return |t| of the blow-up, see `verify.hamiltonians.named_system.Motion`; of degree 3 or
+        4, where the motion goes to infinity in a finite time."""
         to = self.destination(sign)
         return self.time_to_infinity(sign, to) if to else None
 

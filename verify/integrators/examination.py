@@ -1,4 +1,4 @@
-"""Examine a user's step or map at its places: prove what can be proved, and measure the rest.
+"""The examination of a user's step or map at its places: proof as far as it goes, else measurement.
 
 Where its code lets symbols through, the map is proved, and what algebra leaves open is measured;
 else all is measured, with dual numbers where they go through, or with floats.
@@ -9,21 +9,15 @@ from dataclasses import replace
 from functools import partial
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measured import finding_of
-from verify.integrators.measures.order import probe_of
-from verify.integrators.measures.still_clock import measure_clock_mistakes
-from verify.integrators.measures.structure import Structure
-from verify.integrators.probes.agreement import trace_must_agree
+from verify.integrators.clocks import clock_mistakes, measure_clock_mistakes
+from verify.integrators.measured_finding import finding_of
+from verify.integrators.measures.agreement import trace_must_agree
+from verify.integrators.measures.probes import probe_of
+from verify.integrators.measures.structure_measurement import StructureMeasurement
 from verify.integrators.results import Finding
-from verify.integrators.traced import (
-    Trace,
-    prove_map,
-    prove_step,
-    trace_of,
-)
-from verify.integrators.tracing.clocks import clock_mistakes
+from verify.integrators.trace_proof import Trace, prove_map, prove_step, trace_of
 from verify.integrators.trial import Trial
-from verify.integrators.user_code.step import StepError, limit_time, why
+from verify.integrators.user_code.step import StepError, describe_error, limit_time
 from verify.prose import Prose, join_prose, prose
 from verify.verdict import Verdict
 
@@ -52,21 +46,21 @@ def examine(trial: Trial, provable: bool) -> Finding:
             _must_be_pure(trace)
             if provable:
                 trace_must_agree(step, trace.roots, trial.places)
-                exact = trial.hamiltonian
-                finding = prove_step(trace, exact) if exact else prove_map(trace, step.names)
+                system = trial.hamiltonian
+                finding = prove_step(trace, system) if system else prove_map(trace, step.names)
         if not provable:
             return _measure(trial, notes)
         finding = _decide(finding, trial, trace)
         order = finding.convergence_order
         return finding.noting(*_clock(trial, lambda h: clock_mistakes(h, trace.roots, order)))
     except Exception as error:  # the user's code may raise anything
-        notes.append(prose("no proof: ", why(error)))
+        notes.append(prose("no proof: ", describe_error(error)))
     return _measure(trial, notes)
 
 
 def _must_be_pure(trace: Trace) -> None:
     """Raise StepError where the code reaches something that may change from call to call."""
-    impure = trace.tape.outside.texts
+    impure = trace.tape.surroundings.texts
     if impure:
         names = join_prose(", ", map(prose, impure[:_MAX_LISTED]))
         raise StepError(prose("what it reaches may change from call to call: ", names))
@@ -90,7 +84,7 @@ def _decide(finding: Finding, trial: Trial, trace: Trace) -> Finding:
     try:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
-        return finding.noting(prose("not measured: ", why(error)))
+        return finding.noting(prose("not measured: ", describe_error(error)))
     measurement = finding_of(trial, structure, distances)
     measured_finding = replace(measurement, notes=(*finding.notes, *measurement.notes))
     if of_map:
@@ -140,15 +134,17 @@ def _with_series(finding: Finding, measured_finding: Finding) -> Finding:
     )
 
 
-def _refuted_map(finding: Finding, measured_finding: Finding, structure: Structure) -> Finding:
+def _refuted_map(
+    finding: Finding, measured_finding: Finding, structure: StructureMeasurement
+) -> Finding:
     """Refute a map by algebra, and show it by dual numbers at places where it can be seen."""
     volume = finding.area_preserving
     if volume is None:
         volume = structure.volume_kept
     if measured_finding.symplectic is not False:
         return measured_finding  # algebra says it is not 0; it is too small for doubles to show
-    where = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
-    volume_text = f"; det J {where} all the same" if volume else ""
+    identity = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
+    volume_text = f"; det J {identity} all the same" if volume else ""
     entry = measured_finding.entry or finding.entry
     reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{volume_text}")
     return replace(finding, reason=reason, area_preserving=volume, entry=entry,
@@ -180,9 +176,9 @@ def _measure(trial: Trial, notes: list[Prose]) -> Finding:
             finding = replace(finding, notes=(*notes, *finding.notes))
             return finding.noting(*_clock(trial, partial(_find_still_clock, trial, how, finding)))
         except Exception as error:  # as above
-            notes.append(prose(f"not measured with {how}: ", why(error)))
-    neither = prose("it can be neither traced nor measured")
-    return Finding(Verdict.UNDECIDED, neither, "calls", step.degrees).noting(*notes)
+            notes.append(prose(f"not measured with {how}: ", describe_error(error)))
+    message = prose("it can be neither traced nor measured")
+    return Finding(Verdict.UNDECIDED, message, "calls", step.degrees).noting(*notes)
 
 
 def _find_still_clock(

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import NamedTuple
 
-from verify.integrators.places.place import Place
-from verify.integrators.probes.reading import Reading
+from verify.integrators.measures.reading import DefectReading
+from verify.integrators.places.trial_places import TrialPlace
 from verify.proof.plane.potential import Potential, potential_of
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.prose import Prose, prose, read_prose
 from verify.structures import structure_in
 from verify.verdict import Verdict
@@ -16,10 +17,11 @@ MOST_CLAIMED = 12
 
 @dataclass(frozen=True)
 class Claims:
-    """The claims that are checked; None and False claim nothing.
+    """The claims that a step or a map is judged by; None and False claim nothing.
 
-    `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`: det J
-    ≡ 1. `symplectic`: the same in the plane, and more in several degrees of freedom.
+    `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`:
+    det J ≡ 1. `symplectic`: JᵀΩJ ≡ Ω, the same in the plane, and more in several degrees of
+    freedom.
     """
 
     order: int | None = None
@@ -33,8 +35,12 @@ NOTHING = Claims()
 
 @dataclass(frozen=True)
 class Counterexample:
-    """The value of `quantity` at the state z, by names, with step h, and the value that it would
-    have to have. `t`: where H depends on it; `h`: None of a map."""
+    """A place at which a claim is seen to fail.
+
+    `z`: the state, by the names of the coordinates; `h`: the step size, None of a map; `t`: the
+    time, None where H does not depend on it. `found`: the value of `quantity` there, as text;
+    `expected`: the value that it would have to have.
+    """
 
     z: dict[str, Fraction]
     h: Fraction | None
@@ -57,16 +63,23 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Finding:
-    """`verdict` with its `reason`; `how`: "proof", "duals", "floats", or "calls" where the function
-    was only called.
+    """The finding on a user's step or map: `verdict` with its `reason`, one sentence.
 
-    `domain`: where the verdict holds, one condition a text.
-    `order`: the defect, ΔJ or S, is O(h^order) and no better, None where it is 0 or not known.
-    `area_at_least`: then it may be known to be O(h^area_at_least). `convergence_order`: None
-    where no difference from the exact flow is seen, or, with `order_decided` False, where it is not
-    known. `leading`, `delta_j`: formulas, of a proof. `largest`: the largest defect that was
-    measured, in units of its place, and `probe_error`: the error of such a value. `places`: where
-    was looked.
+    `how`: "proof", "duals", "floats", or "calls" where the function was only called. `degrees`: of
+    freedom. `domain`: where the verdict holds, one condition a text. `notes`: sentences beside it;
+    `faults`: their names; `counterexample`: of a claim that fails.
+
+    Of the structure: `symplectic` and `area_preserving`, None where they are open. `order`: the
+    defect, ΔJ or S, is O(h^order) and no better, None where it is 0 or not known; `area_at_least`:
+    then it may be known to be O(h^area_at_least). `largest`: the largest defect that was measured,
+    in units of its place, and `probe_error`: the error of such a value; `against`: the reading that
+    has it, and `entry` the name of its entry of S.
+
+    Of the map: `convergence_order`, None where no difference from the exact flow is seen, or, with
+    `order_decided` False, where it is not known.
+
+    Of a proof: `proof` itself, and the formulas `leading`, the leading coefficient of the defect,
+    and `delta_j`. Of a measurement: `places`, where was looked.
     """
 
     verdict: Verdict
@@ -84,13 +97,13 @@ class Finding:
     proof: Proof | None = field(default=None, repr=False)
     largest: float | None = None
     probe_error: float | None = None
-    against: Reading | None = field(default=None, repr=False)
+    against: DefectReading | None = field(default=None, repr=False)
     entry: str = ""
     domain: tuple[str, ...] = ()
     notes: tuple[Prose, ...] = ()
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
-    places: tuple[Place, ...] = field(default=(), repr=False)
+    places: tuple[TrialPlace, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         return f"Finding({self.verdict}: {self.reason})"
@@ -107,7 +120,12 @@ class Finding:
         return replace(self, notes=(*self.notes, *map(prose, notes)))
 
 
-JudgedClaim = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what is known
+class JudgedClaim(NamedTuple):
+    """A claim, in words; `holds`: None where it is not decided; `evidence`: what is known."""
+
+    name: Prose
+    holds: bool | None
+    evidence: Prose
 
 
 def describe_agreement(power: int | None) -> str:
@@ -118,7 +136,7 @@ def describe_agreement(power: int | None) -> str:
 
 
 def judge_claims(claims: Claims, finding: Finding) -> list[JudgedClaim]:
-    """Judge each claim; None where it is not decided."""
+    """Judge each claim that is made, by what was proved or measured."""
     rows: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
@@ -134,7 +152,9 @@ def judge_claims(claims: Claims, finding: Finding) -> list[JudgedClaim]:
         rows.append(("det J ≡ 1", finding.area_preserving, _describe_volume(finding)))
     if claims.area_order is not None:
         rows.append(_area_order(claims.area_order, finding, defect))
-    return [(read_prose(claim), holds, read_prose(evidence)) for claim, holds, evidence in rows]
+    return [
+        JudgedClaim(read_prose(name), holds, read_prose(evidence)) for name, holds, evidence in rows
+    ]
 
 
 def _describe_defect(finding: Finding) -> str:

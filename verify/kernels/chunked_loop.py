@@ -2,23 +2,17 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from itertools import takewhile
-from typing import Annotated, Any, NamedTuple
-
-from pydantic import PlainSerializer, PlainValidator, TypeAdapter
+from typing import Any, NamedTuple
 
 from verify import observables
 from verify.arithmetic.exact import decimal
-from verify.arithmetic.number import Number
-from verify.arithmetic.number_system import Arithmetic, State
+from verify.arithmetic.number_system import Arithmetic, State, SystemNumber
 from verify.arithmetic.systems.float64 import nearest_double
-from verify.execution.keeping import fraction_of, fraction_text
-from verify.kernels.clock import clock_inputs, first_rest
-from verify.kernels.kernel import Kernel
-from verify.kernels.notes import LazyNote, Notes
+from verify.kernels.kernel import Kernel, clock_inputs, first_rest
+from verify.kernels.notes import LazyNote, Notes, ReachedPoint, checkpoint_adapter
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
 from verify.lockstep import Course, clock
@@ -27,32 +21,10 @@ from verify.scenes.results.run import SeriesPoint
 Progress = Callable[[int], None]  # called with the number of steps done
 ENTRIES = "symplectic_defect_entries"  # with it W's own entries are noted in `tangents`
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
-Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
-Note = Mapping[str, Fraction]
 
 
-@dataclass(frozen=True)
-class Reached:
-    """The point that a run has reached after some chunks, with its notes: all that a checkpoint
-    keeps.
-
-    `trail` has p, q and the observables at points on the way and at the last step done, as the
-    exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
-    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are requested. `state`: all
-    that is carried; `seen`: extremes since the last note.
-    """
-
-    done: int = 0
-    seconds: float = 0.0
-    state: Sequence[Exact] = ()
-    seen: dict[str, Exact] = field(default_factory=dict)
-    trail: tuple[Mapping[str, Exact], ...] = ()
-    tangents: tuple[Mapping[str, Exact], ...] = ()
-    series: tuple[SeriesPoint, ...] = ()
-
-
-class _Now(NamedTuple):
-    """`Reached` while the loop is running."""
+class _RunningPoint(NamedTuple):
+    """`ReachedPoint` while the loop is running."""
 
     done: int
     seconds: float
@@ -63,16 +35,10 @@ class _Now(NamedTuple):
     series: Notes[SeriesPoint]
 
 
-@cache
-def _checkpoint_adapter() -> TypeAdapter[Reached]:
-    return TypeAdapter(Reached)
-
-
-# Raising the step count never brings an orbit back into range, so the property is monotonic and
-# bisection finds the last good count in log₂(count) calls.
 def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) -> Course[int]:
     """Return the greatest number of steps below `count` that stays in range, by bisection.
-    `advance(n)` returns no states where one of n steps leaves the range."""
+    `advance(n)` returns no states if one of n steps leaves the range."""
+    # Raising the count never brings an orbit back into range, so the property is monotonic.
     good, bad = 0, count
     while bad - good > 1:
         middle = (good + bad) // 2
@@ -97,12 +63,12 @@ class ChunkedLoop:
         self.run, self.kernel, self.arithmetic, self.shift = run, kernel, arithmetic, shift
         number = arithmetic.number
         # The order is that of the kernel's signature: h, parameters, scales, limits, clock.
-        self.fixed: list[Number] = [number(x) for x in run.inputs(kernel, shift).values()]
+        self.fixed: list[SystemNumber] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
         if kernel.timed:
             self.fixed += [number(x) for x in clock_inputs(arithmetic, run.start).values()]
-        # Where H is periodic in t, the clock is reset to the first period before every chunk, as a
+        # If H is periodic in t, the clock is reset to the first period before every chunk, as a
         # fixed-point t would leave its format.
         self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
@@ -111,11 +77,8 @@ class ChunkedLoop:
         observable_names = sorted(run.observables & observables.by_name().keys())
         self._observables = {name: observables.by_name()[name] for name in observable_names}
         self._note_names = (*kernel.coordinates, *observable_names)
-        self._form = [
-            name
-            for name in kernel.state_names
-            if f"d{name}" in kernel.outputs and name.startswith("w_")
-        ]
+        accumulators = (name for name in kernel.state_names if f"d{name}" in kernel.outputs)
+        self._form = [name for name in accumulators if name.startswith("w_")]
         tangent_names = tangent_map.names_of(kernel.coordinates)
         carried_names = (*(name for name in tangent_names if name in self._position), "done")
         self._tangent = carried_names if "growth" in self._position else ()
@@ -128,16 +91,17 @@ class ChunkedLoop:
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         checkpoint = run.keeper.load(self._label)
-        resumed = Reached() if checkpoint is None else self._restore(checkpoint)
+        resumed = ReachedPoint() if checkpoint is None else self._restore(checkpoint)
         self.done, self.seconds = resumed.done, resumed.seconds
         notes = Notes(resumed.trail), Notes(resumed.tangents), Notes(resumed.series)
-        self._now = _Now(resumed.done, resumed.seconds, resumed.state, resumed.seen, *notes)
+        reached = resumed.done, resumed.seconds, resumed.state, resumed.seen
+        self._latest = _RunningPoint(*reached, *notes)
 
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
         if self.kernel.timed:
             start = start | self._clock_after(0)
-        state: list[Number] = []
+        state: list[SystemNumber] = []
         start_names = (*self.kernel.coordinates, *self.kernel.start)
         for kind, first in zip(self.kernel.kinds, start_names, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
@@ -164,7 +128,7 @@ class ChunkedLoop:
         """Step to the end, or until a number leaves the arithmetic's range; `done` is then the
         number of steps that stayed in it.
 
-        `goes_on` is called with the steps done after every chunk. Return False where it said no.
+        `goes_on` is called with the steps done after every chunk. Return False if it said no.
         """
         run = self.run
         self.arithmetic.expect(self.kernel.function, run.steps - self.done)
@@ -182,8 +146,7 @@ class ChunkedLoop:
                     return False
                 if run.keeper.due(self._label):
                     self.keep()
-            # A number left the range in the next `every` steps: bisection finds the last step that
-            # did not.
+            # A number left the range in the next `every` steps.
             if len(states) < stops:
                 self.done += yield from last_good(every, self._advance)
                 return True
@@ -201,12 +164,11 @@ class ChunkedLoop:
         return min(chunk, to_note, remaining), 1
 
     def _advance(self, every: int, stops: int = 1) -> Course[list[State]]:
-        """Return the states at the next stops; fewer where a number left the arithmetic's range."""
-        kernel = self.kernel.function
+        """Return the states at the next stops; fewer if a number left the arithmetic's range."""
         state = self._state_in_first_period() if self.turns else self.state
         remaining = self.run.steps - self.done - every * stops
         states = yield from self.arithmetic.states(
-            kernel, every, stops, self.fixed, state, remaining
+            self.kernel.function, every, stops, self.fixed, state, remaining
         )
         return list(takewhile(self._finite, states))
 
@@ -217,18 +179,18 @@ class ChunkedLoop:
     # -- notes --------------------------------------------------------------------------------
 
     @property
-    def current(self) -> Reached:
+    def current(self) -> ReachedPoint:
         """All that has been noted so far."""
-        now = self._now
-        notes = tuple(now.trail), tuple(now.tangents), tuple(now.series)
-        return Reached(now.done, now.seconds, now.state, now.seen, *notes)
+        point = self._latest
+        notes = tuple(point.trail), tuple(point.tangents), tuple(point.series)
+        return ReachedPoint(point.done, point.seconds, point.state, point.seen, *notes)
 
     def _note(self) -> None:
         """Note the state. All notes are replaced at once, since an interruption may come at any
         moment."""
-        before, state, done = self._now, self.state, self.done
-        # The new tuple is built completely before it is assigned to `_now`: a KeyboardInterrupt in
-        # between leaves the old, consistent notes.
+        before, state, done = self._latest, self.state, self.done
+        # The tuple is complete before it is assigned to `_latest`: a KeyboardInterrupt in between
+        # leaves the old, consistent notes.
         seen = self._extremes(state) if self._extreme else {}
         trail, tangents, series = before.trail, before.tangents, before.series
         if done % self.section == 0 or done == self.run.steps:
@@ -239,11 +201,12 @@ class ChunkedLoop:
                 series = series.and_then(self._point(len(trail) * self.section + 1, seen))
                 seen = {}
             trail = trail.and_then(LazyNote(self._note_names, self._exact_value, state, done))
-        self._now = _Now(done, self.seconds, state, seen, trail, tangents, series)
+        self._latest = _RunningPoint(done, self.seconds, state, seen, trail, tangents, series)
 
     def _extremes(self, state: State) -> dict[str, Fraction]:
         """Return the extremes of ΔJ and Λ since the last note."""
-        radius, extremes = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self._now.seen)
+        extremes = dict(self._latest.seen)
+        radius = self.arithmetic.radius or (lambda _: Fraction(0))
         for name in self._extreme:
             x, low = state[self._position[name]], name.endswith("low")
             # A ball counts with its outer end, so that the extremes enclose the true ones.
@@ -263,19 +226,21 @@ class ChunkedLoop:
         return value - self._observables[name].begins if name in self._observables else value
 
     def _observe(
-        self, name: str, state: State, done: int, convert: Callable[[Number], Fraction]
+        self, name: str, state: State, done: int, convert: Callable[[SystemNumber], Fraction]
     ) -> Fraction:
         """Return the same from the carried numbers, or from their radii, with the value it began
         with."""
         if name not in self._observables:
             return self._total(name, state, convert)
-        each = self._observables[name]
-        carried = self._form if each.carried == "w_" else [each.carried]
+        observable = self._observables[name]
+        carried = self._form if observable.carried == "w_" else [observable.carried]
         # W has several accumulators, all others one; each carries 2^(s·shift) times its value.
         totals = (self._total(entry, state, convert) for entry in carried)
-        return each.read([self._unscale(each.shift, total) for total in totals], done)
+        return observable.read([self._unscale(observable.shift, x) for x in totals], done)
 
-    def _total(self, name: str, state: State, convert: Callable[[Number], Fraction]) -> Fraction:
+    def _total(
+        self, name: str, state: State, convert: Callable[[SystemNumber], Fraction]
+    ) -> Fraction:
         """Return the carried number of that name, plus the remainder that a compensated kernel
         carries with it."""
         total = convert(state[self._position[name]])
@@ -283,7 +248,7 @@ class ChunkedLoop:
             total += convert(state[self._position[rest]])
         return total
 
-    def _exact(self, x: Number) -> Fraction:
+    def _exact(self, x: SystemNumber) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscale(self, times: int, value: Fraction) -> Fraction:
@@ -291,7 +256,7 @@ class ChunkedLoop:
         return value / (1 << scale) if scale else value
 
     def radii(self) -> dict[str, Fraction]:
-        """Return how far the last values may be from the true ones, where numbers are
+        """Return how far the last values may be from the true ones, if numbers are
         enclosures."""
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
@@ -312,21 +277,21 @@ class ChunkedLoop:
     def keep(self) -> None:
         """Write a checkpoint: all that is needed to go on with the same bits."""
         # A ball's radius is not kept; such runs are short.
-        if self.arithmetic.radius is None and self._now.done:
+        if self.arithmetic.radius is None and self._latest.done:
             self.run.keeper.save(
-                self._label, _checkpoint_adapter().dump_python(self._evaluate_notes(), mode="json")
+                self._label, checkpoint_adapter().dump_python(self._evaluate_notes(), mode="json")
             )
 
-    def _evaluate_notes(self) -> Reached:
+    def _evaluate_notes(self) -> ReachedPoint:
         """Return the notes with all their numbers evaluated."""
         reached = self.current
         state = tuple(self._exact(x) for x in reached.state)
         trail, tangents = tuple(map(dict, reached.trail)), tuple(map(dict, reached.tangents))
         return replace(reached, state=state, trail=trail, tangents=tangents)
 
-    def _restore(self, checkpoint: Mapping[str, Any]) -> Reached:
+    def _restore(self, checkpoint: Mapping[str, Any]) -> ReachedPoint:
         """Read a checkpoint, and set the state from it."""
-        reached = _checkpoint_adapter().validate_python(checkpoint)
+        reached = checkpoint_adapter().validate_python(checkpoint)
         self.state = tuple(
             float(x) if kind == "float" else self.arithmetic.number(x)
             for kind, x in zip(self.kernel.kinds, reached.state, strict=True)

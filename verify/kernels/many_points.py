@@ -20,12 +20,10 @@ from typing import Any
 import numpy as np
 
 from verify.arithmetic.compiled.doubles import POINTS, on_points
-from verify.arithmetic.number import Number
-from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.number_system import Arithmetic, SystemNumber, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.clock import clock_inputs, first_rest
-from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.kernel import Kernel, clock_inputs, first_rest, kernel_for
 from verify.kernels.stepping import KernelRun, limits
 from verify.lockstep import run_alone, run_together
 
@@ -45,7 +43,7 @@ class Waypoints:
     then."""
 
     def __init__(self, in_parts: bool) -> None:
-        """`in_parts`: m steps and then n are the same as m + n; false where the first step is
+        """`in_parts`: m steps and then n are the same as m + n; false if the first step is
         special."""
         self._in_parts = in_parts
         self._states: dict[bytes, tuple[int, bytes]] = {}
@@ -64,8 +62,8 @@ class Waypoints:
                 end_values[:, i] = np.frombuffer(state)
         # Points with the same number of steps left are advanced in one call, for full lanes.
         for more in set(steps_left.tolist()) - {0}:
-            those = steps_left == more
-            end_values[:, those] = advance(more, end_values[:, those])
+            alike = steps_left == more
+            end_values[:, alike] = advance(more, end_values[:, alike])
         self._keep(starts, steps, end_values)
         return end_values
 
@@ -110,9 +108,9 @@ class PointMap:
         observables: frozenset[str] = frozenset(),
         compensated: bool = False,
     ) -> None:
-        """From t0 on, where H depends on time.
+        """From t0 on, if H depends on time.
 
-        Raises UnsupportedError where the arithmetic lacks what the scheme needs.
+        Raises UnsupportedError if the arithmetic lacks what the scheme needs.
         """
         self.arithmetic, self.steps = arithmetic, steps
         start = {"h": step_size, "t": t0} | dict.fromkeys(hamiltonian.coordinates, _ZERO)
@@ -145,28 +143,28 @@ class PointMap:
             columns = self._run_one_by_one(coordinates)
         return dict(zip(self.kernel.state_names, columns, strict=True))
 
-    def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Number]:
-        exact = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
+    def _inputs(self, extra: Sequence[Fraction] = ()) -> list[SystemNumber]:
+        values = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
         if self.kernel.timed:
-            exact += clock_inputs(self.arithmetic, self.kernel_run.start).values()
-        return [self.arithmetic.number(x) for x in exact]
+            values += clock_inputs(self.arithmetic, self.kernel_run.start).values()
+        return [self.arithmetic.number(x) for x in values]
 
     @cached_property
     def _floats(self) -> np.ndarray:
         return np.array(self._inputs(), dtype=np.float64)
 
     @property
-    def _extra_start(self) -> list[Number]:
+    def _extra_start(self) -> list[SystemNumber]:
         """The numbers carried besides the coordinates, at the start."""
         start = self.kernel_run.start
         if self.kernel.timed:
             start = start | {"t": self._t0} | first_rest(self.arithmetic, self._t0)
-        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
-        return [self.arithmetic.number(x) for x in exact]
+        values = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
+        return [self.arithmetic.number(x) for x in values]
 
     def carried_after(self, points: np.ndarray) -> np.ndarray:
         """Return all that is carried, in float64, for points (coordinates, points): a row each, and
-        no finite number where a point has left the range."""
+        no finite number if a point has left the range."""
         return self._advance(self.steps, self._start_values(points))
 
     def _carried_with_waypoints(self, points: np.ndarray) -> np.ndarray:
@@ -182,7 +180,7 @@ class PointMap:
     def _advance(self, steps: int, values: np.ndarray) -> np.ndarray:
         run, share = _stepper(self.kernel)
         count = values.shape[1]
-        # A point more than once, where a call takes so many.
+        # A point more than once, if a call takes so many.
         # The kernel takes `share` columns at a time; the last column fills up the rest.
         padded = np.pad(values, ((0, 0), (0, -count % share)), "edge")
 
@@ -193,12 +191,14 @@ class PointMap:
             list(threads.map(advance, range(0, count, share)))
         return padded[:, :count]
 
-    def _run_one_by_one(self, coordinates: Sequence[Sequence[Number]]) -> list[list[Number]]:
+    def _run_one_by_one(
+        self, coordinates: Sequence[Sequence[SystemNumber]]
+    ) -> list[list[SystemNumber]]:
         arithmetic = self.arithmetic
         inputs = self._inputs(self._limits(coordinates)[: len(self.kernel.limits)])
         extra = self._extra_start
         points = [(*z, *extra) for z in zip(*coordinates, strict=True)]
-        end_states: list[Sequence[Number]] = []
+        end_states: list[Sequence[SystemNumber]] = []
         for z, states in zip(points, self._last_states(inputs, points), strict=True):
             if not states:
                 raise self._range_error([float(arithmetic.exact(x)) for x in z[: len(coordinates)]])
@@ -209,15 +209,15 @@ class PointMap:
         values = dict(zip(self.kernel.coordinates, point, strict=True))
         names = sorted(values, key=lambda name: name[0] != "q")
         coordinates = ", ".join(f"{values[name]:.6g}" for name in names)
-        where = f"({', '.join(names)}) = ({coordinates})"
+        point_text = f"({', '.join(names)}) = ({coordinates})"
         return LeftRangeError(
-            f"the point {where} leaves the range of {self.arithmetic.name}, or of H"
+            f"the point {point_text} leaves the range of {self.arithmetic.name}, or of H"
         )
 
     def _last_states(
-        self, inputs: Sequence[Number], points: Sequence[Sequence[Number]]
-    ) -> Iterator[list[Sequence[Number]]]:
-        """Yield the last state of each point, or nothing where it left the range."""
+        self, inputs: Sequence[SystemNumber], points: Sequence[Sequence[SystemNumber]]
+    ) -> Iterator[list[Sequence[SystemNumber]]]:
+        """Yield the last state of each point, or nothing if it left the range."""
         kernel, states = self.kernel.function, self.arithmetic.states
         calls = [partial(states, kernel, self.steps, 1, inputs, z) for z in points]
         if self.arithmetic.walk is None:
@@ -226,7 +226,7 @@ class PointMap:
 
         self.arithmetic.expect(kernel, self.steps * len(points))
 
-        def advance(first: int) -> list[list[Sequence[Number]]]:
+        def advance(first: int) -> list[list[Sequence[SystemNumber]]]:
             share = calls[first : first + _SHARE]
             results = dict(run_together((call() for call in share), len(share)))
             return [results[k].result() for k in range(len(share))]
@@ -235,13 +235,13 @@ class PointMap:
             for part in threads.map(advance, range(0, len(calls), _SHARE)):
                 yield from part
 
-    def _limits(self, coordinates: Sequence[Sequence[Number]]) -> tuple[Fraction, ...]:
+    def _limits(self, coordinates: Sequence[Sequence[SystemNumber]]) -> tuple[Fraction, ...]:
         """Return the limits of a fixed-point kernel, for all points together."""
         if not self.kernel.limits:
             return ()
-        exact = self.arithmetic.exact
+        to_fraction = self.arithmetic.exact
         pairs = zip(self.kernel.coordinates, coordinates, strict=True)
-        far = {name: max(abs(exact(x)) for x in z) for name, z in pairs}
+        far = {name: max(abs(to_fraction(x)) for x in z) for name, z in pairs}
         run = self.kernel_run
         last = self._t0 + self.steps * run.start["h"]
         times = (self._t0, last) if self.kernel.timed else None

@@ -1,10 +1,19 @@
-"""Notes on the way of a run: numbers by their names, and one note after another."""
+"""Notes on the way of a run, numbers by their names, and the point with them that is kept."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, TypeVar
+from functools import cache
+from typing import Annotated, Any, TypeVar
+
+from pydantic import PlainSerializer, PlainValidator, TypeAdapter
+
+from verify.execution.keeper import fraction_of, fraction_text
+from verify.scenes.results.run import SeriesPoint
 
 T = TypeVar("T")
+ExactNumber = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
+Note = Mapping[str, Fraction]
 
 
 class LazyNote(Mapping[str, Fraction]):
@@ -73,3 +82,29 @@ class Notes(Sequence[T]):
         after: Notes[T] = Notes()
         after._items, after._count = shared, self._count + 1
         return after
+
+
+@dataclass(frozen=True)
+class ReachedPoint:
+    """The point that a run has reached after some chunks, with its notes: all that a checkpoint
+    keeps.
+
+    `trail` has p, q and the observables at points on the way and at the last step done, as the
+    exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
+    same points, with the entries of W (`w_a_b`, a < b) if they are requested. `state`: all that is
+    carried; `seen`: extremes since the last note.
+    """
+
+    done: int = 0
+    seconds: float = 0.0
+    state: Sequence[ExactNumber] = ()
+    seen: dict[str, ExactNumber] = field(default_factory=dict)
+    trail: tuple[Mapping[str, ExactNumber], ...] = ()
+    tangents: tuple[Mapping[str, ExactNumber], ...] = ()
+    series: tuple[SeriesPoint, ...] = ()
+
+
+@cache
+def checkpoint_adapter() -> TypeAdapter[ReachedPoint]:
+    """Return the reader and writer of kept points, made once."""
+    return TypeAdapter(ReachedPoint)

@@ -16,14 +16,15 @@ import flint
 from verify.algebra.enclosure import BALLS, square
 from verify.arithmetic.number_system import Arithmetic
 from verify.functions import in_rings
-from verify.kernels.step.program import Op, Program
+from verify.kernels.step.kinds import Op
+from verify.kernels.step.operations import StepProgram
 
 Ball = flint.arb
 PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits
 
 
 @dataclass(frozen=True)
-class Rounded:
+class RoundedValue:
     """An interval that holds the exact value, and a bound on the error of the computed one."""
 
     interval: Ball
@@ -72,19 +73,19 @@ def _fmpq(x: Fraction) -> flint.fmpq:
 
 
 def analyse(
-    program: Program,
+    program: StepProgram,
     live: Sequence[int],
-    inputs: Mapping[str, Rounded],
+    inputs: Mapping[str, RoundedValue],
     rounding: Rounding,
     limit: Ball | None = None,
-) -> dict[int, Rounded] | None:
-    """Return each live operation's value over the inputs' intervals; None where one may be
+) -> dict[int, RoundedValue] | None:
+    """Return each live operation's value over the inputs' intervals; None if one may be
     undefined.
 
-    `limit`, for inputs without an error: where a function may leave a range, its values are taken
+    `limit`, for inputs without an error: if a function may leave a range, its values are taken
     to be within ±limit, since the kernel's guard ends the loop otherwise.
     """
-    values: dict[int, Rounded] = {}
+    values: dict[int, RoundedValue] = {}
     for index in live:
         op = program.ops[index]
         if op.kind == "input":
@@ -93,7 +94,7 @@ def analyse(
         if op.kind == "loop":  # how far Newton's method is from the solution is not counted
             return None
         interval, error = _value(op, [values[a] for a in op.args])
-        # The kernel's guard ends the loop where such a value leaves ±limit, so larger ones need not
+        # The kernel's guard ends the loop if such a value leaves ±limit, so larger ones need not
         # be followed.
         if limit is not None and _function(op)[0] in BALLS and not _is_within(interval, limit):
             interval = limit * flint.arb(0, 1)
@@ -101,7 +102,7 @@ def analyse(
             return None
         # The operation rounds its computed result, which is at most |interval| + error in size.
         rounding_error = rounding(op, interval.abs_upper() + error)
-        values[index] = Rounded(interval, (error + rounding_error).abs_upper())
+        values[index] = RoundedValue(interval, (error + rounding_error).abs_upper())
     return values
 
 
@@ -110,7 +111,7 @@ def _is_within(interval: Ball, limit: Ball) -> bool:
     return bool(interval.is_finite() and abs(interval) < limit)
 
 
-def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
+def _value(op: Op, args: Sequence[RoundedValue]) -> tuple[Ball, Ball]:
     """Return the interval of the exact result, and the error caused by the errors of the
     arguments."""
     zero = flint.arb(0)

@@ -1,8 +1,8 @@
 """The inputs of a run in a kernel, apart from the arithmetic.
 
-Whole periods of H(p, q, t) are taken off t where it is too large for a fixed-point format.
+Whole periods of H(p, q, t) are taken off t if it is too large for a fixed-point format.
 
-Where H has the period P in t, a step from t is the step from t − m P. As P is 2π/ω more often than
+If H has the period P in t, a step from t is the step from t − m P. As P is 2π/ω more often than
 not, t − m P is rounded: by 2^−20 of the format's unit at most, whatever m is.
 """
 
@@ -20,12 +20,12 @@ from verify.arithmetic.arb import Ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
-from verify.execution.keeping import NOTHING, Keeper
+from verify.execution.keeper import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 from verify.kernels.kernel import Kernel
 from verify.kernels.step.computation import step_map_of
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 _LARGE = 2**12  # of t, and of the angle that it makes: in the format are numbers below 2^15
 _SMALL = 16  # times up to which no period is needed
@@ -57,7 +57,7 @@ class Turns:
 
 
 def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | None:
-    """Return the period to take off; None where the times are small enough, or H is not known to
+    """Return the period to take off; None if the times are small enough, or H is not known to
     have a period in t."""
     latest = max(map(abs, times))
     period = period_in(hamiltonian, "t") if latest > _SMALL else None
@@ -67,18 +67,18 @@ def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | Non
     number = period / sympy.pi**power
     factor = Fraction(int(number.p), int(number.q))
     above = factor * _ABOVE_PI**power
-    # The angle 2π t/P stays below 2^12 too where t/P is below 2^12/8, as 2π < 8.
+    # The angle 2π t/P stays below 2^12 too if t/P is below 2^12/8, as 2π < 8.
     if latest < _LARGE and latest / factor < _LARGE / 8:
         return None
     steps = max(1, (_PERIODS * factor / h).__floor__())
     return Turns(factor, power, steps, (-above, above + steps * h))
 
 
-SECTIONS = 16  # notes of a run, where nothing is said
+SECTIONS = 16  # notes of a run, if nothing is said
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
-    """Return H with its parameters as the kernel's arguments, where the scheme accepts it so.
+    """Return H with its parameters as the kernel's arguments, if the scheme accepts it so.
 
     A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
     a = 1; then the values are put in.
@@ -100,9 +100,9 @@ def _accepts(hamiltonian: Hamiltonian, scheme: str) -> bool:
 class RunInputs:
     """H, a scheme, a starting point, a number of steps, and the observables requested of them.
 
-    `start` has p, q, the step size h, and the time t where H depends on it.
+    `start` has p, q, the step size h, and the time t if H depends on it.
 
-    The state is noted `points` times on the way where a series is kept, else `sections` times.
+    The state is noted `points` times on the way if a series is kept, else `sections` times.
     `shares_kernel`: so many other runs use the same kernel that compiling it pays.
     """
 
@@ -137,10 +137,10 @@ class RunInputs:
 
     def with_observables(self, observables: frozenset[str]) -> Self:
         """Return the same run with other observables, and without a series."""
-        other = copy(self)
-        other.observables, other.points = observables, 0
-        other.sections = SECTIONS
-        return other
+        run = copy(self)
+        run.observables, run.points = observables, 0
+        run.sections = SECTIONS
+        return run
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
         """Return h, the parameters and the scales by their names in the kernel's source."""
@@ -152,13 +152,13 @@ class RunInputs:
         return {"h": h, **parameters, **(scales if kernel.scales else {})}
 
     def turns(self, arithmetic: Arithmetic) -> Turns | None:
-        """Return the periods that are taken off t in this arithmetic; None where none are."""
+        """Return the periods that are taken off t in this arithmetic; None if none are."""
         if not (arithmetic.absolute and self.hamiltonian.time_dependent):
             return None
         return turns_of(self._hamiltonian_of_user, self._all_times(), self.start["h"])
 
     def times(self, arithmetic: Arithmetic) -> Times | None:
-        """Return the first and the last time at which a step is made in this arithmetic; None where
+        """Return the first and the last time at which a step is made in this arithmetic; None if
         H does not depend on time."""
         if not self.hamiltonian.time_dependent:
             return None

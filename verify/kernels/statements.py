@@ -4,7 +4,7 @@ The statements of an observable are in its file of `verify.observables`. Two mor
 `extremes`, the least and greatest ΔJ and Λ of one call's steps; and `tangent`, which carries the
 tangent map along, for a rigorous bound (`verify.kernels.step.tangent_map`).
 
-Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
+If an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
 so are its sums, so that they keep their significant digits however small h is; it is evaluated from
 ΔJ/h^r, r as great as can be, with κ = 2^s h^r in its coefficients. Λ itself is carried too, as
 `part`, since it multiplies.
@@ -28,13 +28,13 @@ EXTREMES, TANGENT = "extremes", "tangent"
 
 def needs_of(requests: Set[str]) -> set[Need]:
     """Return the quantities of a step that the requested observables need."""
-    needs: set[Need] = {each.needs for each in kinds.select(requests)}
+    needs: set[Need] = {observable.needs for observable in kinds.select(requests)}
     return needs | ({"delta_j"} if EXTREMES in requests else set())
 
 
 def is_scaled(requests: Set[str]) -> bool:
     """Return True if any requested quantity is carried 2^s times."""
-    return EXTREMES in requests or any(each.shift for each in kinds.select(requests))
+    return EXTREMES in requests or any(observable.shift for observable in kinds.select(requests))
 
 
 class Statements:
@@ -61,8 +61,8 @@ class Statements:
         """Return all statements, in their order."""
         requests = self.observables
         lines = [f"dj = {self.value['dj']}"] if "delta_j" in needs_of(requests) else []
-        for each in kinds.select(requests):
-            lines += each.lines(self)
+        for observable in kinds.select(requests):
+            lines += observable.lines(self)
         if EXTREMES in requests:
             lines += self.product()
             for name, kind in (("dj", "wide"), ("lam", "sum")):
@@ -117,8 +117,8 @@ class Statements:
         if choose not in self.arithmetic.functions:
             return f"if {first}{candidate} {order} {name}: {name} = {candidate}"
         # Balls, of which neither may be certainly the greater: then the extreme is a third ball.
-        either = f"{choose}({candidate}, {name})"
-        value = f"{candidate} if k == 0 else {either}" if first else either
+        extreme = f"{choose}({candidate}, {name})"
+        value = f"{candidate} if k == 0 else {extreme}" if first else extreme
         return f"if {first}not {candidate} {opposite} {name}: {name} = {value}"
 
     def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
@@ -135,7 +135,7 @@ class Statements:
         return self.accumulate(name, increment)
 
     def accumulate(self, name: str, increment: str) -> list[str]:
-        """Return the statements `name += increment`; compensated (Kahan) where the kernel is."""
+        """Return the statements `name += increment`; compensated (Kahan) if the kernel is."""
         if not self.compensated:
             return [f"{name} = {name} + ({increment})"]
         # Knuth's two-sum: `rest` is the exact error of the addition, whichever operand is larger.

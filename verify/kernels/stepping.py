@@ -1,13 +1,9 @@
-"""Stepping: a run of N steps, in chunks, in any arithmetic.
-
-It also finds how far an orbit may go in a fixed-point format: limits within which nothing can
-overflow.
+"""Stepping: a run of N steps, in chunks, in any arithmetic, and limits in a fixed-point format.
 
 Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
 functions' values assumed to stay below reach_value. A large box of rounded sides for which all of
 them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
-or a function's value its limit. So no operation has to check for overflow: there
-can be none.
+or a function's value its limit. So no operation has to check for overflow: there can be none.
 """
 
 from bisect import bisect_left, bisect_right
@@ -25,10 +21,10 @@ from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, State
 from verify.hamiltonians.coordinates import PLANE
-from verify.kernels.chunked_loop import ChunkedLoop, Progress, Reached
+from verify.kernels.chunked_loop import ChunkedLoop, Progress
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.kernels.notes import LazyNote
-from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
+from verify.kernels.notes import LazyNote, ReachedPoint
+from verify.kernels.rounding import PRECISION, Ball, RoundedValue, analyse
 from verify.kernels.run_inputs import RunInputs, Times
 from verify.lockstep import Course, run_alone
 
@@ -45,7 +41,7 @@ _ASCENDING = _SIDES[::-1]
 
 class Limits(NamedTuple):
     """Bounds on all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and M's entries
-    where it is carried; see `kernel.LIMITS`."""
+    if it is carried; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -63,7 +59,7 @@ def limits(
     """Return the kernel's limits for these h and parameters, by the names that its source has for
     them.
 
-    `times`: the first and the last, where H depends on time. None where no box that holds the start
+    `times`: the first and the last, if H depends on time. None if no box that holds the start
     is safe.
     """
     sizes = {name: abs(start[name]) for name in kernel.coordinates}
@@ -129,19 +125,21 @@ def _room(
     q: Fraction,
     value: Fraction,
 ) -> Fraction | None:
-    """Return how large Λ may become; None where an operation may leave the format in this box, with
+    """Return how large Λ may become; None if an operation may leave the format in this box, with
     M's entries below `matrix`.
 
     Boxes have few sides, so that the runs of a grid ask for the same ones.
     """
-    inputs_ = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
+    inputs_ = {name: RoundedValue(rational_ball(x), flint.arb(0)) for name, x in inputs}
     unit_ball = flint.arb(0, 1)
     sides = {name: p if name[0] == "p" else q for name in kernel.coordinates}
     sides |= dict.fromkeys(kernel.matrix, matrix)
-    inputs_ |= {n: Rounded(rational_ball(r) * unit_ball, flint.arb(0)) for n, r in sides.items()}
+    inputs_ |= {
+        n: RoundedValue(rational_ball(r) * unit_ball, flint.arb(0)) for n, r in sides.items()
+    }
     if times:
         first, last = map(rational_ball, times)
-        inputs_["t"] = Rounded(first.union(last), flint.arb(0))
+        inputs_["t"] = RoundedValue(first.union(last), flint.arb(0))
     program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)
     values = analyse(program, live, inputs_, lambda *_: flint.arb(0), rational_ball(value))
     if values is None:
@@ -166,11 +164,11 @@ def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
 
 
 @dataclass(frozen=True)
-class RunOutcome(Reached):
+class RunOutcome(ReachedPoint):
     """The end of a run, by a `kernel`.
 
-    `radii`: how far from the last values the true ones may be, where numbers are enclosures.
-    `shift`: ΔJ was carried as 2^shift ΔJ. `reason` says why the run ended early, where the number
+    `radii`: how far from the last values the true ones may be, if numbers are enclosures.
+    `shift`: ΔJ was carried as 2^shift ΔJ. `reason` says why the run ended early, if the number
     format is the cause.
     """
 
@@ -196,7 +194,7 @@ class RunOutcome(Reached):
         return self.kernel.coordinates if self.kernel else ()
 
 
-_FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
+_FEWER_BITS = 8  # of ΔJ's scaling, if an orbit needs more room
 _NOWHERE = RunOutcome(reason="an operation of the first step may leave the range of ")
 
 
@@ -204,19 +202,13 @@ class KernelRun(RunInputs):
     """A run that can be done in any arithmetic."""
 
     def fits(self, arithmetic: Arithmetic) -> bool:
-        """Return True if a step from the start stays in the arithmetic's range, where that is
+        """Return True if a step from the start stays in the arithmetic's range, if that is
         limited.
 
-        Raises UnsupportedError where that lacks a function.
+        Raises UnsupportedError if that lacks a function.
         """
-        kernel_key = (
-            self.hamiltonian,
-            self.scheme,
-            arithmetic,
-            self.observables | {"tangent"},
-            False,
-        )
-        kernel = kernel_for(*kernel_key)
+        observables = self.observables | {"tangent"}
+        kernel = kernel_for(self.hamiltonian, self.scheme, arithmetic, observables, False)
         return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
     def run(self, arithmetic: Arithmetic, **options: Any) -> RunOutcome:
@@ -232,22 +224,21 @@ class KernelRun(RunInputs):
         progress: Progress | None = None,
         enough: Callable[[RunOutcome], bool] | None = None,
     ) -> Course[RunOutcome]:
-        """Make all steps in this arithmetic; the series only where the kernel collects extremes.
+        """Make all steps in this arithmetic; the series only if the kernel collects extremes.
 
         `tangent` carries the tangent map along. `enough` is called at the first checkpoint and
-        decides whether to go on; where it says no the run ends there. A fixed-point run that cannot
+        decides whether to go on; if it says no the run ends there. A fixed-point run that cannot
         stay within its limits ends early.
         """
         observables = self.observables if not compensated else self.observables - {"extremes"}
         observables |= {"tangent"} if tangent else frozenset()
-        kernel_key = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
-        kernel = kernel_for(*kernel_key)
+        kernel = kernel_for(self.hamiltonian, self.scheme, arithmetic, observables, compensated)
         if not arithmetic.absolute:
             loop = ChunkedLoop(self, kernel, arithmetic, (), 0)
             return (yield from _outcome(loop, progress, enough))
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
         # Each format with a smaller scaling of ΔJ allows a larger box; the run starts again in the
-        # next one where the orbit left the last.
+        # next one if the orbit left the last.
         for shift, bounds in self.formats(kernel, arithmetic):
             loop = ChunkedLoop(self, kernel, arithmetic, bounds[: len(kernel.limits)], shift)
             outcome = yield from _outcome(loop, progress, enough)
@@ -279,7 +270,7 @@ class KernelRun(RunInputs):
 def _outcome(
     loop: ChunkedLoop, progress: Progress | None, enough: Callable[[RunOutcome], bool] | None
 ) -> Course[RunOutcome]:
-    """Run the loop to its end; a checkpoint is written where it is interrupted."""
+    """Run the loop to its end; a checkpoint is written if it is interrupted."""
 
     def outcome() -> RunOutcome:
         fields = vars(loop.current) | {"done": loop.done, "seconds": loop.seconds}

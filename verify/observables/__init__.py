@@ -16,10 +16,10 @@ _FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path_
 @cache
 def by_name() -> dict[str, Observable]:
     """Return all observables by their names, in the order in which they are shown."""
-    every = [_FILES.module(name).OBSERVABLE for name in _FILES.names]
-    return {each.name: each for each in sorted(every, key=lambda each: each.order)}
+    kinds = [_FILES.module(name).OBSERVABLE for name in _FILES.names]
+    return {kind.name: kind for kind in sorted(kinds, key=lambda kind: kind.order)}
 
 
 def select(names: Container[str]) -> list[Observable]:
     """Return the observables whose names are requested, in the same order."""
-    return [each for name, each in by_name().items() if name in names]
+    return [observable for name, observable in by_name().items() if name in names]

@@ -42,7 +42,7 @@ class Loop(Protocol):
 
 
 class Certificate(Protocol):
-    """The bounds on a run when its errors are certified: see `verify.runs.a_posteriori`.
+    """The bounds on a run when its errors are certified: see `verify.runs.a_posteriori_bound`.
 
     `error`: a bound of ‖e_k‖ for all k. `steps`: how many there are. `scale`: 2^−s. `rounded`: the
     rounding of one step. `slope`, `size`: bounds of the gradient of 2^s ΔJ and of itself;
@@ -94,7 +94,7 @@ class Observable:
     """An observable: `name` in scenes, in Python's arguments, in JSON; `label` and `tex` on pages.
 
     - `order`: its place among the others. `usual`: its place among those that are computed
-      by default; None where it is not.
+      by default; None if it is not.
     - `needs`: the quantity of a step that it is made of. `lines`: its statements in a loop.
     - `carried`: the accumulator that it is read from, or the prefix of the names of several;
       `shift`: so many times 2^s it carries there; `begins`: its start value, which is subtracted.
@@ -102,11 +102,11 @@ class Observable:
     - `vanishes`: True if it is 0 after every step of a map, by a proof.
     - `constant`: its value where ΔJ is the same number at every step, if that is known then.
     - `bound`: of its error, by a certificate, if there is one; None: it has none.
-    - `growth`: the power of N by which that bound grows where the tangent map grows linearly.
+    - `growth`: the power of N by which that bound grows if the tangent map grows linearly.
     - `most_degrees`: of freedom, 1 for the plane alone; a step's operations bound it.
       `in_plane`: the observable that is the same in the plane, and is used there in its place.
       `timed`: whether there is one of an H that depends on t.
-    - `heading`: over a column of a page; `plotted`: at an axis; `short`: on a terminal. Where one
+    - `heading`: over a column of a page; `plotted`: at an axis; `short`: on a terminal. If one
       is empty it is `label`.
     """
 

@@ -2,7 +2,7 @@
 
 Are the statements on every H right; does the scheme preserve area; do the printed tables stand; and
 which scheme has the smaller error at equal run time? A question for which the report has no data is
-left out.
+left out. Of an audit: which mistakes does each library have?
 """
 
 from collections import Counter
@@ -10,12 +10,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from verify.pages.sections.claim_view import ClaimView
+from verify.pages.sections.page_contents import ClaimView
 from verify.pages.text.typography import join_and
 from verify.prose import Formula, Prose, prose
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.claim import Outcome
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import Report
-from verify.scenes.results.statement import Outcome
 from verify.verdict import Verdict
 
 _QUESTIONS = {"ΔJ": "Is area preserved?", "S": "Is the symplectic form preserved?"}
@@ -25,9 +25,7 @@ _MIN_ANSWERS = 2
 _FEW_ITEMS = 3
 _MAX_LINKS = 12
 # Characters of a leading coefficient that is shown here; the proof shows any.
-_MAX_LEADING_LENGTH = (
-    100  # characters of a leading coefficient that is shown here; the proof shows any
-)
+_MAX_LEADING_LENGTH = 100
 # Of one statement, and of several; those that are refuted stand last, before their links.
 _OUTCOMES = {
     Outcome.HOLDS: ("holds as meant", "hold as meant"),
@@ -35,9 +33,13 @@ _OUTCOMES = {
     Outcome.UNDECIDED: ("is undecided", "are undecided"),
     Outcome.REFUTED: ("is refuted in every reading", "are refuted in every reading"),
 }
+# Severities that begin so are about the last digits of tables; they are counted, not named.
+_DIGITS = "digits"
+# At most so many methods are named for each kind of mistake; the others are counted.
+_MAX_NAMED = 6
 
 
-class Line(NamedTuple):
+class LinkedLine(NamedTuple):
     """A line that ends with links: names of claims with their anchors."""
 
     sentence: Prose
@@ -45,15 +47,15 @@ class Line(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Answer:
+class RefereeQuestion:
     """A question with the lines that answer it."""
 
     question: str
-    lines: tuple[Line, ...]
+    lines: tuple[LinkedLine, ...]
 
 
-def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
-    """Return the questions with their answers; none where the page below says more."""
+def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[RefereeQuestion, ...]:
+    """Return the questions with their answers; none if the page below says more."""
     area = list(_answer_structure(report))
     entries = [
         *_answer_causes(report, claims),
@@ -62,11 +64,13 @@ def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[Answe
         *_answer_tables(claims),
         *_answer_equal_cost(report),
     ]
-    few = len(report.scenes) <= _FEW_ITEMS and all(len(each.lines) <= _FEW_ITEMS for each in area)
+    few = len(report.scenes) <= _FEW_ITEMS and all(
+        len(question.lines) <= _FEW_ITEMS for question in area
+    )
     return tuple(entries) if len(entries) >= _MIN_ANSWERS or (area and few) else ()
 
 
-def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answer]:
+def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
     """Yield the causes that explain several statements, each with links to these."""
     lines = []
     for cause in report.causes:
@@ -77,14 +81,14 @@ def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answ
         ]
         # Several readings share a name; the dictionary, built in reverse, keeps the first one's
         # anchor.
-        names = {c.name: c.anchor for c in reversed(first)}  # of one name the first
+        names = {c.name: c.anchor for c in reversed(first)}
         links = tuple((c.name, names[c.name]) for c in first if names[c.name] == c.anchor)
-        lines.append(Line(cause.says, links))
+        lines.append(LinkedLine(cause.says, links))
     if lines:
-        yield Answer("What is wrong, and why?", tuple(lines))
+        yield RefereeQuestion("What is wrong, and why?", tuple(lines))
 
 
-def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
     """Yield the outcomes of the statements none of whose readings speaks of a single H."""
     specific = {c.statement.id for c in claims if c.statement and c.result.scene}
     general = [
@@ -102,10 +106,10 @@ def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
     end = ":" if 0 < len(refuted) <= _MAX_LINKS else "."
     links = tuple((c.name, c.anchor) for c in refuted) if end == ":" else ()
     line = f"Of {len(general)} statements on every H, {join_and(clauses)}{end}"
-    yield Answer("Is the theory right?", (Line(Prose(line), links),))
+    yield RefereeQuestion("Is the theory right?", (LinkedLine(Prose(line), links),))
 
 
-def _answer_structure(report: Report) -> Iterator[Answer]:
+def _answer_structure(report: Report) -> Iterator[RefereeQuestion]:
     """Yield a line for each scheme, with the leading term for each H that is not preserved."""
     for structure, question in _QUESTIONS.items():
         # By scheme, not by scene, so that each scheme has one line however many H it is proved for.
@@ -115,9 +119,11 @@ def _answer_structure(report: Report) -> Iterator[Answer]:
                 if proof.what == structure:
                     titled_proof = scene.title or scene.name, proof
                     by_scheme.setdefault(proof.scheme, []).append(titled_proof)
-        lines = tuple(Line(_line_of_scheme(scheme, proofs)) for scheme, proofs in by_scheme.items())
+        lines = tuple(
+            LinkedLine(_line_of_scheme(scheme, proofs)) for scheme, proofs in by_scheme.items()
+        )
         if lines:
-            yield Answer(question, lines)
+            yield RefereeQuestion(question, lines)
 
 
 def _line_of_scheme(scheme: str, proofs: Sequence[tuple[str, ProofResult]]) -> Prose:
@@ -126,13 +132,13 @@ def _line_of_scheme(scheme: str, proofs: Sequence[tuple[str, ProofResult]]) -> P
         return Prose(f"{scheme}: yes, {identity} is proved")
     parts: list[Prose] = []
     for title, proof in proofs:
-        where = f" ({title})" if len(proofs) > 1 else ""
+        title_note = f" ({title})" if len(proofs) > 1 else ""
         if proof.keeps:
-            parts.append(prose(f"{identity}{where}"))
+            parts.append(prose(f"{identity}{title_note}"))
         elif proof.order is None:
-            parts.append(prose(f"not decided{where}"))
+            parts.append(prose(f"not decided{title_note}"))
         else:
-            parts.append(prose(*_describe_defect(proof, proof.order), where))
+            parts.append(prose(*_describe_defect(proof, proof.order), title_note))
     negation = "no; " if any(proof.order is not None for _, proof in proofs) else ""
     sentence_parts: list[str | Prose] = [f"{scheme}: {negation}"]
     for k, part in enumerate(parts):
@@ -141,16 +147,16 @@ def _line_of_scheme(scheme: str, proofs: Sequence[tuple[str, ProofResult]]) -> P
 
 
 def _describe_defect(proof: ProofResult, power: int) -> list[str | Prose]:
-    """Return ΔJ with its leading term where that is short, else its order alone."""
+    """Return ΔJ with its leading term if that is short, else its order alone."""
     leading = proof.readable.leading or proof.leading
     if proof.form is None and leading and len(leading) <= _MAX_LEADING_LENGTH:
         remainder = Formula(f"h**{power + 1}")
         return ["ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(", remainder, ")"]
-    what = "ΔJ" if proof.form is None else "S"
-    return [f"{what} = O(", Formula(f"h**{power}"), "), no smaller"]
+    structure = "ΔJ" if proof.form is None else "S"
+    return [f"{structure} = O(", Formula(f"h**{power}"), "), no smaller"]
 
 
-def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
     """Yield how much of each printed table is refuted, as the beginning of its evidence has it."""
     by_share: dict[str, list[ClaimView]] = {}
     for claim in claims:
@@ -163,25 +169,25 @@ def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
             )
     if by_share:
         lines = (
-            Line(
+            LinkedLine(
                 Prose(f"{share[:1].upper()}{share[1:]}:"), tuple((c.name, c.anchor) for c in tables)
             )
             for share, tables in by_share.items()
         )
-        yield Answer("Do the printed tables stand?", tuple(lines))
+        yield RefereeQuestion("Do the printed tables stand?", tuple(lines))
 
 
-def _answer_equal_cost(report: Report) -> Iterator[Answer]:
+def _answer_equal_cost(report: Report) -> Iterator[RefereeQuestion]:
     """Yield the comparisons at equal run time with schemes that do not preserve area."""
     lines = []
     for scene in report.scenes:
         not_preserving = {proof.scheme for proof in scene.proofs if not proof.area_preserving}
-        for each in scene.work_precision.comparisons if scene.work_precision else ():
-            if each.error is not None and {each.one, each.other} & not_preserving:
+        for comparison in scene.work_precision.comparisons if scene.work_precision else ():
+            if comparison.error is not None and {comparison.one, comparison.other} & not_preserving:
                 name = scene.title or scene.name
-                lines.append(Line(prose(f"{name}: ", _first_sentence(each.sentence))))
+                lines.append(LinkedLine(prose(f"{name}: ", _first_sentence(comparison.sentence))))
     if lines:
-        yield Answer("Which scheme at equal cost?", tuple(lines))
+        yield RefereeQuestion("Which scheme at equal cost?", tuple(lines))
 
 
 def _first_sentence(text: Prose) -> Prose:
@@ -192,3 +198,78 @@ def _first_sentence(text: Prose) -> Prose:
             return Prose(*parts, part.partition(". ")[0] + ".")
         parts.append(part)
     return text
+
+
+# -- the mistakes of libraries --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class MistakeKind:
+    """One kind of mistake in one library: some of the claims, and how many more there are."""
+
+    severity: str
+    claims: tuple[ClaimView, ...]
+    more_count: int
+
+
+@dataclass(frozen=True)
+class MistakesOfLibrary:
+    """The mistakes of one library; `name` is the title of its section."""
+
+    name: str
+    mistakes: tuple[MistakeKind, ...]
+
+
+@dataclass(frozen=True)
+class MistakesByLibrary:
+    """The mistakes of all libraries.
+
+    `digits`: by library, the number of tables whose last digits alone are wrong; `faultless`: the
+    libraries without a refuted claim.
+    """
+
+    libraries: tuple[MistakesOfLibrary, ...]
+    digits: tuple[tuple[str, int], ...]
+    faultless: tuple[str, ...]
+
+
+def find_mistakes(claims: Sequence[ClaimView]) -> MistakesByLibrary | None:
+    """Return the mistakes by library, or None if no refuted claim has a severity.
+
+    Grave ones come first; tables that are wrong in their last digits only are counted.
+    """
+    refuted = [c for c in claims if c.result.verdict is Verdict.REFUTED and c.result.severity]
+    if not refuted:
+        return None
+    grave = [c for c in refuted if not c.result.severity.startswith(_DIGITS)]
+    sections = dict.fromkeys(c.result.section for c in grave)
+    # The order of the sections is that of the claims, since dictionaries keep their order.
+    slight = Counter(_name(c.result.section) for c in refuted if c not in grave)
+    touched = {c.result.section for c in refuted}
+    all_sections = dict.fromkeys(c.result.section for c in claims)
+    return MistakesByLibrary(
+        tuple(
+            MistakesOfLibrary(
+                _name(section), _mistakes([c for c in grave if c.result.section == section])
+            )
+            for section in sections
+        ),
+        tuple(slight.items()),
+        tuple(_name(section) for section in all_sections if section not in touched),
+    )
+
+
+def _name(section: str) -> str:
+    return section.removesuffix(", printed tables")
+
+
+def _mistakes(claims: Sequence[ClaimView]) -> tuple[MistakeKind, ...]:
+    mistakes = []
+    for severity in dict.fromkeys(c.result.severity for c in claims):
+        # Of several claims with one source and severity the first is named.
+        first = {c.result.source: c for c in reversed(claims) if c.result.severity == severity}
+        sources = [c for c in claims if c is first.get(c.result.source)]
+        mistakes.append(
+            MistakeKind(severity, tuple(sources[:_MAX_NAMED]), max(len(sources) - _MAX_NAMED, 0))
+        )
+    return tuple(mistakes)

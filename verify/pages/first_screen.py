@@ -7,21 +7,19 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.answers import Answer, answer_questions
+from verify.pages.answers import MistakesByLibrary, RefereeQuestion, answer_questions, find_mistakes
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
-from verify.pages.sections.claim_view import COLOURS, ClaimView
+from verify.pages.sections.page_contents import COLOURS, ClaimView
 from verify.pages.sections.scene.stability import MEANINGS
 from verify.pages.sections.section import SectionPlace, Tile, VisibleSection, walk
 from verify.pages.sections.section import sections as found_sections
-from verify.pages.text.signs import SIGNS
+from verify.pages.text.legend import SIGNS, counts_of
 from verify.pages.text.typography import join_and, superscript, whole
-from verify.pages.text.words import counts_of
-from verify.pages.wrong import Wrong, find_mistakes
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.claim import Outcome, describe_counts
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
-from verify.scenes.results.statement import Outcome, describe_counts
 from verify.verdict import Verdict
 
 # A judged run's sign, and the verdict whose colour it has.
@@ -71,11 +69,11 @@ class FirstScreen:
 
     finding: str
     tiles: tuple[Tile, ...]
-    answers: tuple[Answer, ...]
+    answers: tuple[RefereeQuestion, ...]
     refutation: Refutation | None
     plot: Plot | None
     place: SectionPlace | None
-    wrong: Wrong | None = None
+    wrong: MistakesByLibrary | None = None
 
 
 def first_screen(
@@ -137,9 +135,9 @@ def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
     if len(words) == 1:
         count, word = words[0]
         return f"The one claim is {word}" if count == 1 else f"All {count} claims are {word}"
-    (count, word), *rest = words
+    (count, word), *smaller = words
     first = f"{count} {'is' if count == 1 else 'are'} {word}"
-    return f"Of {len(verdicts)} claims, {join_and([first, *(f'{n} {w}' for n, w in rest)])}"
+    return f"Of {len(verdicts)} claims, {join_and([first, *(f'{n} {w}' for n, w in smaller)])}"
 
 
 def _describe_refuted_table(refutation: Refutation | None) -> str:
@@ -226,15 +224,15 @@ def _tiles_of_runs(judged_runs: Sequence[StabilityResult]) -> list[Tile]:
 
 def _tile_of_proof(proof: ProofResult) -> Tile:
     verdict, sign = proof.verdict, SIGNS[proof.verdict][0]
-    what, structure = proof.what, "area" if proof.form is None else "the symplectic form"
+    defect, structure = proof.what, "area" if proof.form is None else "the symplectic form"
     if proof.keeps:
-        return Tile(verdict, sign, f"{what} ≡ 0", proof.scheme, f"preserves {structure} exactly")
+        return Tile(verdict, sign, f"{defect} ≡ 0", proof.scheme, f"preserves {structure} exactly")
     if proof.order is not None:
         meaning = f"proved: changes {structure} at this order in every step"
         return Tile(
-            Verdict.REFUTED, "≠", f"{what} ∼ {_power_of_h(proof.order)}", proof.scheme, meaning
+            Verdict.REFUTED, "≠", f"{defect} ∼ {_power_of_h(proof.order)}", proof.scheme, meaning
         )
-    return Tile(verdict, sign, what, proof.scheme, "its order is undecided")
+    return Tile(verdict, sign, defect, proof.scheme, "its order is undecided")
 
 
 # -- the most telling picture ---------------------------------------------------------------------
@@ -256,13 +254,15 @@ def _select_refutation(claims: Sequence[ClaimView]) -> Refutation | None:
     tables = [c for c in refuted if c.is_table]
     claim = next(iter(tables), refuted[0])
     # One row may be printed by several tables; the refutation then concerns all of them.
-    others = (c for c in tables if c is not claim and not c.is_later_reading)
-    same = [c for c in others if c.printed_row == claim.printed_row]
-    return Refutation(claim, tuple(same))
+    other_tables = (c for c in tables if c is not claim and not c.is_later_reading)
+    tables_of_row = [c for c in other_tables if c.printed_row == claim.printed_row]
+    return Refutation(claim, tuple(tables_of_row))
 
 
 def _select_picture(sections: Sequence[VisibleSection]) -> tuple[Plot | None, SectionPlace | None]:
     """Return the picture of the least rank: the cost in area comes first, then stability."""
-    pictures = (picture for each in walk(sections) for picture in each.pictures)
-    _, plot, place = min(pictures, key=lambda each: each[0], default=((), None, None))
+    pictures = (picture for section in walk(sections) for picture in section.pictures)
+    _, plot, place = min(
+        pictures, key=lambda ranked_picture: ranked_picture[0], default=((), None, None)
+    )
     return plot, place

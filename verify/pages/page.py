@@ -21,12 +21,18 @@ from verify.pages.figures.captioned_plot import Plot
 from verify.pages.first_screen import FirstScreen, first_screen
 from verify.pages.sections import page as of_page
 from verify.pages.sections import scene as of_scene
-from verify.pages.sections import scheme_plots
-from verify.pages.sections.claim_view import Anchors, ClaimGroup, ClaimView, groups
-from verify.pages.sections.page_contents import PageContents, SceneView
+from verify.pages.sections.page_contents import (
+    Anchors,
+    ClaimGroup,
+    ClaimView,
+    PageContents,
+    SceneView,
+    groups,
+    plot_printed_table,
+)
 from verify.pages.sections.section import SectionPlace, VisibleSection, select_sections, terms, walk
-from verify.pages.text import mathml, notation, prose, typography, words
-from verify.pages.text.signs import SIGNS
+from verify.pages.text import legend, mathml, prose_markup, typography
+from verify.pages.text.legend import SIGNS
 from verify.pages.text.typography import join_and, whole
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report, SceneResult
@@ -45,12 +51,12 @@ class PageView(PageContents):
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
 
     def keeping_place(self, plot: Plot) -> SectionPlace | None:
-        """Return the only place where the plot stands, or None where no section keeps it."""
+        """Return the only place where the plot stands, or None if no section keeps it."""
         return next((place for kept_plot, place in self._kept_plots if kept_plot is plot), None)
 
     @cached_property
     def _kept_plots(self) -> Sequence[tuple[Plot, SectionPlace]]:
-        return [each for s in walk(self.sections) for each in s.section.keeps(s.view)]
+        return [kept_plot for s in walk(self.sections) for kept_plot in s.section.keeps(s.view)]
 
 
 def page_view(report: Report) -> PageView:
@@ -61,7 +67,7 @@ def page_view(report: Report) -> PageView:
         **vars(contents),
         first=first_screen(report, contents.claims, sections),
         sections=sections,
-        terms=words.ALWAYS | terms(sections),
+        terms=legend.ALWAYS | terms(sections),
     )
 
 
@@ -102,7 +108,7 @@ def _build_claim_views(
             result, anchor, *scene, statement=statement, is_later_reading=is_later_reading
         )
         if claim.is_table:
-            claim = replace(claim, plot=scheme_plots.table(claim, name=f"table-of-{anchor}"))
+            claim = replace(claim, plot=plot_printed_table(claim, name=f"table-of-{anchor}"))
         views.append(claim)
     return tuple(views)
 
@@ -113,11 +119,11 @@ def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
     # place.
     first_places: dict[str, int] = {}
     ranks = []
-    for place, claim in enumerate(claims):
+    for index, claim in enumerate(claims):
         first_place = (
-            first_places.setdefault(claim.statement_id, place) if claim.statement_id else place
+            first_places.setdefault(claim.statement_id, index) if claim.statement_id else index
         )
-        ranks.append((first_place, not claim.verdict.holds, claim.standing != "fair", place))
+        ranks.append((first_place, not claim.verdict.holds, claim.standing != "fair", index))
     return [claims[rank[-1]] for rank in sorted(ranks)]
 
 
@@ -152,7 +158,8 @@ def _describe_floors(scene: SceneResult) -> str:
 
 TEMPLATES = Path(__file__).parent / "templates"
 _FILTERS = (
-    prose.prose, prose.prose_with_backticks, prose.sentence, prose.cell, notation.notation,
+    prose_markup.prose, prose_markup.prose_with_backticks, prose_markup.sentence,
+    prose_markup.cell, prose_markup.notation,
     mathml.name, mathml.formula, mathml.plain, typography.exact, typography.number,
     typography.whole, typography.join_and, typography.every, typography.power_of_h,
     typography.start, typography.step,
@@ -168,7 +175,7 @@ def environment(render_plot: Callable[[Plot], Markup] = lambda plot: plot.svg) -
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters.update({each.__name__: each for each in _FILTERS})
+    templates.filters.update({text_filter.__name__: text_filter for text_filter in _FILTERS})
     equations = {
         "equation": lambda left, text: mathml.equation(mathml.NAMED[left], text),
         "hamiltonian": mathml.hamiltonian,

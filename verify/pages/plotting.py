@@ -4,11 +4,10 @@ Each function returns a `matplotlib.figure.Figure` on white; the caller may chan
 everything on them. A function that draws a single plot takes `ax`, the axes to draw it on, and then
 returns their figure. Logarithms are taken before anything is drawn, so that 1e-500 has its place
 too: the data of a logarithmic axis are decimal logarithms, and its ticks say 10ⁿ. All quantities
-are without units. An `InputError` is raised where there is nothing to draw.
+are without units. An `InputError` is raised if there is nothing to draw.
 """
 
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -17,36 +16,53 @@ from matplotlib.figure import Figure
 from verify import observables
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError, unknown_name
-from verify.pages.figures import (
-    crossover_figure,
-    figures,
-    flow_figure,
-    growth_figure,
-    over_time_figure,
-    stability_figure,
-)
+from verify.notebook import cut
+from verify.pages.figures import flow_figure, kind_map_figure, over_time_figure
+from verify.pages.figures import step_size_figures as size_figures
 from verify.pages.figures import work_precision_figure as work_figure
+from verify.pages.figures.axes import draw_grid, line_style, set_scaled_ticks, set_time_axis
+from verify.pages.figures.captioned_plot import lg
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.logarithm import lg
-from verify.pages.figures.svg import page_style
+from verify.pages.figures.sheet import canvas_on, draw_legend, restyle_for_caller
 from verify.pages.figures.work_precision_plots import error_panels
-from verify.pages.sections.claim_view import ClaimView
+from verify.pages.sections.page_contents import ClaimView, rows_of
 from verify.pages.sections.scheme.growth import select_drawable
-from verify.pages.sections.scheme_plots import rows_of
+from verify.pages.text.typography import superscript
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.growth import GrowthLawResult
 from verify.scenes.results.regions import FlowResult
-from verify.scenes.results.run import RunResult
+from verify.scenes.results.run import EnergyDrift, RunResult
 from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import StabilityMapResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
+# Of runs against the step size.
 QUANTITIES = {
-    **{name: each.plotted or each.label for name, each in observables.by_name().items()},
+    **{
+        name: observable.plotted or observable.label
+        for name, observable in observables.by_name().items()
+    },
     "energy_error": "max |H − H₀|",
     "solution_error": "solution error",
 }
-_DIGITS = 7
+PHASE = "phase"
+# Of one run over time.
+ORBIT_QUANTITIES = {
+    "energy_error": "H − H₀",
+    "solution_error": "solution error",
+    "lambda": "Λ",
+    "delta_j": "ΔJ",
+    "p": "p",
+    "q": "q",
+    PHASE: "p",  # against q
+}
+_DRIFT = "drift"
+_UPWARDS = ORBIT_QUANTITIES | {_DRIFT: "|H̃ − H̃₀|"}
+_LOGARITHMIC = ("solution_error", _DRIFT)
+# Heights in points of a plot over time and of a phase portrait.
+_HEIGHT, _SQUARE = 280, 380
+# Characters of a scheme's formula in a label.
+_LABEL = 40
 
 
 def plot_runs(
@@ -61,31 +77,35 @@ def plot_runs(
     `runs`: several RunResults, or a Sweep. `quantity`: a key of `QUANTITIES`; "energy_error" is the
     greatest |H − H₀| of a run's `orbit`, "solution_error" the distance of its last state from the
     exact solution. A grey guide is drawn above the points for each of `slopes`, powers of h.
-    `ax`: the axes to draw on. Raises InputError for another quantity, or where no line has two
+    `ax`: the axes to draw on. Raises InputError for another quantity, or if no line has two
     step sizes.
     """
     if quantity not in QUANTITIES:
         raise unknown_name("quantity", quantity, QUANTITIES)
     runs = list(runs)
-    place = _LOG_PLACES.get(quantity)
+    height_of = _LOG_PLACES.get(quantity)
     schemes = dict.fromkeys(run.scheme for run in runs)
     lines = [
-        figures.Line(f"{scheme}, {line.label}" if len(schemes) > 1 else line.label, line.points)
+        size_figures.LogarithmicLine(
+            f"{scheme}, {line.label}" if len(schemes) > 1 else line.label, line.points
+        )
         for scheme in schemes
         for scheme_runs in [[run for run in runs if run.scheme == scheme]]
         for line in (
-            figures.lines_of(scheme_runs, place) if place else figures.lines(scheme_runs, quantity)
+            size_figures.lines_of(scheme_runs, height_of)
+            if height_of
+            else size_figures.lines(scheme_runs, quantity)
         )
     ]
     if not lines:
         raise InputError("runs", len(runs), f"hold no {quantity} to draw at two step sizes or more")
-    panel = figures.Quantity(QUANTITIES[quantity], lines, slopes)
-    return restyle_for_caller(lambda: figures.draw_against_step_size([panel], ax), ax)
+    panel = size_figures.QuantityPanel(QUANTITIES[quantity], lines, slopes)
+    return restyle_for_caller(lambda: size_figures.draw_against_step_size([panel], ax), ax)
 
 
 def _energy_error(run: RunResult) -> float:
     sizes = (abs(Fraction(text)) for text in run.orbit.texts("energy_error") if text)
-    return lg(decimal(max(sizes, default=Fraction(0)), _DIGITS))
+    return lg(decimal(max(sizes, default=Fraction(0)), 7))
 
 
 def _solution_error(run: RunResult) -> float:
@@ -96,7 +116,11 @@ _LOG_PLACES = {"energy_error": _energy_error, "solution_error": _solution_error}
 
 
 def plot_over_time(run: RunResult) -> Figure:
-    """Plot ΔJ = det J − 1 and Λ over t, as bands between extremes, for a run with a series."""
+    """Plot ΔJ = det J − 1 and Λ over t, as bands between extremes, for a run with a series.
+
+    `run`: a RunResult, made with `points`. Returns a figure with a panel for each of the two.
+    Raises InputError if the run holds no series.
+    """
     if not run.series:
         raise InputError("run", run.scheme, "holds no series; run(…, points=400) keeps one")
     panels = over_time_figure.OrbitPanels("", ((run, "delta_j"), (run, "lam")))
@@ -104,14 +128,18 @@ def plot_over_time(run: RunResult) -> Figure:
 
 
 def plot_separation(grid: SeparationGrid, *, ax: Any = None) -> Figure:
-    """Plot the greatest |truncation| and |rounding| in Λ against the step size, with crossovers."""
-    lines, marks = crossover_figure.lines_and_marks(grid)
+    """Plot the greatest |truncation| and |rounding| in Λ against the step size, with crossovers.
+
+    `grid`: what `separate_grid` returns in the plane. `ax`: the axes to draw on, whose figure is
+    then returned. Raises InputError if there are not two step sizes with both.
+    """
+    lines, marks = size_figures.lines_and_marks(grid)
     if len(lines) < 2:
         raise InputError(
             "grid", len(grid.points), "does not hold truncation and rounding at two step sizes"
         )
     return restyle_for_caller(
-        lambda: crossover_figure.draw_truncation_against_rounding(lines, marks, ax), ax
+        lambda: size_figures.draw_truncation_against_rounding(lines, marks, ax), ax
     )
 
 
@@ -120,22 +148,26 @@ def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
     drawable = select_drawable(laws)
     if not drawable:
         raise InputError("laws", len(laws), "hold no prediction to draw at two step sizes")
-    return restyle_for_caller(lambda: growth_figure.draw_predicted_against_measured(drawable))
+    return restyle_for_caller(lambda: size_figures.draw_predicted_against_measured(drawable))
 
 
 def plot_table(claim: ClaimResult) -> Figure:
     """Plot the lg MSE of a table, as printed and as computed, against the step size."""
     view = ClaimView(claim, anchor="", scene_anchor="", scene_title="")
-    printed, computed_lines = rows_of(view) if view.is_table else (figures.Line("", ()), [])
-    if len(printed.points) < 2 or not computed_lines:
+    printed, computed_lines = rows_of(view) if view.is_table else (None, [])
+    if printed is None or len(printed.points) < 2 or not computed_lines:
         raise InputError("claim", claim.id, "is no table with two step sizes to draw")
     return restyle_for_caller(
-        lambda: figures.draw_printed_against_computed(computed_lines, printed)
+        lambda: size_figures.draw_printed_against_computed(computed_lines, printed)
     )
 
 
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
-    """Plot the solution error at T against run time in seconds, and against the step size."""
+    """Plot the solution error at T against run time in seconds, and against the step size.
+
+    `found`: what `bench` returns. All axes are logarithmic; a point that rounding limits is hollow.
+    Returns a figure with the two panels. Raises InputError if no run has an error and a time.
+    """
     panels = list(error_panels(found))
     if not panels:
         raise InputError("found", len(found.lines), "hold no run with an error and a run time")
@@ -144,14 +176,14 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
 
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Plot the verdicts in the plane of step size and stiffness."""
-    return restyle_for_caller(lambda: stability_figure.draw_planes([over]))
+    return restyle_for_caller(lambda: kind_map_figure.draw_planes([over]))
 
 
 def plot_flow(flow: FlowResult, plane: int | None = None) -> Figure:
     """Plot a region and its images by each map, q to the right and p upwards, on equal axes.
 
     `plane`: in n degrees of freedom, the k of the plane (q_k, p_k) on which they are projected; by
-    default that of the region. Raises InputError where there is no image, or no such plane.
+    default that of the region. Raises InputError if there is no image, or no such plane.
     """
     if not flow.before or not any(image.outlines for image in flow.images):
         raise InputError("flow", flow.shape, "holds no image to draw")
@@ -161,23 +193,102 @@ def plot_flow(flow: FlowResult, plane: int | None = None) -> Figure:
     return restyle_for_caller(lambda: flow_figure.draw_flow(grid_of(flow, plane)))
 
 
-def restyle_for_caller(draw: Callable[[], Figure], ax: Any = None) -> Figure:
-    """Draw the figure on white, with its titles moved to the vertical axes.
+# -- orbits over time, and in the plane -----------------------------------------------------------
 
-    `ax`: the caller's axes that it is drawn on; nothing else of their figure is touched.
+
+def plot_orbit(
+    runs: RunResult | Sequence[RunResult], quantity: str = "energy_error", *, ax: Any = None
+) -> Figure:
+    """Plot a quantity of the states of one or several runs over t, or a phase portrait.
+
+    `quantity`: energy_error, H − H₀; solution_error, |z − φ_t(z₀)| at 200 states at most, on a
+    logarithmic axis, with φ_t in closed form if one exists; lambda; delta_j; p; q; or phase, p
+    against q. `ax`: the axes to draw on, whose figure is then returned. A run's `points` say how
+    many of its states there are. Raises InputError if there is nothing to draw.
     """
-    # What the caller sets in place of our labels may be a formula between dollar signs.
-    with page_style(**{"figure.facecolor": "white", "axes.facecolor": "white"}):
-        figure = draw()
-        for axes in figure.axes if ax is None else [ax]:
-            for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
-                # The page's labels are plain text, but a caller's label may be a formula between
-                # dollar signs.
-                text.set_parse_math(True)
-            title = axes.get_title(loc="left")
-            if axes.get_ylabel():
-                continue
-            axes.set_ylabel(re.sub(r"^\([a-z]\) |:.*", "", title))
-            if ax is not None or len(figure.axes) == 1:
-                axes.set_title("", loc="left")
+    if quantity not in ORBIT_QUANTITIES:
+        raise unknown_name("quantity", quantity, ORBIT_QUANTITIES)
+    run_list = _as_run_list(runs)
+    lines = [(label_run(run, run_list), *_curve_of(run, quantity)) for run in run_list]
+    return restyle_for_caller(lambda: _draw(lines, quantity, ax), ax)
+
+
+def _as_run_list(runs: RunResult | Sequence[RunResult]) -> list[RunResult]:
+    run_list = [runs] if isinstance(runs, RunResult) else list(runs)
+    if not run_list or not all(isinstance(run, RunResult) for run in run_list):
+        raise InputError("runs", runs, "is no RunResult, and no list of them")
+    return run_list
+
+
+def _curve_of(run: RunResult, quantity: str) -> tuple[Any, Any]:
+    """Return the abscissas and the ordinates of the curve."""
+    if quantity == "solution_error":
+        errors = run.solution_errors()
+        return [float(t) for t, _ in errors], [float(error) or float("nan") for _, error in errors]
+    orbit = run.orbit
+    if quantity == PHASE:
+        return orbit.q, orbit.p
+    return orbit.t, getattr(orbit, "lambda_" if quantity == "lambda" else quantity)
+
+
+def label_run(run: RunResult, among: Sequence[RunResult]) -> str:
+    """Return a label of the run that says how it differs from the others: scheme, h, start."""
+    parts = {
+        "": run.scheme if len(run.scheme) <= _LABEL else cut(run.scheme)[:_LABEL] + "…",
+        "h": run.step_size,
+        "q": run.start_text("q"),
+        "p": run.start_text("p"),
+    }
+    # An input that is the same for all runs does not tell them apart, and is left out of the label.
+    keys = {"": "scheme", "h": "step_size", "q": "q", "p": "p"}
+    names = [n for n in parts if n == "" or len({getattr(x, keys[n]) for x in among}) > 1]
+    return ", ".join(f"{n} = {parts[n]}" if n else parts[n] for n in names)
+
+
+def plot_energy_drift(
+    runs: RunResult | Sequence[RunResult], order: int = 4, *, ax: Any = None
+) -> Figure:
+    """Plot |H − H₀| and |H̃ − H̃₀| of one or several runs over t, on a logarithmic axis.
+
+    There is a line for H and one for H̃ with each further term up to h^order that is not 0: the more
+    terms H̃ has, the better a symplectic scheme conserves it, down to the rounding of the run. At
+    most 1,000 states are used. `ax`: the axes to draw on, whose figure is then returned. Raises
+    InputError for a scheme without a modified Hamiltonian, such as one that is not symplectic.
+    """
+    run_list = _as_run_list(runs)
+    lines = [
+        (_drift_label(run, run_list, drift.power), *_drift_points(drift))
+        for run in run_list
+        for drift in run.energy_drifts(order)
+    ]
+    return restyle_for_caller(lambda: _draw(lines, _DRIFT, ax), ax)
+
+
+def _drift_points(drift: EnergyDrift) -> tuple[list[float], list[float]]:
+    # What is exactly 0, as at the start, has no logarithm.
+    return [float(t) for t in drift.t], [abs(x) if x else float("nan") for x in drift.values]
+
+
+def _drift_label(run: RunResult, among: Sequence[RunResult], power: int) -> str:
+    name = "H" if power == 0 else f"H̃ to h{superscript(power)}"
+    return name if len(among) == 1 else f"{label_run(run, among)}: {name}"
+
+
+def _draw(lines: Sequence[tuple[str, Any, Any]], quantity: str, ax: Any) -> Figure:
+    figure, axes = canvas_on(ax, _SQUARE if quantity == PHASE else _HEIGHT)
+    for index, (label, x, y) in enumerate(lines):
+        style = line_style(index, len(lines)) | {"marker": "", "linewidth": 1.1}
+        axes.plot(x, y, label=label, **style)
+    if quantity == PHASE:
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel("q")
+    else:
+        set_time_axis(axes)
+        if quantity in _LOGARITHMIC:
+            axes.set_yscale("log")
+        else:
+            set_scaled_ticks(axes.yaxis, *axes.get_ylim())
+    draw_grid(axes, "both" if quantity == PHASE else "y")
+    axes.set_ylabel(_UPWARDS[quantity])
+    draw_legend(figure if ax is None else None, axes, ncols=2)
     return figure

@@ -1,21 +1,66 @@
-"""Theorems of papers, each with its verdict, its proof in numbered steps, and its checks.
+"""Theorems of papers, each with its verdict, its proof in numbered steps, and the checks behind it.
 
-A step is marked with what checked it in full: exact algebra or enclosures of this run, which are
-rows of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried
-on examples, or stands on paper alone, counts as not checked by machine.
+A check is one exact fact: polynomials that vanish, equal formulas, or numbers that were compared. A
+step is marked with what checked it in full: exact algebra or enclosures of this run, which are rows
+of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried on
+examples, or stands on paper alone, counts as not checked by machine.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
+from typing import Any
 
-from verify.papers.checks.check import Check
-from verify.proof.assistant.stated import ShippedTheorem
+import sympy
+
+from verify.algebra.embedding import embed
+from verify.algebra.expressions.formula_text import to_text
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.prose import Formula, Prose, count, join_prose, prose, read_prose
 from verify.scenes.frozen import ProseText, WithProse
 from verify.scenes.results.claim import StepResult
 from verify.verdict import Verdict
+
+ALGEBRA = "exact algebra"
+NUMBERS = "exact numbers"
+BALLS = "enclosures"
+
+
+@dataclass(frozen=True)
+class Check:
+    """One exact fact on which an argument rests.
+
+    `statement` says it, `value` is the result in a few words, and `method` that of the check; these
+    texts are in the syntax of `read_prose`, with formulas quoted.
+    """
+
+    statement: str
+    holds: bool
+    value: str
+    method: str = ALGEBRA
+
+
+def vanishes(statement: str, *elements: Any) -> Check:
+    """Check that polynomials in normal form are zero."""
+    wrong = [x for x in elements if x != 0]
+    return Check(statement, not wrong, f"{len(wrong[0])} terms are left" if wrong else "0")
+
+
+def same(
+    statement: str, gaps: Sequence[sympy.Expr], names: Sequence[str], value: str = "0"
+) -> Check:
+    """Check that all differences, formulas in these names, are zero in one exact ring.
+
+    `value`: what the check shows if they are.
+    """
+    # One ring for all formulas: `ring.decide` may then use relations between their functions.
+    ring, elements = embed(gaps, names)
+    wrong = [gap for gap, x in zip(gaps, elements, strict=True) if ring.decide(x).zero is not True]
+    return Check(statement, not wrong, f"`{to_text(wrong[0])}`" if wrong else value)
+
+
+# -- arguments ------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -57,7 +102,7 @@ class Argument(WithProse):
         """The whole argument as a paragraph; empty if it shows nothing."""
         if not self.steps:
             return Prose()
-        texts = [self.given, *(each.text for each in self.steps)]
+        texts = [self.given, *(result.text for result in self.steps)]
         return join_prose(" ", [*filter(None, texts), "∎", *filter(None, [self.remark])])
 
 
@@ -81,19 +126,19 @@ def _argument(
     steps = tuple(steps)
     # Equal checks of several steps are one row of the table.
     checks = checks_of(steps)
-    rows = [(c.what, c.value, "holds" if c.holds else "does not hold") for c in checks]
+    rows = [(c.statement, c.value, "holds" if c.holds else "does not hold") for c in checks]
     failures = [c for c in checks if not c.holds]
     # An argument without any check would be prose alone, which this toolkit does not vouch for.
     if failures or not checks:
         verdict, steps = Verdict.UNDECIDED, ()
         evidence = (
-            f"the argument fails at: {failures[0].what}" if failures else "nothing was checked"
+            f"the argument fails at: {failures[0].statement}" if failures else "nothing was checked"
         )
     return Argument(
         verdict=verdict,
         evidence=read_prose(evidence),
         given=_read(setting),
-        steps=tuple(_result(each, checks) for each in steps),
+        steps=tuple(_result(argument_step, checks) for argument_step in steps),
         remark=_read(remark),
         details=tuple(tuple(map(read_prose, row)) for row in (HEAD, *rows)),
         checked_by=(_count_steps(steps),) if steps else (),
@@ -106,7 +151,12 @@ refutation = partial(_argument, Verdict.REFUTED)
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:
     """Return all checks that the steps rest on or were tried by, each once."""
-    checks = [c for each in steps for c in (*each.by, *each.tried) if isinstance(c, Check)]
+    checks = [
+        c
+        for argument_step in steps
+        for c in (*argument_step.by, *argument_step.tried)
+        if isinstance(c, Check)
+    ]
     return list(dict.fromkeys(checks))
 
 
@@ -129,15 +179,15 @@ def _rows(chosen: Sequence[Check], checks: Sequence[Check]) -> list[Prose]:
     rows: dict[str, list[int]] = {}
     for number, check in enumerate(checks, start=1):
         if check in chosen:
-            rows.setdefault(check.how, []).append(number)
-    return [prose(f"{how}, {_format_rows(numbers)}") for how, numbers in rows.items()]
+            rows.setdefault(check.method, []).append(number)
+    return [prose(f"{method}, {_format_rows(numbers)}") for method, numbers in rows.items()]
 
 
 def _format_rows(numbers: Sequence[int]) -> str:
     """Format row numbers as `row 3`, or `rows 1–4 and 7`."""
     parts: list[str] = []
     # Numbers that follow each other have the same difference to their index.
-    for _, run in groupby(enumerate(numbers), key=lambda each: each[1] - each[0]):
+    for _, run in groupby(enumerate(numbers), key=lambda pair: pair[1] - pair[0]):
         numbers_in_run = [n for _, n in run]
         parts.append(
             f"{numbers_in_run[0]}"
@@ -148,11 +198,11 @@ def _format_rows(numbers: Sequence[int]) -> str:
 
 
 def _count_steps(steps: Sequence[Step]) -> Prose:
-    checked = sum(1 for each in steps if each.by)
-    how = "all checked by machine"
+    checked = sum(1 for argument_step in steps if argument_step.by)
+    marks = "all checked by machine"
     if checked < len(steps):
-        how = f"{checked or 'none'} checked by machine, {len(steps) - checked} not"
-    return prose(f"paper: an argument in {count(len(steps), 'step')}, {how}")
+        marks = f"{checked or 'none'} checked by machine, {len(steps) - checked} not"
+    return prose(f"paper: an argument in {count(len(steps), 'step')}, {marks}")
 
 
 def _read(text: str) -> Prose:

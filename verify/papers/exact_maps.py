@@ -10,12 +10,14 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
 
 
 @dataclass(frozen=True)
-class Point:
+class RationalPoint:
+    """A point of the plane with rational coordinates."""
+
     p: Fraction
     q: Fraction
 
@@ -32,23 +34,26 @@ class Areas:
 
     @property
     def largest(self) -> Fraction:
+        """The greatest |ΔJ_k|."""
         return max(map(abs, self.delta_j))
 
     @property
     def mse(self) -> Fraction:
+        """The mean of ΔJ_k²."""
         return sum((x * x for x in self.delta_j), Fraction(0)) / len(self.delta_j)
 
     @property
     def lam(self) -> Fraction:
+        """Λ = Π (1 + ΔJ_k) − 1."""
         return prod((1 + x for x in self.delta_j), start=Fraction(1)) - 1
 
 
-def squared_distance(one: Point, other: Point) -> Fraction:
+def squared_distance(point: RationalPoint, other_point: RationalPoint) -> Fraction:
     """Return the square of the distance of two points."""
-    return (one.p - other.p) ** 2 + (one.q - other.q) ** 2
+    return (point.p - other_point.p) ** 2 + (point.q - other_point.q) ** 2
 
 
-def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
+def value(expression: sympy.Expr, point: RationalPoint, h: Fraction) -> Fraction:
     """Evaluate the expression at a rational point; ValueError if its value is not rational."""
     substitution = {P: point.p, Q: point.q, H_STEP: h}
     # sympy's Rational and not a float: one rounded digit would spoil an exact counterexample.
@@ -60,8 +65,9 @@ def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
     return Fraction(int(number.p), int(number.q))
 
 
-def next_point(step: StepMap, point: Point, h: Fraction) -> Point:
-    return Point(value(step.p_next, point, h), value(step.q_next, point, h))
+def next_point(step: StepMap, point: RationalPoint, h: Fraction) -> RationalPoint:
+    """Return the image of the point by one step; ValueError if it is not rational."""
+    return RationalPoint(value(step.p_next, point, h), value(step.q_next, point, h))
 
 
 def run_symbolically(
@@ -75,12 +81,12 @@ def run_symbolically(
     return state
 
 
-def jacobian(step: StepMap, point: Point, h: Fraction) -> tuple[Fraction, ...]:
+def jacobian(step: StepMap, point: RationalPoint, h: Fraction) -> tuple[Fraction, ...]:
     """Return ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
     return tuple(value(x, point, h) for x in step.jacobian)
 
 
-def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
+def areas(step: StepMap, start: RationalPoint, h: Fraction, steps: int) -> Areas:
     """Return ΔJ_k at z_k, k = 0 … steps − 1, exactly."""
     values, point, delta_j = [], start, step.delta_j
     for _ in range(steps):

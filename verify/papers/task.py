@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.execution.task import Task
 from verify.papers.argument import Argument
 

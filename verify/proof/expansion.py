@@ -8,20 +8,18 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import TypeAlias
 
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.identities.polynomials import split
 from verify.algebra.limits import check_expression
+from verify.algebra.power_series import QuotientSeries, Series
 from verify.algebra.ring import Decision, Poly, Ring
-from verify.algebra.ring_text import as_expression_at_0
-from verify.algebra.series.power_series import Series
-from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.proof.parameters import not_zero_for
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
 from verify.schemes.maps.step_map import StepMap
@@ -73,7 +71,7 @@ class Leading:
         return self.form.entry_name(self.place)
 
     @cached_property
-    def domain(self) -> Domain:
+    def domain(self) -> FormulaDomain:
         """The parameters for which the coefficient is not the zero function of the coordinates."""
         if self.decision.zero is not False or self.element is None:
             return EVERYWHERE
@@ -82,7 +80,7 @@ class Leading:
         what = f"the coefficient of h^{self.power}"
         return not_zero_for(*self.element, f"the entry {self.entry} of S" if self.entry else what)
 
-    def restrict_to(self, domain: Domain) -> Leading:
+    def restrict_to(self, domain: FormulaDomain) -> Leading:
         """Return it decided in the domain: undecided unless a witness lies there."""
         if self.decision.zero is None or not domain.requirements:
             return self
@@ -112,7 +110,7 @@ _ZERO = _NOWHERE, _NOWHERE.zero
 VANISHES = Leading(None, Decision(True))
 
 
-class Expansion:
+class TaylorExpansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
     An element with 1/h in it is multiplied by hᵐ first; the first m coefficients must then vanish.
@@ -145,7 +143,7 @@ class Expansion:
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         # Taylor's formula: the n-th derivative by h at h = 0, divided by n!.
-        value = as_expression_at_0(self.ring, self._derivatives[n], symbol("h"))
+        value = self.ring.expression_at_0(self._derivatives[n], symbol("h"))
         try:
             check_expression(value, "map", str(value))
         except InputError as error:
@@ -180,16 +178,16 @@ class ClosedSeries:
 
     def __init__(self, closed: ClosedForm) -> None:
         self.closed, self.flow = closed, closed.field
-        self._parts = [Expansion(closed.ring, x) for x in closed.elements]
+        self._parts = [TaylorExpansion(closed.ring, x) for x in closed.elements]
 
     @cached_property
-    def _entries(self) -> dict[Place, Expansion]:
+    def _entries(self) -> dict[Place, TaylorExpansion]:
         entries = self.closed.defect.entries
-        return {place: Expansion(self.closed.ring, x) for place, x in entries.items()}
+        return {place: TaylorExpansion(self.closed.ring, x) for place, x in entries.items()}
 
     @cached_property
-    def _volume(self) -> Expansion:
-        return Expansion(self.closed.ring, self.closed.delta_j)
+    def _volume(self) -> TaylorExpansion:
+        return TaylorExpansion(self.closed.ring, self.closed.delta_j)
 
     @property
     def polynomial(self) -> bool:
@@ -230,7 +228,7 @@ class ClosedSeries:
         return ring, residual
 
     def in_one_field(
-        self, hamiltonian: Hamiltonian, most: int, *others: sympy.Expr
+        self, hamiltonian: Hamiltonian, most: int, *extra: sympy.Expr
     ) -> tuple[CanonicalField, list[list[Poly]], list[Poly]]:
         """Return the coefficients of h⁰ … h^most in each coordinate's new value, and the other
         expressions, as elements of one ring."""
@@ -238,9 +236,9 @@ class ClosedSeries:
         field, elements = self.flow, [x for _, x in parts]
         # Generators differ from ring to ring: only in a common ring can coefficients be compared or
         # added.
-        if others or not all(ring is field.ring for ring, _ in parts):
+        if extra or not all(ring is field.ring for ring, _ in parts):
             expressions = (ring.expression(x) for ring, x in parts)
-            field, elements = canonical_field(hamiltonian, *expressions, *others)
+            field, elements = canonical_field(hamiltonian, *expressions, *extra)
         size = len(parts)
         rows = [elements[start : start + most + 1] for start in range(0, size, most + 1)]
         return field, rows, elements[size:]
@@ -264,9 +262,9 @@ def _in_one_ring(parts: Sequence[tuple[Ring, Poly]], otherwise: Ring) -> tuple[R
     if not parts:
         return otherwise, []
     ring, _ = parts[0]
-    if all(other is ring for other, _ in parts):
+    if all(part_ring is ring for part_ring, _ in parts):
         return ring, [x for _, x in parts]
-    return embed([other.expression(x) for other, x in parts], otherwise.variables)
+    return embed([part_ring.expression(x) for part_ring, x in parts], otherwise.variables)
 
 
 AnySeries: TypeAlias = "DefectSeries[CanonicalField] | ClosedSeries"
@@ -283,8 +281,8 @@ def series_of(step_map: StepMap, first: int) -> AnySeries:
         return ClosedSeries(step_map.flat)
 
     def extend(most: int) -> tuple[CanonicalField, State]:
-        more = initial if most == first else step_map.series(most)
-        assert more is not None  # noqa: S101 - it has had fewer terms
-        return more
+        longer = initial if most == first else step_map.series(most)
+        assert longer is not None  # noqa: S101 - it has had fewer terms
+        return longer
 
     return DefectSeries(extend, first, step_map.flow_up_to)

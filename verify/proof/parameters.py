@@ -11,17 +11,18 @@ from functools import reduce
 from itertools import islice, product
 from typing import TypeAlias
 
-from verify.algebra.domain import Domain
+from verify.algebra.domain import FormulaDomain
 from verify.algebra.embedding import embed
+from verify.algebra.expressions.function_nodes import Requirement
 from verify.algebra.formula import symbol
 from verify.algebra.identities.polynomials import split_by_monomials
-from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.zero_test import clear_inverses
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
+_Point: TypeAlias = "tuple[sympy.Expr, ...]"
 _STEP_AND_TIME = ("h", "t")
 _AT = (0, 1, 2)  # coordinates at which functions of p and q have simple values
 _MOST_POINTS, _FEWEST_POINTS = 81, 9
@@ -29,7 +30,7 @@ _LONG = 300  # terms, from which on an element is evaluated at few points only
 _MOST_PARTS = 12  # coefficients in a condition that not all of them vanish
 
 
-def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
+def not_zero_for(ring: Ring, x: Poly, what: str) -> FormulaDomain:
     """Return the parameters for which x, as a function of p and q alone, is not zero.
 
     x is not the zero function of coordinates and parameters. `what` names x in the sentence for
@@ -37,7 +38,7 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
     """
     parameters = [name for name in ring.variables if name not in _coordinates(ring)]
     if not any(ring.depends(x, name) for name in parameters):
-        return Domain()
+        return FormulaDomain()
     x = clear_inverses(ring, x)  # a denominator is not 0 where x is defined
     inner = _state_dependent(ring, x)
     # x is the zero function of p and q where all its coefficients by their monomials vanish. A
@@ -49,15 +50,17 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
     if all(index in ring.places.values() for index in inner):  # a polynomial in p and q
         rests = _without_multiples([_radical(part / common, factors) for part in parts])
         if len(rests) <= _MOST_PARTS:
-            return Domain.from_requirements(
+            return FormulaDomain.from_requirements(
                 [*requirements, *_not_all_zero([ring.expression(r) for r in rests])]
             )
     expression = ring.expression(x)
     # A point at which only the common factors are left shows that they are the sole condition.
     if any(_is_product_at(ring, expression, factors, point) for point in _points(ring, x, factors)):
-        return Domain.from_requirements(requirements)
+        return FormulaDomain.from_requirements(requirements)
     names = [name for name in parameters if ring.depends(x, name)] or parameters
-    return Domain.from_requirements(requirements, almost_all(names, what, "t" in ring.variables))
+    return FormulaDomain.from_requirements(
+        requirements, almost_all(names, what, "t" in ring.variables)
+    )
 
 
 def almost_all(parameters: Sequence[str], what: str, timed: bool) -> str:
@@ -90,28 +93,26 @@ def _state_dependent(ring: Ring, x: Poly) -> list[int]:
 
 def _radical(x: Poly, factors: Sequence[Poly]) -> Poly:
     """Return the product of x's irreducible factors without those in `factors`."""
-    others = [factor for factor, _ in x.factor()[1] if factor not in factors]
-    return reduce(lambda a, b: a * b, others, x.context().constant(1))
+    remaining = [factor for factor, _ in x.factor()[1] if factor not in factors]
+    return reduce(lambda a, b: a * b, remaining, x.context().constant(1))
 
 
 def _without_multiples(parts: Sequence[Poly]) -> list[Poly]:
     """Drop the parts that another one divides: they vanish wherever it does."""
     minimal: list[Poly] = []
     for part in sorted(parts, key=lambda x: x.total_degree()):
-        if all(divmod(part, other)[1] for other in minimal):
+        if all(divmod(part, divisor)[1] for divisor in minimal):
             minimal.append(part)
     return minimal
 
 
-def _not_all_zero(rests: Sequence[sympy.Expr]) -> list[Requirement]:
+def _not_all_zero(parts: Sequence[sympy.Expr]) -> list[Requirement]:
     """Require that not all of them are 0, as a sum of squares that is not 0."""
-    together = rests[0] if len(rests) == 1 else sympy.Add(*(rest**2 for rest in rests))
+    together = parts[0] if len(parts) == 1 else sympy.Add(*(part**2 for part in parts))
     return [Requirement(together, "!=")]
 
 
 # -- of functions ---------------------------------------------------------------------------------
-
-_Point: TypeAlias = "tuple[sympy.Expr, ...]"
 
 
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:

@@ -3,9 +3,9 @@
 `p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, has a lower order, since its digits are
 rounded. So each such decimal becomes a variable. The difference from the exact flow at hⁿ is then,
 for each monomial in everything else, a polynomial in these variables. Where exact numbers near the
-printed ones make all of them 0, as `verify.schemes.printed.judged` decides, the map has the order
-with these numbers. The order is said to end where, at some point, an enclosure of the difference
-for all numbers within ten units of the last digits excludes 0.
+printed ones make all of them 0, as `verify.schemes.printed.judgement` decides, the map has the
+order with these numbers. The order is said to end where, at some point, an enclosure of the
+difference for all numbers within ten units of the last digits excludes 0.
 """
 
 import re
@@ -24,20 +24,20 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.exact import decimal, rational
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.number import E
+from verify.arithmetic.number_system import E
 from verify.effort import limit_effort
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import AnySeries, series_of
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions.condition import Condition, NearbyOrder
-from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.printed.condition_set import BITS, ConditionSet, NamedEquation, ball_of
-from verify.schemes.printed.judged import WITHIN, Judged, judge
+from verify.schemes.printed.judgement import WITHIN, Judgement, judge
 from verify.schemes.printed.naming import Naming
-from verify.schemes.printed.nearby_order import highest
+from verify.schemes.printed.nearby_order import find_highest_order
 from verify.schemes.printed.printed_numbers import PrintedNumbers, power
-from verify.schemes.printed.sentences import judgement_of_order
+from verify.schemes.printed.sentences import ruling_on_order
 
 _MOST_NUMBERS, _MOST_CONDITIONS = 24, 600
 MOST_ORDER = 8  # the highest power of h examined by default
@@ -53,7 +53,7 @@ Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what the
 def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
     """Return the highest order of the map with exact numbers near those printed in its formulas.
 
-    None where they print none, or none near them is seen to make it a scheme.
+    None if they print none, or none near them is seen to make it a scheme.
     """
     return _highest_order(formulas, hamiltonian, lambda series, n: series.differences(n))
 
@@ -91,7 +91,7 @@ def describe_nearby_defect(near: NearbyOrder, form: str) -> Prose:
     power = Formula(f"h^{near.order}")
     return prose(
         f"{form} has no term up to ", power, " with exact coefficients near the printed ones: ",
-        near.said,
+        near.explanation,
     )  # fmt: skip
 
 
@@ -174,11 +174,11 @@ class _PrintedMap:
         # The conditions are polynomials in the printed numbers, so they are the same for every
         # reading.
         conditions = _Conditions(self.names, elements)
-        best, _ = highest(self.readings, most, conditions.judge)
+        best, _ = find_highest_order(self.readings, most, conditions.judge)
         if best is None:
             return None
         order, numbers, judgement = best
-        verdict, sentence, _ = judgement_of_order(judgement, order)
+        verdict, sentence, _ = ruling_on_order(judgement, order)
         end = self._find_nonzero(order + 1, numbers, elements) if order < most else None
         return NearbyOrder(order, verdict, sentence, end, ())
 
@@ -187,7 +187,7 @@ class _PrintedMap:
     ) -> Condition | None:
         """Find an element of hⁿ that is not 0 for any numbers near the printed ones.
 
-        That is shown by an enclosure at a point; None where no such element is seen.
+        That is shown by an enclosure at a point; None if no such element is seen.
         """
         ring, coefficients = elements(n)
         others = [name for name in ring.variables if name not in self.names]
@@ -220,7 +220,7 @@ class _Conditions:
         self.names, self.elements = names, elements
         self._cache: list[list[Polynomial]] = []
 
-    def judge(self, numbers: PrintedNumbers, order: int) -> Judged:
+    def judge(self, numbers: PrintedNumbers, order: int) -> Judgement:
         """Judge whether numbers near the printed ones make all of them 0 up to h^order."""
         while len(self._cache) <= order:
             self._cache.append(self._of_power(len(self._cache)))
@@ -243,21 +243,21 @@ class _Conditions:
 def _by_monomials(ring: Ring, x: Poly, names: Sequence[str]) -> list[Polynomial]:
     """Return the coefficient of each monomial in all other variables, as a polynomial in the names.
 
-    Raises LimitError where one of the names occurs within a function.
+    Raises LimitError if one of the names occurs within a function.
     """
-    places = [ring.places.get(name) for name in names]  # None of one that it does not hold
-    for name, place in zip(names, places, strict=True):
+    indices = [ring.places.get(name) for name in names]  # None of one that it does not hold
+    for name, index in zip(names, indices, strict=True):
         # The derivative in the ring follows functions, the polynomial's own does not: they differ
         # exactly where the name occurs within a function.
-        if place is not None and ring.diff(x, name) != ring.reduce(x.derivative(place)):
+        if index is not None and ring.diff(x, name) != ring.reduce(x.derivative(index)):
             raise LimitError("scheme", name, "stands within a function")
-    others = {place for place in range(len(x.degrees())) if place not in places}
+    other_indices = {index for index in range(len(x.degrees())) if index not in indices}
     return [
         tuple(
-            (Fraction(int(c.p), int(c.q)), tuple(0 if k is None else exponents[k] for k in places))
+            (Fraction(int(c.p), int(c.q)), tuple(0 if k is None else exponents[k] for k in indices))
             for exponents, c in part.items()
         )
-        for part in split_by_monomials(x, others).values()
+        for part in split_by_monomials(x, other_indices).values()
     ]
 
 

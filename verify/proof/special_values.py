@@ -8,8 +8,8 @@ import sympy
 
 from verify.effort import answer_unless_long
 from verify.errors import InputError
-from verify.proof.order import prove
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.scheme import Scheme
 
 

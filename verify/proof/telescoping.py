@@ -30,18 +30,17 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generator import terms_of
-from verify.algebra.linear_combination import solve_combination
-from verify.algebra.series.jets import Index, Jets, Poly
-from verify.algebra.substitution import substitute
+from verify.algebra.identities.polynomials import terms_of
+from verify.algebra.jets import Index, Jets, Poly
+from verify.algebra.limits import substitute
+from verify.algebra.linear_algebra import solve_combination
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, Flow
-from verify.hamiltonians.jet_flow import JetFlow
+from verify.hamiltonians.canonical_field import CanonicalField, JetField, VectorField
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.steps.two_form import TwoForm, lie_derivative, wedge
 
 
-def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
+def potential_of_lie(flow: VectorField, eta: int) -> TwoForm:
     """Return the potential β of lieη's leading coefficient; ValueError for odd η."""
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
@@ -62,7 +61,7 @@ def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
 def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
     """Decide whether the leading coefficient of lieη's S is a Lie derivative, with β as a formula.
 
-    The decision is None where neither answer can be proved; the formula is empty but where it is
+    The decision is None if neither answer can be proved; the formula is empty but where it is
     True.
     """
     if eta % 2 == 0:
@@ -169,7 +168,9 @@ def _solve_for_potential(
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
     candidates = list(map(jets.product, multisets(indices, factors, by_p, by_q)))
-    coefficients, rank = solve_combination(list(map(JetFlow.from_jets(jets).derive, candidates)), x)
+    coefficients, rank = solve_combination(
+        list(map(JetField.from_jets(jets).derive, candidates)), x
+    )
     if coefficients is None:
         return None, rank, len(candidates)
     terms = (c * candidates[k] for k, c in coefficients.items())
@@ -191,5 +192,5 @@ def multisets(
         i, j = indices[k]
         # Each factor that remains needs one derivative at least; else the branch yields nothing.
         if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
-            for rest in multisets(indices, factors - 1, by_p - i, by_q - j, k):
-                yield [(i, j), *rest]
+            for remaining in multisets(indices, factors - 1, by_p - i, by_q - j, k):
+                yield [(i, j), *remaining]

@@ -1,10 +1,10 @@
 """Digits on demand: the choice of arithmetic and precision, with rigorous bounds where possible.
 
-A run that carries the tangent map is certified (`verify.runs.a_posteriori`); where digits are
+A run that carries the tangent map is certified (`verify.runs.a_posteriori_bound`); where digits are
 missing it is done again at the precision that gives them. How many will be missing is foreseen at
 the first of its checkpoints, so that little is run in vain: where the tangent map grows linearly,
 the bound grows like N³, and that of Λ like N⁴. Where there is no certificate the bound is estimated
-(`verify.runs.estimated`).
+(`verify.runs.estimates`).
 
 The certificate of W grows like N⁹ and is 10⁵ to 10¹⁷ times its error, since it takes the worst of
 every step for all of them. So the W of a short run, whose steps cost less than its certificate, is
@@ -21,8 +21,8 @@ from verify.arithmetic.number_system import Arithmetic, NumberSystem, Unsupporte
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
-from verify.runs.a_posteriori import METHOD, certify
-from verify.runs.estimated import (
+from verify.runs.a_posteriori_bound import METHOD, certify
+from verify.runs.estimates import (
     Bounds,
     digits_of,
     missing_digits,
@@ -185,7 +185,7 @@ def difference_of_w(
 ) -> Course[Fraction | None]:
     """Return a bound of W's error by a run with more digits and its certificate.
 
-    None for a long run, for one without W, and where the finer run has no certificate.
+    None for a long run, for one without W, and if the finer run has no certificate.
     """
     if kernel_run.steps > _SHORT or _W not in outcome.values:
         return None
@@ -224,8 +224,8 @@ def _finer(arithmetic: Arithmetic, missing: int) -> Arithmetic:
 
 def power_of(name: str) -> int:
     """Return the power of N by which a value's bound grows if the tangent map grows linearly."""
-    each = observables.by_name().get(name)
-    return each.growth if each else 3
+    observable = observables.by_name().get(name)
+    return observable.growth if observable else 3
 
 
 class _Foresight:

@@ -28,7 +28,7 @@ def finite_time_lyapunov(log_norm: float, size: int, time: float) -> float:
 
 
 def is_exponential(times: Sequence[float], logs: Sequence[float]) -> bool | None:
-    """Return True if neighbours part exponentially; None where the time is too short to decide."""
+    """Return True if neighbours part exponentially; None if the time is too short to decide."""
     # Where neighbours part like t^a, the second half of the time adds a ln 2 at most, however long
     # it is; where they part exponentially it adds as much as the first half.
     middle = times[-1] / 2

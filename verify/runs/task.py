@@ -5,15 +5,15 @@ from typing import Literal
 
 from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
-from verify.execution.keeping import NOTHING, Keeper
+from verify.execution.keeper import NOTHING, Keeper
 from verify.execution.task import StartTask
 from verify.kernels.run_inputs import SECTIONS
 from verify.lockstep import Course, run_alone
-from verify.runs.float64 import DIRECT_STEPS
-from verify.runs.run import RequestedRun
+from verify.runs.float64_bounds import DIRECT_STEPS
+from verify.runs.requested_run import RequestedRun
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import Number, StepSize
+from verify.scenes.values import ExactNumber, StepSize
 
 # About the cost of any run, however short, and of one too long for a comparison with a certified
 # one.
@@ -27,7 +27,7 @@ class RunTask(StartTask):
     kind: Literal["run"] = "run"
     step_size: StepSize
     steps: int
-    t0: Number = Fraction(0)
+    t0: ExactNumber = Fraction(0)
     arithmetic: str
     digits: int
     observables: tuple[str, ...] | None
@@ -46,8 +46,8 @@ class RunTask(StartTask):
         # A short float64 run is compared with a certified one, which costs far more than its own
         # steps.
         if self.steps <= DIRECT_STEPS:
-            other = AUTO if self.shares_kernel else mpfr.NAME
-            return _RUN_COST + self.steps * step_cost(other)
+            reference = AUTO if self.shares_kernel else mpfr.NAME
+            return _RUN_COST + self.steps * step_cost(reference)
         return _LONG_RUN_COST + self.steps * step_cost(float64.NAME)
 
     @property

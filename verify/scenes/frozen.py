@@ -60,7 +60,7 @@ class WithProse(Frozen):
 
     Where the prose NAME has formulas or numbers, its parts are written as `NAME_parts`, which data
     that are read may leave out. With `context=PLAIN` they are not written, as in the output of
-    commands. Raises ValueError where the parts do not make up the text.
+    commands. Raises ValueError if the parts do not make up the text.
     """
 
     @model_serializer(mode="wrap")
@@ -130,7 +130,7 @@ def _check_parts(parts: Any, text: Any, name: str) -> Any:
     if isinstance(text, list | tuple):
         if not isinstance(parts, list | tuple) or len(parts) != len(text):
             raise ValueError(f"{name}{_PARTS_SUFFIX} has another length than {name}")
-        return [_check_parts(*each, name) for each in zip(parts, text, strict=True)]
+        return [_check_parts(*pair, name) for pair in zip(parts, text, strict=True)]
     prose = Prose.from_data(parts)
     if text is not None and prose != text:
         raise ValueError(f"{name}{_PARTS_SUFFIX} do not make up {name}")

@@ -42,23 +42,23 @@ def carries_defect(hamiltonian: Hamiltonian) -> bool:
 
 def carries(hamiltonian: Hamiltonian, name: str) -> bool:
     """Return True if the observable is carried for such an H and repeats none of the plane."""
-    each = _KINDS[name]
-    return each.fits(hamiltonian.degrees) and not (each.in_plane and hamiltonian.planar)
+    observable = _KINDS[name]
+    return observable.fits(hamiltonian.degrees) and not (observable.in_plane and hamiltonian.planar)
 
 
 def check_observables(hamiltonian: Hamiltonian, requested: Sequence[str]) -> None:
     """Raise InputError for a name that does not exist, or that is not for such an H."""
     available = names(planar=hamiltonian.planar)
     for name in requested:
-        each = _KINDS.get(name)
-        if each and each.in_plane and name not in available:
-            problem = f"is |{each.in_plane}| in one degree of freedom; ask for it"
+        observable = _KINDS.get(name)
+        if observable and observable.in_plane and name not in available:
+            problem = f"is |{observable.in_plane}| in one degree of freedom; ask for it"
             raise InputError("observable", name, problem)
-        if each is None or name not in available:
+        if observable is None or name not in available:
             raise unknown_name("observable", name, available)
-        if hamiltonian.time_dependent and not each.timed:
+        if hamiltonian.time_dependent and not observable.timed:
             raise InputError("observable", name, "is for an H that does not depend on t")
-        if not each.fits(hamiltonian.degrees):
-            most = each.most_degrees
+        if not observable.fits(hamiltonian.degrees):
+            most = observable.most_degrees
             problem = f"is for up to {most} degrees of freedom; H has {hamiltonian.degrees}"
             raise InputError("observable", name, problem)

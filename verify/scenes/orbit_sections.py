@@ -35,8 +35,8 @@ from verify.hamiltonians.periods import check_period
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
     Digits,
+    ExactNumber,
     InitialValue,
-    Number,
     SchemeName,
     Start,
     Steps,
@@ -53,7 +53,7 @@ _MAX_PASSING_STEPS = 2_000_000
 
 
 class Stroboscopic(Section):
-    """See the module's text for the keys."""
+    """Orbits looked at once in each period of H in t; see the module's text."""
 
     period: StepSize
     """The time between two looks: a period of H in t, and a whole number of steps."""
@@ -92,16 +92,16 @@ class Stroboscopic(Section):
         return self
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """Raise InputError where H at t + period is another function than at t."""
+        """Raise InputError if H at t + period is another function than at t."""
         check_period(hamiltonian, self.period)
 
 
 class Poincare(Section):
-    """See the module's text for the keys."""
+    """Orbits looked at where they pass a surface in phase space; see the module's text."""
 
     coordinate: str = "q1"
     """The coordinate whose passing of `value` is looked at, one of p1 … pn, q1 … qn."""
-    value: Number = Fraction(0)
+    value: ExactNumber = Fraction(0)
     """The value that it passes."""
     rising: Annotated[bool, Field(strict=True)] = True
     """Whether it passes upwards, or, where this is false, downwards."""
@@ -142,7 +142,7 @@ class Poincare(Section):
         return count_steps(self.time, self.steps, self.step_size)
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """Raise InputError where H depends on t, is planar, or lacks one of the coordinates."""
+        """Raise InputError if H depends on t, is planar, or lacks one of the coordinates."""
         formula, names = hamiltonian.formula, hamiltonian.coordinates
         if hamiltonian.degrees < 2:
             problem = "is of one degree of freedom; [[poincare]] takes p1 … pn and q1 … qn, n ≥ 2"

@@ -26,14 +26,14 @@ from pydantic import Field, model_validator
 from verify.arithmetic.exact import text
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.run_domain import point_of
 from verify.scenes.frozen import Frozen, Section
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
 from verify.scenes.values import (
     Digits,
+    ExactNumber,
     InitialValue,
-    Number,
     SchemeName,
     Start,
     Steps,
@@ -47,7 +47,7 @@ from verify.scenes.values import (
 MOST_DIGITS = 1000
 # The limit on a shape's coordinates, so that squares of its images' coordinates are floats too.
 FARTHEST = 1e100
-Corner = tuple[Number, Number]
+Corner = tuple[ExactNumber, ExactNumber]
 _ORIGIN = InitialValue(q=Fraction(0), p=Fraction(0))
 
 
@@ -60,7 +60,7 @@ class _SizedShape(Frozen):
     """A polygon by its corners (q, p)."""
     path: Annotated[str, Field(max_length=100_000)] | None = None
     """An outline as SVG path data, whose y points down: p = −y."""
-    scale: Number = Fraction(1)
+    scale: ExactNumber = Fraction(1)
     """By which it is made larger first."""
 
     @model_validator(mode="after")
@@ -115,8 +115,8 @@ def _reach(placement: PlacedShape) -> Any:
     return max(abs(x) for point in points for x in point)
 
 
-class Flow(_SizedShape, Section):
-    """See the module's text for the keys."""
+class RegionFlow(_SizedShape, Section):
+    """A region that maps carry, and the change of its area; see the module's text."""
 
     centre: Start = _ORIGIN
     """Where the shape's (0, 0) is put; in n degrees of freedom lists, such as
@@ -170,7 +170,7 @@ class Flow(_SizedShape, Section):
     def point(self, hamiltonian: Hamiltonian) -> dict[str, Fraction]:
         """Return the centre by the names of H's coordinates.
 
-        Raises InputError where it, or the plane, is of another number of degrees of freedom.
+        Raises InputError if it, or the plane, is of another number of degrees of freedom.
         """
         degrees = hamiltonian.degrees
         if self.plane > degrees:

@@ -145,7 +145,7 @@ class SeparationOver(Section):
         )
 
 
-class Series(Section):
+class PlottedSeries(Section):
     """A run that is stored as a thinned series of at most `points` points.
 
     `source`: the part of a paper that it repeats, for a caption; no result depends on it.
@@ -186,7 +186,7 @@ MOST_STEPS = 10**8
 
 
 class WorkPrecision(Section):
-    """See the module's text for the keys."""
+    """Error against run time of schemes, over step sizes; see the module's text."""
 
     time: Time
     """The length T of each run, N = T/h rounded down; the error is that at t = N·h."""
@@ -238,7 +238,7 @@ Chosen = Annotated[int, Field(ge=0, le=_MOST_STEPS, strict=True)]
 
 
 class Reference(Section):
-    """See the module's text for the keys."""
+    """Reference data: states and defects after chosen numbers of steps; see the module's text."""
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""

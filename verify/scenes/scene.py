@@ -1,4 +1,6 @@
-"""A scene: the declaration of what is to be verified, read from TOML. Unknown keys are refused.
+"""A scene: the declaration of what is to be verified, read from TOML and written as TOML.
+
+Unknown keys are refused.
 
     title = "My oscillator"
     hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"
@@ -58,6 +60,7 @@
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
+import json
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -70,16 +73,16 @@ from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, without_controls
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.run_domain import point_of
 from verify.scenes.frozen import Frozen, Section
-from verify.scenes.mistakes.values import describe_first_error
+from verify.scenes.model_mistakes import describe_first_error
 from verify.scenes.observables import check_observables
 from verify.scenes.orbit_sections import Poincare, Stroboscopic
-from verify.scenes.region_sections import Flow
-from verify.scenes.run_sections import Grid, Reference, SeparationOver, Series, WorkPrecision
+from verify.scenes.region_sections import RegionFlow
+from verify.scenes.run_sections import Grid, PlottedSeries, Reference, SeparationOver, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stability, StabilityMap
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
-from verify.scenes.values import Number, SchemeName, SystemName
+from verify.scenes.values import ExactNumber, SchemeName, SystemName
 
 _PLANE_KEYS = ("criteria", "stroboscopic")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
@@ -87,7 +90,12 @@ _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "sche
 
 @drawn_by("scenes")
 class Scene(Frozen):
-    """See the module's text for the keys."""
+    """A declaration of what is to be verified: H, its schemes, and sections of what is computed.
+
+    The module's text has an example of each section, and the text below each key says what it is.
+    All numbers are exact and without units. `load_scene` reads a scene from TOML, and raises an
+    InputError of one line for a bad one; the class itself raises pydantic's ValidationError.
+    """
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", max_length=80)] = ""
     """What results and files are called; the file's own name where it is left out."""
@@ -97,9 +105,9 @@ class Scene(Frozen):
     """A named system; or `hamiltonian`."""
     hamiltonian: str | None = None
     """H as a formula in p, q and parameters; or `system`."""
-    parameters: dict[str, Number] = Field(default_factory=dict)
+    parameters: dict[str, ExactNumber] = Field(default_factory=dict)
     """The values of H's parameters; a section that runs needs all of them."""
-    t0: Number = Fraction(0)
+    t0: ExactNumber = Fraction(0)
     """When its runs start, where H depends on t."""
     schemes: Annotated[tuple[SchemeName, ...], Field(min_length=1, max_length=100)]
     """Names of schemes, or formulas `p_next = …; q_next = …` of your own."""
@@ -111,11 +119,11 @@ class Scene(Frozen):
     """Runs of every scheme for every step size and initial value."""
     separation: tuple[SeparationOver, ...] = ()
     """Truncation and rounding in Λ against h, and where the two cross."""
-    series: tuple[Series, ...] = ()
+    series: tuple[PlottedSeries, ...] = ()
     """ΔJ(t) and Λ(t) of one run, for a plot."""
     work_precision: WorkPrecision | None = None
     """Error against run time."""
-    flow: tuple[Flow, ...] = ()
+    flow: tuple[RegionFlow, ...] = ()
     """Regions that maps carry, and their areas."""
     stroboscopic: tuple[Stroboscopic, ...] = ()
     """Orbits looked at once in each period of H."""
@@ -136,19 +144,19 @@ class Scene(Frozen):
     def _check(self) -> Self:
         if (self.system is None) == (self.hamiltonian is None):
             raise InputError("system, hamiltonian", NOT_GIVEN, "give one of the two")
-        exact = self.exact_hamiltonian()
+        hamiltonian = self.exact_hamiltonian()
         sections = self.sections()
         section_schemes = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *section_schemes)):
-            scheme_catalogue.get(name).step_map(exact)
-        self._check_degrees(exact)
-        if exact.time_dependent:
+            scheme_catalogue.get(name).step_map(hamiltonian)
+        self._check_degrees(hamiltonian)
+        if hamiltonian.time_dependent:
             if self.grid is not None and self.grid.growth:
                 problem = "depends on t; [grid] with growth = true is of orbits that close"
-                raise InputError("hamiltonian", exact.formula, problem)
+                raise InputError("hamiltonian", hamiltonian.formula, problem)
             for strobe in self.stroboscopic:
-                strobe.check_hamiltonian(exact)
-        free = set(exact.symbols)
+                strobe.check_hamiltonian(hamiltonian)
+        free = set(hamiltonian.symbols)
         # A map varies its own parameter, which needs no value in the scene.
         if all(isinstance(section, StabilityMap) for section in sections):
             free -= {stability_map.parameter for stability_map in self.stability_map}
@@ -157,42 +165,42 @@ class Scene(Frozen):
                 "parameter", min(free), f"has no value; a run needs one, as {min(free)}=1"
             )
         for stability_map in self.stability_map:
-            if stability_map.parameter not in exact.parameters:
-                names = ", ".join(exact.parameters) or "none"
+            if stability_map.parameter not in hamiltonian.parameters:
+                names = ", ".join(hamiltonian.parameters) or "none"
                 raise InputError(
                     "parameter", stability_map.parameter, f"H has no such; it has: {names}"
                 )
         return self
 
-    def _check_degrees(self, exact: Hamiltonian) -> None:
-        """Raise InputError where a start or a section does not fit H's degrees of freedom."""
-        if not exact.planar:
-            self._check_no_plane(exact)
+    def _check_degrees(self, hamiltonian: Hamiltonian) -> None:
+        """Raise InputError if a start or a section does not fit H's degrees of freedom."""
+        if not hamiltonian.planar:
+            self._check_no_plane(hamiltonian)
         for surface in self.poincare:
-            surface.check_hamiltonian(exact)
+            surface.check_hamiltonian(hamiltonian)
         for orbit_map in self.orbit_map:
-            orbit_map.check_hamiltonian(exact)
+            orbit_map.check_hamiltonian(hamiltonian)
         for section in self.sections():
             starts = getattr(section, "initial_values", None) or ()
             single = getattr(section, "initial_value", None)
             for start in (*starts, *(() if single is None else (single,))):
-                point_of(exact, start.q, start.p)
+                point_of(hamiltonian, start.q, start.p)
         for flow in self.flow:
-            flow.point(exact)
+            flow.point(hamiltonian)
         if self.grid is not None and self.grid.observables is not None:
-            check_observables(exact, self.grid.observables)
+            check_observables(hamiltonian, self.grid.observables)
 
-    def _check_no_plane(self, exact: Hamiltonian) -> None:
-        """Raise InputError where something is requested that exists in the plane alone."""
+    def _check_no_plane(self, hamiltonian: Hamiltonian) -> None:
+        """Raise InputError if something is requested that exists in the plane alone."""
         requested = {name for name in _PLANE_KEYS if getattr(self, name)}
         requested |= {"grid.growth"} if self.grid and self.grid.growth else set()
         limits_defect = any(section.symplectic_defect is not None for section in self.largest_step)
         if self.separation or (self.grid and self.grid.separate) or limits_defect:
-            check_observables(exact, ("symplectic_defect",))  # W is what is separated
+            check_observables(hamiltonian, ("symplectic_defect",))  # W is what is separated
         if requested:
-            names = ", ".join(exact.coordinates)
+            names = ", ".join(hamiltonian.coordinates)
             problem = f"is of {names}; {min(requested)} takes p and q, one degree of freedom"
-            raise InputError("hamiltonian", exact.formula, problem)
+            raise InputError("hamiltonian", hamiltonian.formula, problem)
 
     def sections(self) -> list[Section]:
         """Return every [section] and [[section]] of the scene."""
@@ -213,8 +221,8 @@ class Scene(Frozen):
 
     def hamiltonian_fields(self) -> dict[str, Any]:
         """Return H as the fields of a task: its formula, and its exact parameter values."""
-        exact = self.exact_hamiltonian()
-        return {"hamiltonian": exact.formula, "parameters": dict(exact.values)}
+        hamiltonian = self.exact_hamiltonian()
+        return {"hamiltonian": hamiltonian.formula, "parameters": dict(hamiltonian.values)}
 
     def exact_hamiltonian(self) -> Hamiltonian:
         """Return the Hamiltonian with the scene's parameter values."""
@@ -244,3 +252,40 @@ def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> 
     return (
         scene if scene.name else scene.model_copy(update={"name": without_controls(default_name)})
     )
+
+
+# -- as a TOML text, from which exactly the same scene is read ------------------------------------
+
+
+def scene_text(scene: Scene, *, comment: str = "") -> str:
+    """Return the scene's TOML without defaults, below the lines of a comment."""
+    data = scene.model_dump(mode="json", exclude_defaults=True)
+    lines = [f"# {without_controls(line)}".rstrip() for line in comment.splitlines()]
+    tables = {k: v for k, v in data.items() if _is_table(k, v)}
+    # TOML requires plain keys before the first table.
+    lines += [f"{name} = {_value(x)}" for name, x in data.items() if name not in tables]
+    for name, x in tables.items():
+        for table in x if isinstance(x, list) else [x]:
+            lines += ["", f"[[{name}]]" if isinstance(x, list) else f"[{name}]"]
+            lines += [f"{key} = {_value(y)}" for key, y in table.items() if y is not None]
+    return "\n".join(lines) + "\n"
+
+
+def _is_table(name: str, value: Any) -> bool:
+    """Return True if the value is a section of its own, not the mapping of parameters."""
+    is_mapping = isinstance(value, Mapping) and name != "parameters"
+    return is_mapping or (isinstance(value, list) and bool(value) and isinstance(value[0], Mapping))
+
+
+def _value(x: Any) -> str:
+    if isinstance(x, bool):
+        return "true" if x else "false"
+    if isinstance(x, Mapping):
+        inside = ", ".join(f"{json.dumps(k)} = {_value(y)}" for k, y in x.items() if y is not None)
+        return f"{{ {inside} }}" if inside else "{}"
+    if isinstance(x, list):
+        return f"[{', '.join(map(_value, x))}]"
+    if isinstance(x, int):
+        return str(x)
+    # TOML's basic strings escape as JSON's do, but for DEL, which JSON leaves as it is.
+    return json.dumps(str(x), ensure_ascii=False).replace("\x7f", "\\u007F")

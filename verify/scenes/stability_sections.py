@@ -42,10 +42,10 @@ from verify.arithmetic.exact import decimal, positive, rational, text
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.run_domain import point_of
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
-    Number,
+    ExactNumber,
     SchemeName,
     Start,
     Steps,
@@ -78,7 +78,7 @@ def _space_logarithmically(low: Fraction, high: Fraction, count: int) -> Iterato
 
 
 _SPREAD = BeforeValidator(lambda value: read_range(value, positive, _space_logarithmically))
-Values = Annotated[tuple[Number, ...], _SPREAD, Field(min_length=1, max_length=200)]
+Values = Annotated[tuple[ExactNumber, ...], _SPREAD, Field(min_length=1, max_length=200)]
 StepSizes = Annotated[tuple[StepSize, ...], _SPREAD, Field(min_length=1, max_length=200)]
 Schemes = Annotated[tuple[SchemeName, ...], Field(max_length=100)]
 
@@ -98,7 +98,7 @@ class OfSchemes(Section):
 
 
 class Stability(OfSchemes):
-    """See the module's text for the keys."""
+    """Runs that are judged stable or not; see the module's text."""
 
     name: Annotated[str, Field(max_length=80)] = ""
     """Part of the names of its cases."""
@@ -124,15 +124,15 @@ class Stability(OfSchemes):
 
 
 class LargestStepOver(OfSchemes):
-    """See the module's text for the keys."""
+    """A search for the largest step size with bounded motion; see the module's text."""
 
     time: Time
     """Until when the motion is to stay bounded."""
     initial_value: Start
     """Where the runs start."""
-    energy_error: Number | None = None
+    energy_error: ExactNumber | None = None
     """The greatest |H − H(z0)| that is allowed, in parts of the orbit's energy scale."""
-    symplectic_defect: Number | None = None
+    symplectic_defect: ExactNumber | None = None
     """The greatest |entry| of W that is allowed, the symplectic defect of all steps; in the plane
     |Λ|."""
 
@@ -146,7 +146,7 @@ class LargestStepOver(OfSchemes):
 
 
 class StabilityMap(OfSchemes):
-    """See the module's text for the keys."""
+    """Verdicts over step size and one parameter of H; see the module's text."""
 
     parameter: str
     """The parameter of H that is varied."""
@@ -172,14 +172,14 @@ def _space_evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fractio
 
 
 Evenly = Annotated[
-    tuple[Number, ...],
+    tuple[ExactNumber, ...],
     BeforeValidator(lambda value: read_range(value, rational, _space_evenly)),
     Field(min_length=1, max_length=200),
 ]
 
 
 class OrbitMap(Section):
-    """See the module's text for the keys."""
+    """Kinds of orbits over two of their initial values; see the module's text."""
 
     axes: tuple[str, str]
     """The two initial values that are varied: to the right, and upwards."""
@@ -197,7 +197,7 @@ class OrbitMap(Section):
     """Over how many steps it is; or `time`."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     """The schemes; the scene's, where it is left out."""
-    beyond: Number | None = None
+    beyond: ExactNumber | None = None
     """An orbit has left where a coordinate is greater than this in size; ten times the greatest
     coordinate of any start, where it is left out."""
 
@@ -227,12 +227,12 @@ class OrbitMap(Section):
         if self.beyond is not None:
             return self.beyond
         point = point_of(hamiltonian, self.initial_value.q, self.initial_value.p)
-        others = (x for name, x in point.items() if name not in self.axes)
+        fixed_values = (x for name, x in point.items() if name not in self.axes)
         # An orbit that starts at the origin has the bound 10.
-        return 10 * max(map(abs, (*others, *self.across, *self.upwards))) or Fraction(10)
+        return 10 * max(map(abs, (*fixed_values, *self.across, *self.upwards))) or Fraction(10)
 
     def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
-        """Raise InputError where H has no such coordinate."""
+        """Raise InputError if H has no such coordinate."""
         names = hamiltonian.coordinates
         for name in self.axes:
             if name not in names:

@@ -37,7 +37,7 @@ PIECE = re.compile(
 
 
 @dataclass
-class Table:
+class TableLines:
     """A table of the file: the line of its header, and the line of each key in it."""
 
     line: int
@@ -48,7 +48,7 @@ class Table:
 class Lines:
     """The tables by name, those of an array of tables in their order; the root is under ""."""
 
-    tables: dict[str, list[Table]]
+    tables: dict[str, list[TableLines]]
 
     def line_of(self, name: str, index: int = 0, *keys: str) -> int | None:
         """Return the line of the first of these keys that exists, else of the table's header."""
@@ -66,17 +66,17 @@ class Lines:
 
 def lines_of(text: str) -> Lines:
     """Return the lines, counted from 1, of a text that `tomllib` has read."""
-    tables: dict[str, list[Table]] = {"": [Table(1)]}
+    tables: dict[str, list[TableLines]] = {"": [TableLines(1)]}
     table, subtable = tables[""][0], ""
     for line, statement in _statements(text):
         if statement.startswith("["):
             path = list(_names_in(statement))
             if len(path) == 1:
-                table, subtable = Table(line), ""
+                table, subtable = TableLines(line), ""
                 tables.setdefault(path[0], []).append(table)
             else:  # [claim.parameters] is a key of the last claim
                 subtable = path[1]
-                table = tables.setdefault(path[0], [Table(line)])[-1]
+                table = tables.setdefault(path[0], [TableLines(line)])[-1]
                 table.keys.setdefault(subtable, line)
         elif not subtable:
             table.keys.setdefault(next(_names_in(f"{_key_of_statement(statement)} = 0")), line)
@@ -135,9 +135,9 @@ _MAX_QUOTED = 40
 
 def toml_mistake(content: str, problem: str) -> str:
     """Return the reader's problem, with a hint where the mistake is a common one."""
-    place = _AT_LINE.search(problem)
+    location = _AT_LINE.search(problem)
     lines = content.splitlines()
-    line = lines[int(place[1]) - 1] if place and 0 < int(place[1]) <= len(lines) else ""
+    line = lines[int(location[1]) - 1] if location and 0 < int(location[1]) <= len(lines) else ""
     hint = _hint(content, line, problem)
     return f"is not TOML: {problem}{hint and '; ' + hint}"
 
@@ -204,20 +204,20 @@ def check_depth(data: Any, name: str, source: str) -> None:
         raise InputError(name, source, _TOO_DEEP)
 
 
-def _check_texts(data: Any, source: str, where: str = "") -> None:
-    """Raise InputError where a key or a text holds a control character of terminals."""
+def _check_texts(data: Any, source: str, path: str = "") -> None:
+    """Raise InputError if a key or a text holds a control character of terminals."""
     if isinstance(data, str):
         if control := CONTROL.search(data):
             instead = "write a text with a \\ in it between '…'"
             problem = f"holds U+{ord(control[0]):04X}, a control character; {instead}"
-            raise InputError(f"{source}: {where}", data, problem)
+            raise InputError(f"{source}: {path}", data, problem)
     elif isinstance(data, dict):
         for key, value in data.items():
             _check_texts(key, source, "a key")
-            _check_texts(value, source, f"{where}.{key}" if where else key)
+            _check_texts(value, source, f"{path}.{key}" if path else key)
     elif isinstance(data, list):
         for value in data:
-            _check_texts(value, source, where)
+            _check_texts(value, source, path)
 
 
 def tables_of(file: str, key: str, tables: Any) -> list[Any]:

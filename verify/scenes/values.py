@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Plai
 
 from verify import arithmetic as number_systems
 from verify import schemes
-from verify.arithmetic.exact import Exact, positive, rational, text, whole
+from verify.arithmetic.exact import Number, positive, rational, text, whole
 from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians import systems
@@ -21,12 +21,12 @@ AUTO = number_systems.AUTO
 
 # Tags of the two models as which a table can be read; messages leave them out of keys.
 OF_ONE, OF_SEVERAL = "«one»", "«several»"
-Number = Annotated[
+ExactNumber = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
 ]
-Several = Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_DEGREES)]
+Several = Annotated[tuple[ExactNumber, ...], Field(min_length=1, max_length=MOST_DEGREES)]
 Coordinates = Annotated[  # of q or of p: a number, or in n degrees of freedom a list
-    Annotated[Number, Tag(OF_ONE)] | Annotated[Several, Tag(OF_SEVERAL)],
+    Annotated[ExactNumber, Tag(OF_ONE)] | Annotated[Several, Tag(OF_SEVERAL)],
     Discriminator(lambda x: OF_SEVERAL if isinstance(x, list | tuple) else OF_ONE),
 ]
 StepSize = Annotated[
@@ -83,7 +83,7 @@ def check_one_length(time: Fraction | None, steps: int | None) -> None:
 
 
 def check_distinct(name: str, values: Collection[object]) -> None:
-    """Raise InputError where one of the values under this key occurs twice."""
+    """Raise InputError if one of the values under this key occurs twice."""
     if len(set(values)) < len(values):
         raise InputError(name, len(values), "one of them stands twice; leave it out")
 
@@ -102,7 +102,7 @@ def count_steps(
     return count
 
 
-def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
+def steps_from(steps: int | None, time: Number | None, step_size: Number) -> int:
     """Return N: `steps`, or the number of whole steps that fit into the time.
 
     >>> steps_from(None, 1, 0.1), steps_from(None, 1, 0.3)
@@ -139,9 +139,9 @@ def describe_rounding(time: Fraction | None, step_sizes: Iterable[Fraction]) -> 
 class InitialValue(Frozen):
     """The exact initial value of a run."""
 
-    q: Number
+    q: ExactNumber
     """The displacement."""
-    p: Number
+    p: ExactNumber
     """The momentum."""
 
 

@@ -32,7 +32,11 @@ def names() -> tuple[str, ...]:
 
 @cache
 def get(name: str) -> "Scheme":
-    """Return the scheme of that name, as `canonical` reads it; InputError where there is none."""
+    """Return the scheme of that name, as `canonical` reads it.
+
+    The name may be an alias, a member of a family such as `lie7`, or formulas or coefficients of
+    one's own. Raises InputError where there is none.
+    """
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
     # Importing every file would load sympy for each scheme: only those whose names fit are tried.

@@ -9,7 +9,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import BySeries
 from verify.schemes.maps import kind_of
-from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
 
 
@@ -52,7 +52,11 @@ class Scheme:
         return getattr(self.every_h, "evaluations", None)
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
-        """Return the scheme's map for H. Raises InputError for an H that it does not take."""
+        """Return the exact map of one step for H, in which h is a symbol, as are parameters that
+        have no value.
+
+        Raises InputError for an H that the scheme does not take, such as one that is not separable.
+        """
         return _step_map(self, hamiltonian)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import cycle
 
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.schemes.conditions.splitting_conditions import (
     LETTERS,
     Nearby,

@@ -10,11 +10,11 @@ All numbers are exact rationals. Arguments are checked when a strategy is built;
 bad one. `st.from_type` knows the types that are drawn here: see `verify.from_type`.
 """
 
-from verify.strategies.hamiltonians import KINDS as KINDS
+from verify.strategies.exact_numbers import initial_times, initial_values, parameters, step_sizes
 from verify.strategies.hamiltonians import hamiltonians
-from verify.strategies.numbers import initial_times, initial_values, parameters, step_sizes
-from verify.strategies.scenes import scenes
+from verify.strategies.scene_strategy import scenes
 from verify.strategies.schemes import schemes
+from verify.strategies.terms import KINDS as KINDS
 
 __all__ = [
     "hamiltonians",

@@ -1,6 +1,5 @@
 """Checks of the strategies' arguments, when a strategy is built and not when it draws."""
 
-from verify.arithmetic.exact import whole as whole
 from verify.errors import InputError
 
 MOST_DEGREES = 8  # of freedom: people read the formulas that are drawn

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from verify.strategies.terms import Drawer, Sum
+from verify.strategies.terms import Drawer, TermSum
 
 _VARIABLE = re.compile(r"\b[pqPQ]\b")
 
@@ -41,7 +41,7 @@ class Coupling(NamedTuple):
 
     def draw_term(self, d: Drawer, i: int, j: int) -> str:
         """Draw the term of degrees of freedom i and j, with its sign."""
-        term, sides = Sum(), self.draw_sides(d)
+        term, sides = TermSum(), self.draw_sides(d)
         term.add(d.positive() if self.positive else d.nonzero(), *sides)
         return with_sign(number_variables(term.to_text({}), i, j))
 
@@ -79,13 +79,13 @@ def couplings(
     Polynomial ones are of the given degree at most. Where H need not be separable, those of both
     q and p come first.
     """
-    for each in sorted(_COUPLINGS, key=lambda each: each.separable != separable):
-        fits = each.kind in ("polynomial", kind) and each.degree <= degree
+    for coupling in sorted(_COUPLINGS, key=lambda x: x.separable != separable):
+        fits = coupling.kind in ("polynomial", kind) and coupling.degree <= degree
         # Where `bounded` is None any coupling will do; True needs one that keeps H → ∞ in every
         # direction, False one that is bounded on the axis along which H is open.
-        suits = {None: True, True: each.confined, False: each.flat}[bounded]
-        if fits and suits and (each.separable or not separable):
-            yield each
+        suits = {None: True, True: coupling.confined, False: coupling.flat}[bounded]
+        if fits and suits and (coupling.separable or not separable):
+            yield coupling
 
 
 def number_variables(text: str, i: int, j: int) -> str:

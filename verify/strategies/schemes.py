@@ -7,12 +7,13 @@ from hypothesis import strategies as st
 
 from verify import schemes as catalogue
 from verify.algebra.formula import symbol
+from verify.arithmetic.exact import whole
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
-from verify.strategies.arguments import whole, yes_no_either
+from verify.strategies.arguments import yes_no_either
 
 _LIE_AS_OFTEN = 3  # as each of the others: the toolkit was written for this family
 
@@ -60,9 +61,9 @@ def schemes(
 def select_schemes(names: Iterable[str] | None = None) -> list[Scheme]:
     """Return the schemes of these names, or all; one of weight three stands there three times."""
     if names is None:
-        every = catalogue.names()
-        family = [name for name in every if eta_of(name)]
-        others = [name for name in every if not eta_of(name)]
+        all_names = catalogue.names()
+        family = [name for name in all_names if eta_of(name)]
+        others = [name for name in all_names if not eta_of(name)]
         return [catalogue.get(name) for name in (*family, *others, *family * (_LIE_AS_OFTEN - 1))]
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise InputError("names", names, "is not a list of schemes' names")

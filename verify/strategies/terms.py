@@ -1,15 +1,21 @@
-"""Building blocks of drawn formulas: choices that always succeed, sums that never cancel.
+"""Terms of drawn formulas: choices that always succeed, sums that never cancel.
 
 Everything is made from bounded integers and a few choices, and no draw is rejected: so a draw takes
 few bytes, and shrinks as its integers do.
+
+A term that makes a formula trigonometric, exponential or rational is drawn as its numerator, its
+denominator, and whether its coefficient has to be positive. If H is to be `confining` (H → ∞ in
+every direction), it is bounded; or at most linear in one variable and bounded in the other, so that
+even powers of both outgrow it; or ≥ 0. If H is to be `open` along the half-axis x → s·∞, y = 0, it
+stays bounded above there. If H is `free`, any term will do.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 from hypothesis import strategies as st
 
@@ -17,8 +23,6 @@ T = TypeVar("T")
 _MOST_INNER = 3  # the greatest k in sin(k*q)
 _HALF = Fraction(1, 2)
 _BRACES = re.compile(r"\{(.)\}")
-
-
 # hypothesis builds the strategy of a range anew at each call; there are few ranges to keep.
 _range = lru_cache(maxsize=256)(st.integers)
 
@@ -41,7 +45,7 @@ def signed_quotient(index: int, size: int) -> Fraction:
 
 
 @dataclass(frozen=True)
-class Limits:
+class FormulaLimits:
     """`degree` of the polynomial part, number of `terms`, `size` of numerators, denominators."""
 
     degree: int = 6
@@ -58,7 +62,7 @@ class Drawer:
     """
 
     draw: st.DrawFn
-    limits: Limits
+    limits: FormulaLimits
     choices: int = 0
 
     def whole(self, least: int, most: int) -> int:
@@ -115,7 +119,7 @@ class Drawer:
 
 
 @dataclass
-class Sum:
+class TermSum:
     """Terms by their numerator and denominator; a second one alike is left out.
 
     So no two terms cancel, and H is of the kind and shape of its construction.
@@ -166,3 +170,131 @@ def combination(k: int, m: int) -> str:
     'p - 2*q'
     """
     return f"{times(k, 'p')} {'-' if m < 0 else '+'} {times(abs(m), 'q')}"
+
+
+def draw_quadratic(d: Drawer, shape: str, separable: bool) -> TermSum:
+    """Draw a quadratic form whose 4ac − b² has the sign of its name, and perhaps a linear term.
+
+    `shape`: "elliptic", "hyperbolic" or "parabolic".
+    """
+    total, a, c = TermSum(), d.leading(), d.leading()
+    match shape, separable:
+        case "elliptic", _:
+            total.add(a, "p**2")
+            total.add(c, "q**2")
+            if not separable:
+                total.add(draw_definite(d, a, c), "p*q")
+        case "hyperbolic", True:
+            first, second = d.pick((("p", "q"), ("q", "p")))
+            total.add(a, f"{first}**2")
+            total.add(-c, f"{second}**2")
+        case "hyperbolic", False:  # b pq, or a p² + b pq, whose discriminant is −b²
+            if d.limits.terms > 1 and d.whole(0, 1):
+                total.add(a, f"{d.pick(('p', 'q'))}**2")
+            total.add(d.nonzero(), "p*q")
+        case _, True:
+            total.add(a, f"{d.pick(('p', 'q'))}**2")
+        case _:
+            k = d.whole(1, 3) * d.pick((1, -1))
+            # The square of a linear form has b² = 4ac.
+            total.add(a, f"({combination(1, k)})**2")
+    if len(total) < d.limits.terms and d.whole(0, 3) == 3:
+        total.add(d.nonzero(), d.pick(("q", "p")))
+    return total
+
+
+def draw_definite(d: Drawer, a: Fraction, c: Fraction) -> Fraction:
+    """Draw b with b² < 4ac: ± the smaller of a and c, as min(a, c)² ≤ ac."""
+    return min(a, c) * d.pick((1, -1))
+
+
+# -- terms that make a formula trigonometric, exponential or rational ------------------------------
+
+Shape = Literal["confining", "open", "free"]
+# Numerator, denominator, whether the coefficient has to be positive.
+TermShape = tuple[str, str, bool]
+
+
+@dataclass(frozen=True)
+class TermRequest:
+    """The requested term: of both variables if `mixed`; an open H is so along x → direction·∞."""
+
+    shape: Shape
+    mixed: bool
+    x: str = "q"
+    y: str = "p"
+    direction: int = 1
+
+
+def draw_trigonometric(d: Drawer, request: TermRequest) -> TermShape:
+    """Draw sin or cos of a multiple of q, p or both."""
+    function = d.pick(("cos", "sin"))
+    if not request.mixed:
+        return f"{function}({times(d.inner(), d.pick((request.x, request.y)))})", "", False
+    if d.whole(0, 3) == 3:  # it vanishes on both axes
+        outer, inner = d.pick((("p", "q"), ("q", "p")))
+        return f"{outer}*sin({times(d.inner(), inner)})", "", False
+    return f"{function}({combination(d.inner(), _draw_factor(d))})", "", False
+
+
+def draw_exponential(d: Drawer, request: TermRequest) -> TermShape:
+    """Draw exp, cosh or sinh of a multiple, or a bump exp(−x²)."""
+    bump = d.whole(0, 3) == 3
+    if request.mixed:
+        if bump:
+            return "exp(-p**2 - q**2)", "", False
+        return _draw_mixed_exponential(d, request)
+    name = d.pick((request.x, request.y))
+    if bump:
+        return f"exp(-{name}**2)", "", False
+    if request.shape == "open" and name == request.x:  # exp(−direction·k·x) → 0 along the half-axis
+        return f"exp({times(-request.direction * d.inner(), name)})", "", False
+    functions = ("exp", "cosh") if request.shape == "confining" else ("exp", "cosh", "sinh")
+    function = d.pick(functions)
+    k = _draw_factor(d) if function == "exp" else d.inner()
+    return f"{function}({times(k, name)})", "", request.shape == "confining"
+
+
+def _draw_mixed_exponential(d: Drawer, request: TermRequest) -> TermShape:
+    if request.shape == "open":  # on y = 0 the exponent is −direction·k·x, which falls
+        along, across = -request.direction * d.inner(), _draw_factor(d)
+        k, m = (along, across) if request.x == "p" else (across, along)
+        return f"exp({combination(k, m)})", "", False
+    function = d.pick(("exp", "cosh"))
+    return (
+        f"{function}({combination(d.inner(), _draw_factor(d))})",
+        "",
+        request.shape == "confining",
+    )
+
+
+def draw_rational(d: Drawer, request: TermRequest) -> TermShape:
+    """Draw a quotient over c + x² or the like with c ≥ 1, so that no denominator vanishes."""
+    constant = d.whole(1, min(d.limits.size, 9))
+    if not request.mixed:
+        name = d.pick((request.x, request.y))
+        return d.pick(("", name)), f"{constant} + {name}**2", False
+    match d.whole(0, 2):
+        case 0:
+            return "p*q", f"{constant} + p**2 + q**2", False
+        case 1:
+            return "", f"{constant} + ({combination(1, _draw_factor(d))})**2", False
+    # y, which vanishes on the axis where H is open, has to stand above.
+    x, y = (request.x, request.y) if request.shape == "open" else d.pick((("q", "p"), ("p", "q")))
+    exponent = d.whole(1, 2)
+    positive = exponent == 2 and request.shape == "confining"
+    return power(y, exponent), f"{constant} + {x}**2", positive
+
+
+def _draw_factor(d: Drawer) -> int:
+    """Draw ±1, ±2 or ±3; the simplest is 1."""
+    index = d.whole(0, 5)
+    return -(index // 2 + 1) if index % 2 else index // 2 + 1
+
+
+TERMS_BY_KIND: dict[str, Callable[[Drawer, TermRequest], TermShape]] = {
+    "trigonometric": draw_trigonometric,
+    "exponential": draw_exponential,
+    "rational": draw_rational,
+}
+KINDS = ("polynomial", *TERMS_BY_KIND)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from docs._generate.keys import keys
 from docs._generate.markdown import prose
-from verify.claims.claim import Claim
+from verify.claims.base_claim import Claim
+from verify.claims.claim_scenes import ClaimedHamiltonian
 from verify.claims.kinds import models
-from verify.claims.on_runs import RunKeys
-from verify.claims.scenes import ClaimedHamiltonian
+from verify.claims.run_claims import RunKeys
 
 
 def text() -> str:

@@ -38,10 +38,10 @@ from verify.execution import executors
 from verify.execution.cluster import connect
 from verify.execution.execute import execute
 from verify.execution.executors import THIS_PROCESS, FunctionCall, Placement, open_place, results_of
-from verify.execution.machine import machine
+from verify.execution.provenance import machine
 from verify.scenes.results.work_precision import WorkPrecisionResult
-from verify.studies.plan import plan_scenes
-from verify.studies.work_precision.task import WorkPrecisionTask
+from verify.studies.kinds.work_precision import WorkPrecisionTask
+from verify.studies.tasks_of_scenes import plan_scenes
 
 pytestmark = pytest.mark.left_to_ci
 

@@ -12,7 +12,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
 from tests.helpers.processes.local_cluster import local_cluster
-from verify.exploration import explore, gallery, hunting
+from verify.exploration import exploring, hunting
+from verify.exploration import hunting as gallery
 from verify.pages import page
 
 pytestmark = pytest.mark.left_to_ci
@@ -50,7 +51,7 @@ def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(explore, "_STRETCH", 7)  # four stretches
+    monkeypatch.setattr(exploring, "_STRETCH", 7)  # four stretches
     asked = (*ASKED, "--examples", "28")
     alone = here(capsys, *asked, "--workers", "1")
     folder = tmp_path / "kept"

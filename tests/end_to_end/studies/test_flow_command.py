@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.scenes.results.regions import FlowImage
-from verify.studies.regions.task import FlowTask
+from verify.studies.kinds.regions import FlowTask
 
 SCENE = """
 system = "duffing"

@@ -8,10 +8,17 @@ from typing import Any
 
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
-from verify.reference.make.make import SceneText, command_of, data_of, files_of, manifest_of, write
-from verify.reference.make.models import Data
+from verify.reference.make.data_files import MANIFEST, digest
+from verify.reference.make.data_folder import (
+    SceneText,
+    command_of,
+    data_of,
+    files_of,
+    manifest_of,
+    write,
+)
+from verify.reference.make.models import AnyData
 from verify.reference.make.scene_plan import plan_references
-from verify.reference.make.writing import MANIFEST, digest
 from verify.scenes.scene import scene_from_toml
 
 SCENES = {
@@ -39,19 +46,65 @@ flow = false
 """,
 }
 
+IN_DEGREES = {
+    "heiles": """
+hamiltonian = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3"
+schemes = ["lie1", "lie2", "stormer-verlet"]
+[[reference]]
+step_sizes = [0.05]
+initial_values = [{ q = [0.3, 0.1], p = [0, "1/3"] }]
+steps = [0, 1, 20]
+digits = 18
+""",
+    "three": """
+hamiltonian = "p1**2/2 + p2**2/2 + p3**2/2 - cos(q1 - q2) + a*q3**2*cos(t) + q2*q3"
+parameters = { a = "1/2" }
+t0 = 0.25
+schemes = ["lie1", "explicit-midpoint"]
+[[reference]]
+step_sizes = [0.1]
+initial_values = [{ q = [0.3, 0.1, 1], p = [0, "1/3", -0.5] }]
+steps = [0, 3]
+digits = 12
+""",
+}
 
-def made(scenes: dict[str, str] | None = None) -> list[Data]:
+POLES = {  # H is not defined after the first step
+    "pole": """
+hamiltonian = "p**2/2 + q*log(q) - q"
+schemes = ["lie2"]
+[[reference]]
+step_sizes = [1]
+initial_values = [{ q = "0.5", p = "-2" }]
+steps = [0, 1, 3, 5]
+digits = 8
+flow = false
+""",
+    "pole-in-degrees": """
+hamiltonian = "p1**2/2 + p2**2/2 + q1*log(q1) - q1 + q2**2*q1"
+schemes = ["lie2"]
+[[reference]]
+step_sizes = [1]
+initial_values = [{ q = [0.5, 0.2], p = [-2, 0] }]
+steps = [0, 1, 3, 5]
+digits = 8
+flow = false
+""",
+}
+
+
+def made(scenes: dict[str, str] | None = None) -> list[AnyData]:
     """The data of the scenes."""
     return [_made(name, toml) for name, toml in (scenes or SCENES).items()]
 
 
 @cache
-def _made(name: str, toml: str) -> Data:
+def _made(name: str, toml: str) -> AnyData:
     scene = scene_from_toml(toml, name)
     return data_of(scene, execute(plan_references([scene]), Store(None), where=THIS_PROCESS))
 
 
-def put(folder: Path, data: list[Data], scenes: dict[str, str] | None = None) -> None:
+def put(folder: Path, data: list[AnyData], scenes: dict[str, str] | None = None) -> None:
     """The data's files and their manifest in the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     asked = [SceneText(scene_from_toml(x, name), x) for name, x in (scenes or SCENES).items()]
@@ -80,11 +133,11 @@ def flipped(text: str, at: int, draw: random.Random) -> str:
     return text[:at] + new + text[at + 1 :]
 
 
-def changed(data: Data, path: list[Any], value: Any) -> Data:
-    """The data with another value there."""
+def changed(data: Any, path: list[Any], value: Any) -> Any:
+    """The data with another value there, which a function makes of the one that is there."""
     raw = data.model_dump(mode="json", by_alias=True)
     at = raw
     for part in path[:-1]:
         at = at[part]
-    at[path[-1]] = value
-    return Data.model_validate(raw)
+    at[path[-1]] = value(at[path[-1]]) if callable(value) else value
+    return type(data).model_validate(raw)

@@ -5,11 +5,10 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import decimal, text
-from verify.claims.claim import Claim
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Claim, Findings
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene, scene_from
 from verify.studies.kinds.grid import grid_task

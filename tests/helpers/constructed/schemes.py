@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
-from verify.proof import every
-from verify.proof.every import prove_every
-from verify.proof.every_proof import EveryProof
+from verify.proof import order_for_every_h
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.schemes import get
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.scheme import Scheme
@@ -24,12 +24,12 @@ def made_of(generic: Any, order: int, area: bool = False, base: str = "euler") -
 
 def proof_of(
     generic: Any, order: int, area: bool = False, separable: bool = False, base: str = "euler"
-) -> EveryProof:
-    """What `prove_every` says of such a scheme."""
+) -> ProofForEveryH:
+    """What `prove_for_every_h` says of such a scheme."""
     scheme = made_of(generic, order, area, base)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(every, "get", lambda _: scheme)
-        return prove_every("made", separable)
+        patch.setattr(order_for_every_h, "get", lambda _: scheme)
+        return prove_for_every_h("made", separable)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
 from verify.scenes.results.separation_parts import EvaluationResult, GrowthResult, Parts
-from verify.studies.separation.separate import as_grid
+from verify.studies.separation.truncation_and_rounding import as_grid
 
 PARTS = ("input", "trajectory", "determinant", "product")
 

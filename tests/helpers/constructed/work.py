@@ -1,7 +1,10 @@
 """Tasks, points and lines of error against run time that say what a test wants."""
 
+from fractions import Fraction
 from typing import Any
 
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.run_domain import point_of
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import (
     CostResult,
@@ -11,8 +14,9 @@ from verify.scenes.results.work_precision import (
     WorkPoint,
     WorkPrecisionResult,
 )
-from verify.studies.work_precision.lines import error_slope, lambda_slope
-from verify.studies.work_precision.task import WorkPrecisionTask
+from verify.studies.kinds.work_precision import WorkPrecisionTask
+from verify.studies.work_precision.problem import ReferenceProblem, reference
+from verify.studies.work_precision.work_lines import error_slope, lambda_slope
 
 
 def work_task(**changes: Any) -> WorkPrecisionTask:
@@ -24,6 +28,15 @@ def work_task(**changes: Any) -> WorkPrecisionTask:
         "number_systems_step_size": "0.01", "peers": (), "peers_left_out": (),
     }  # fmt: skip
     return WorkPrecisionTask(**own | changes)
+
+
+def reference_problem(
+    hamiltonian: Hamiltonian, time: Fraction, t0: Fraction = Fraction(0), **start: Any
+) -> ReferenceProblem:
+    """From q and p, a list each in n degrees of freedom."""
+    point = point_of(hamiltonian, **start)
+    solution = reference(hamiltonian, point, time, t0)
+    return ReferenceProblem(hamiltonian, point, time, t0, solution)
 
 
 def value(text: str | None, bound: str = "1e-30") -> Value | None:

@@ -8,16 +8,16 @@ from fractions import Fraction
 from typing import Any
 
 from verify.algebra.ring import Poly, Ring
-from verify.hamiltonians.canonical_field import Flow
+from verify.hamiltonians.canonical_field import VectorField
 from verify.schemes.maps.step_map import StepMap
 
 Term = Callable[[Ring], Poly]  # of the coordinates, and of t
 
 
-class _Alone(Flow):
+class _Alone(VectorField):
     """A field whose one component that is not 0 is the term."""
 
-    def __init__(self, true: Flow, place: int, term: Poly) -> None:
+    def __init__(self, true: VectorField, place: int, term: Poly) -> None:
         self.names, self._true, self._place, self._term = true.names, true, place, term
 
     @property
@@ -31,7 +31,7 @@ class _Alone(Flow):
 
 
 @contextmanager
-def _of_field(algebra: Any, field: Flow) -> Iterator[None]:
+def _of_field(algebra: Any, field: VectorField) -> Iterator[None]:
     """The algebra's slopes are those of another field, and nothing is remembered of them."""
     changes: dict[tuple[int, str], tuple[Any, Any]] = {}
     for holder in (algebra, getattr(algebra, "plain", None)):

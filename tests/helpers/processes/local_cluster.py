@@ -7,8 +7,8 @@ from multiprocessing import forkserver
 from typing import Any
 
 # What each worker would import by itself, in two seconds.
-_NEEDED = ["distributed", "verify.studies.plan", "verify.exploration.explore",
-           "verify.exploration.hunting", "verify.claims.report",
+_NEEDED = ["distributed", "verify.studies.tasks_of_scenes", "verify.exploration.exploring",
+           "verify.exploration.hunting", "verify.claims.verdicts",
            "tests.helpers.processes.worker_functions"]  # fmt: skip
 
 

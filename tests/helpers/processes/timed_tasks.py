@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 from tests.helpers.processes.worker_functions import killed_once
 from verify.errors import InputError
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.check import check_integrator
 from verify.integrators.measures.survey import NOWHERE, Request
 from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.step_check import check_integrator
 from verify.integrators.user_code.loading import callee_from, foreign_callee
 from verify.integrators.user_code.user_map import UserMap
 

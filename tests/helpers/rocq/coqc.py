@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.programs.compilers import needed
-from verify.proof.assistant import shipped as theory
+from verify.proof.assistant import shipped_theory as theory
 
 PROCESSES = 2
 LONGEST = 300  # seconds for a file on a machine that does much else

@@ -10,8 +10,8 @@ from typing import Any
 
 from tests.helpers.rocq.two_names import with_square
 from verify.commands.main import cli
-from verify.proof.assistant.export import ExportedFile, export_certificate
-from verify.proof.certificates.file import FORMAT
+from verify.proof.assistant.certificate_export import ExportedFile, export_certificate
+from verify.proof.certificates.certificate_file import FORMAT
 
 _EVERY = "--every-hamiltonian"
 _IN_TIME = ("--degrees", "2", "--time-dependent")

@@ -9,12 +9,11 @@ from hypothesis import strategies as st
 from tests.helpers.sampled.formulas import polynomials, rationals
 from tests.oracle.printed_certificates import is_true
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.certificates.certification import certify_for_every_h, certify_for_one_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import state_theorem
-from verify.proof.certificates.every import certify_every
-from verify.proof.certificates.one import certify_one
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.certificates.established_statement import state_theorem
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import potential_of
 from verify.schemes import get
 
@@ -55,12 +54,12 @@ def of_text(text: str, name: str) -> Data:
     """The certificate of the scheme of that name for this H."""
     scheme = get(name)
     proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
-    return as_read(certify_one(proof, potential_of(proof, scheme)))
+    return as_read(certify_for_one_h(proof, potential_of(proof, scheme)))
 
 
 def of_every_in_time(name: str) -> Data:
     """That of the scheme for every H(p, q, t)."""
-    return as_read(certify_every(prove_every(name, timed=True)))
+    return as_read(certify_for_every_h(prove_for_every_h(name, timed=True)))
 
 
 @st.composite
@@ -73,7 +72,7 @@ def of_drawn(draw: st.DrawFn) -> Data:
     scheme = get(draw(st.sampled_from(["lie1", "lie2", *["symplectic-euler"] * separable])))
     proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
     potential = potential_of(proof, scheme)
-    data = as_read(certify_one(proof, potential))
+    data = as_read(certify_for_one_h(proof, potential))
     assert (data["order"], data["convergence_order"]) == (proof.order, proof.convergence_order)
     assert all(data.get("cofactors", {}).values()), "what is zero as it stands has none"
     assert ("potential" in data) == (potential.potential is not None and proof.order is not None)
@@ -85,7 +84,7 @@ def of_drawn(draw: st.DrawFn) -> Data:
 certificates = st.one_of(
     of_drawn(),
     of_drawn(),
-    st.sampled_from(EVERY).map(lambda name: as_read(certify_every(prove_every(name)))),
+    st.sampled_from(EVERY).map(lambda name: as_read(certify_for_every_h(prove_for_every_h(name)))),
     st.sampled_from(IN_TIME).map(of_every_in_time),
 )
 

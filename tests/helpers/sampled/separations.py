@@ -9,13 +9,12 @@ from hypothesis import strategies as st
 
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lockstep import run_alone
-from verify.studies.separation.chain import Chain
+from verify.studies.separation.chain import Chain, Link, Links
 from verify.studies.separation.links import separate_chains
-from verify.studies.separation.stepper.run import Stopped
-from verify.studies.separation.stepper.trail import Link, Links
+from verify.studies.separation.mixed_run import Stopped
 
 sizes = st.builds(lambda n, k: Fraction(n, 2 * 7**k), st.integers(0, 8), st.integers(0, 9))
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)

@@ -18,7 +18,7 @@ from tests.helpers.sampled.formulas import H, P, Q, lie_step, plain, plain_delta
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.studies.separation.ways.determinants import WORKING
+from verify.studies.separation.determinants import WORKING
 
 Point = dict[str, Fraction]
 _BITS = 4000

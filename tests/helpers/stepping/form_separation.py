@@ -18,7 +18,7 @@ import mpmath
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
-from verify.studies.separation.ways.matrices import Matrices
+from verify.studies.separation.matrix_products import Matrices
 
 MP = mpmath.MPContext()
 MP.dps = 80

@@ -17,7 +17,7 @@ from tests.helpers.sampled.formulas import P, Q, plain
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import interpret
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.kernel import Kernel, KernelWriter
 from verify.schemes import get
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.maps.step_map import StepMap
@@ -125,7 +125,7 @@ def kernel(made: StepMap, arithmetic: str, digits: int, *observables: str) -> Ke
     at = id(made), arithmetic, digits, observables
     if at not in _WRITTEN:
         own = number_systems.get(arithmetic, digits)
-        _WRITTEN[at] = made, Writer(made, own, frozenset(observables), False).kernel()
+        _WRITTEN[at] = made, KernelWriter(made, own, frozenset(observables), False).kernel()
     return _WRITTEN[at][1]
 
 
@@ -169,7 +169,7 @@ def counted(made: StepMap, arithmetic: str, digits: int, z: Pair, h: Fraction, c
         return interpret(source, name, {**scope, "range": counting})
 
     looked_at = replace(own, compile=compiled)
-    function = Writer(made, looked_at, frozenset(), False).kernel().function
+    function = KernelWriter(made, looked_at, frozenset(), False).kernel().function
     with own.context():
         function(count, own.number(h), *map(own.number, z))
     return most

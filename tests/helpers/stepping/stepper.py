@@ -12,7 +12,7 @@ import gmpy2
 import sympy
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import Flow
+from verify.flows.extrapolation import NumericalFlow
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.step_algebra import StepAlgebra
 
@@ -74,7 +74,7 @@ class Stepper:
 
     def error(self, p: Fraction, q: Fraction, time: Fraction, steps: int) -> float:
         """How far the map's point after `time` is from the exact flow's."""
-        flow = Flow(self.field, DIGITS - 15)
+        flow = NumericalFlow(self.field, DIGITS - 15)
         exact = flow.advance((flow.number(p), flow.number(q)), flow.number(time))
         found = self.run(p, q, time / steps, steps)
         with self.arithmetic.context():

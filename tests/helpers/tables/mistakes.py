@@ -38,7 +38,7 @@ def right_tables() -> list[Table]:
 def judged(table: Table) -> list[TableClaim]:
     """Its claims, as `verify check-table` has them."""
     module = kinds.get(table["kind"])
-    return list(module.claims(module.Entry.model_validate(table)))
+    return list(module.claims(module.ENTRY.model_validate(table)))
 
 
 # -- mistakes -------------------------------------------------------------------------------------

@@ -29,10 +29,10 @@ from tests.helpers.sampled.formulas import (
 )
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import decimal
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
-from verify.claims.judging import prepare
+from verify.claims.base_claim import Findings
+from verify.claims.claims_file import load_claims
 from verify.claims.kinds import models
+from verify.claims.verdicts import prepare
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.scene import Scene

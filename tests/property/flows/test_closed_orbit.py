@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.oscillators import digits_of, element, mpf, numbers, oscillator, rates, turned
 from tests.helpers.sampled.formulas import polynomials
-from verify.flows.closed_orbit import Orbit
-from verify.flows.extrapolation import Flow, NoFlowError
-from verify.flows.functions import functions_at
+from verify.flows.closed_orbit import ClosedOrbit
+from verify.flows.compiled_functions import functions_at
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.flows.orbit_average import average, bounded_part, phase
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -33,7 +33,7 @@ def test_the_flow_is_followed_for_any_time_forth_and_back(
     a: int, b: int, p: Fraction, q: Fraction, tenths: int, digits: int
 ) -> None:
     field, _ = canonical_field(oscillator(a, b, Fraction(0)))
-    flow, time = Flow(field, digits), Fraction(tenths, 10)
+    flow, time = NumericalFlow(field, digits), Fraction(tenths, 10)
     z = flow.number(p), flow.number(q)
     slope = flow.slope(z)
     end = flow.follow(z, time)
@@ -68,7 +68,7 @@ def test_the_flow_is_followed_for_any_time_forth_and_back(
 )
 def test_a_flow_that_ends_says_about_when(text: str, p: str, q: str, time: str, said: str) -> None:
     field, _ = canonical_field(Hamiltonian.parse(text))
-    flow = Flow(field, 12)
+    flow = NumericalFlow(field, 12)
     with pytest.raises(NoFlowError, match=said):
         flow.follow((flow.number(Fraction(p)), flow.number(Fraction(q))), Fraction(time))
 
@@ -82,7 +82,7 @@ def test_a_flow_that_ends_says_about_when(text: str, p: str, q: str, time: str, 
     ],
 )
 def test_a_flow_is_not_advanced_beyond_its_end(text: str, p: str, q: str, time: str) -> None:
-    flow = Flow(canonical_field(Hamiltonian.parse(text))[0], 8)
+    flow = NumericalFlow(canonical_field(Hamiltonian.parse(text))[0], 8)
     start = flow.number(Fraction(p)), flow.number(Fraction(q))
     with pytest.raises(NoFlowError):
         flow.advance(start, flow.number(Fraction(time)), 7)
@@ -95,7 +95,7 @@ def test_a_flow_is_followed_in_steps_as_long_as_its_accuracy_allows(
 ) -> None:
     """By the longest that one step can be: most are a third of it at least, and few too long."""
     assume(p or q)
-    flow = Flow(canonical_field(oscillator(1, b, Fraction(0)))[0], digits)
+    flow = NumericalFlow(canonical_field(oscillator(1, b, Fraction(0)))[0], digits)
     z = flow.number(p), flow.number(q)
     longest = next(
         Fraction(n, 64) for n in range(1, 640) if flow.step(z, flow.number(Fraction(n, 64))) is None
@@ -123,7 +123,7 @@ def test_a_quarter_turn_of_the_plane_turns_every_bit_of_a_step(
     ends = []
     for middle, z in ((c, (c + p, c + q)), (-c, (-c - q, c + p))):
         text = f"{rate}*((p - ({middle}))**2 + (q - ({c}))**2)/2"
-        flow = Flow(canonical_field(Hamiltonian.parse(text))[0], digits)
+        flow = NumericalFlow(canonical_field(Hamiltonian.parse(text))[0], digits)
         time = flow.number(Fraction(part, 10 * rate))
         end = flow.step((flow.number(z[0]), flow.number(z[1])), time)
         ends.append(end and [flow.arithmetic.exact(x) for x in end])
@@ -135,7 +135,7 @@ def test_a_quarter_turn_of_the_plane_turns_every_bit_of_a_step(
 @given(polynomials("pq", 3, 3), numbers, numbers)
 def test_functions_at_a_point_are_what_they_are(text: str, p: Fraction, q: Fraction) -> None:
     field, _ = canonical_field(oscillator(1, 1, Fraction(0)))
-    flow = Flow(field, 30)
+    flow = NumericalFlow(field, 30)
     at = functions_at(flow.arithmetic, [element(text), element(f"cos(q)*({text})")])
     with flow.arithmetic.context():
         one, other = at(flow.number(p), flow.number(q))
@@ -235,7 +235,7 @@ def test_a_rotations_phase_is_the_same_a_turn_further(
 ) -> None:
     hamiltonian = Hamiltonian.parse(f"p**2/2 - cos({rate}*q)")
     found = average(hamiltonian, element("p"), (Fraction(p), Fraction(0)), 10)
-    orbit: Orbit = found.orbit
+    orbit: ClosedOrbit = found.orbit
     assert orbit.kind == "rotation"
     assert found.period is not None
     true = 2 * math.pi / rate / float(found.period[0])

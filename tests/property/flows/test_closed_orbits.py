@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.flows import orbit as module
-from verify.flows.orbit import ExactOrbit, exact_orbit
+from verify.flows import exact_orbit as module
+from verify.flows.exact_orbit import ExactOrbit, exact_orbit
 from verify.flows.orbit_search import OrbitSearch
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -21,7 +21,7 @@ times = st.builds(lambda n, k: Fraction(n, 10**k), st.integers(1, 400), st.integ
 
 def forget() -> None:
     exact_orbit.cache_clear()
-    module._cached_closed_orbit.cache_clear()
+    module._orbit_cache.cache_clear()
 
 
 def alone(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:

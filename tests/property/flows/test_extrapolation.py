@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.flow_checks import Case, energy_defect, group_defect, motion_defect
 from tests.helpers.sampled.formulas import Q, plain, rationals
-from verify.flows.closed_form import blow_up
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.ball_evaluation import blow_up
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.hamiltonians import systems
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.hamiltonians.known_flows import closed_form
+from verify.hamiltonians.flow_recognition import closed_form
 from verify.hamiltonians.named_system import System
 from verify.hamiltonians.potential_motion import in_potential
 
@@ -92,7 +92,7 @@ def test_an_end_in_finite_time_is_there_and_nowhere_else(case: Case) -> None:
     for sign in (1, -1):
         end = blow_up(case.motion, sign, 20)
         assume(end is None or end < 100)
-        flow = Flow(canonical_field(case.system.hamiltonian())[0], 20)
+        flow = NumericalFlow(canonical_field(case.system.hamiltonian())[0], 20)
         start = flow.number(case.p), flow.number(case.q)
         if end is None:
             flow.follow(start, Fraction(sign * 2), 5000)  # before noise grows at a saddle
@@ -110,7 +110,7 @@ def test_the_numerical_flow_agrees(case: Case, part: Fraction) -> None:
     known = closed_form(hamiltonian, case.p, case.q)
     assert known is not None, "what a system knows is found from its formula"
     time = time_in(case, part) / 4
-    flow = Flow(canonical_field(hamiltonian)[0], 35)
+    flow = NumericalFlow(canonical_field(hamiltonian)[0], 35)
     z = flow.follow((flow.number(case.p), flow.number(case.q)), time, 20_000)
     found = case.at(time, 40)
     scale = 1 + max(map(abs, (*found, case.p, case.q)))

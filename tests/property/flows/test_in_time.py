@@ -7,10 +7,10 @@ import pytest
 
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
+from verify.flows.solution import ExactSolution, exact_solution, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
-from verify.runs.solution_error import solution_errors
+from verify.runs.requested_run import run
+from verify.runs.run_errors import solution_errors
 
 START = {"p": Fraction(0), "q": Fraction(3, 2)}
 PENDULUM = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
@@ -23,7 +23,9 @@ CASES = {
 }  # fmt: skip
 
 
-def flow(formula: str, time: object, t0: object, digits: int = 25, **start: Fraction) -> Solution:
+def flow(
+    formula: str, time: object, t0: object, digits: int = 25, **start: Fraction
+) -> ExactSolution:
     hamiltonian = Hamiltonian.parse(formula)
     at = {**START, **start}
     return exact_solution(

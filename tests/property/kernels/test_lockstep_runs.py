@@ -10,9 +10,9 @@ import pytest
 
 from tests.helpers.lanes import IN_LANES, PATHS, path
 from verify import arithmetic, code_cache, lockstep
-from verify.arithmetic import processor
 from verify.arithmetic.compiled import engine, paths
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.vectors import LANES
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, RunOutcome
@@ -199,7 +199,7 @@ def test_an_unknown_way_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(paths.VARIABLE, "avx1024")
     with pytest.raises(InputError, match=r"VERIFY_LANES.*avx512, avx2, portable, off"):
         paths.choose_path()
-    monkeypatch.setattr(processor, "features", dict)
+    monkeypatch.setattr(vectors, "features", dict)
     monkeypatch.setenv(paths.VARIABLE, "avx512")
     with pytest.raises(InputError, match="no such instructions"):
         paths.choose_path()

@@ -21,10 +21,10 @@ from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import stepping
-from verify.kernels.kernel import Writer, kernel_for
+from verify.kernels.kernel import KernelWriter, kernel_for
 from verify.kernels.stepping import KernelRun, RunOutcome
-from verify.runs.a_posteriori import certify
-from verify.runs.run import run
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.requested_run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
 
@@ -263,13 +263,13 @@ def test_a_loop_that_looks_away_from_one_number_is_caught(
     monkeypatch: pytest.MonkeyPatch, unseen: str
 ) -> None:
     anew(monkeypatch)
-    true = Writer.guard
+    true = KernelWriter.guard
 
-    def less(self: Writer, needed: Any) -> str:
+    def less(self: KernelWriter, needed: Any) -> str:
         looked_at = true(self, needed).split(" and ")
         return " and ".join(x for x in looked_at if not x.startswith(f"inside({unseen},"))
 
-    monkeypatch.setattr(Writer, "guard", less)
+    monkeypatch.setattr(KernelWriter, "guard", less)
     assert wrong_kernel_runs()
 
 

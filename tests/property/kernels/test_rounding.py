@@ -23,9 +23,9 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.kernels.rounding import PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
+from verify.kernels.rounding import PRECISION, Ball, RoundedValue, Rounding, analyse, rounding_of
+from verify.kernels.step.kinds import Op
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Op
 from verify.kernels.stepping import KernelRun
 
 
@@ -93,9 +93,12 @@ class Tried:
         with working_precision(PRECISION):
             around = rational_ball(width) * flint.arb(0, 1)
             given = {
-                n: Rounded(rational_ball(x), rational_ball(abs(exact(number(x)) - x)))
+                n: RoundedValue(rational_ball(x), rational_ball(abs(exact(number(x)) - x)))
                 for n, x in self.inputs.items()
-            } | {n: Rounded(rational_ball(x) + around, flint.arb(0)) for n, x in self.state.items()}
+            } | {
+                n: RoundedValue(rational_ball(x) + around, flint.arb(0))
+                for n, x in self.state.items()
+            }
             rounding = rounding_of(self.arithmetic)
             found = analyse(self.kernel.lowering.program, [*self.ops], given, rounding)
             if found is None or not all(is_representable(x.error) for x in found.values()):

@@ -13,11 +13,11 @@ from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions, made_of, proof_of
 from tests.helpers.maps import by_expressions
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
-from verify.algebra.series.jets import Jets, Series
+from verify.algebra.jets import Jets, Series
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.every import counterexample
-from verify.proof.order import prove
+from verify.proof.order_conditions import prove_by_conditions
+from verify.proof.order_for_every_h import counterexample
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import StageEquations, TaylorSeries
 from verify.schemes.maps.step_map import StepMap

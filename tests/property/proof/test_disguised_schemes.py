@@ -14,10 +14,9 @@ from tests.helpers.sampled.formulas import rationals
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.tree_order import order_of
-from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
+from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map, order_of
 from verify.verdict import Verdict
 
 few = drawn(12)

@@ -25,9 +25,9 @@ from tests.helpers.sampled.formulas import (
     polynomials,
     trigonometric,
 )
-from verify.algebra.series.jets import Jets
+from verify.algebra.jets import Jets
 from verify.exploration.properties.plane.order_by_jets import delta_j as delta_j_of
-from verify.hamiltonians.jet_flow import JetFlow
+from verify.hamiltonians.canonical_field import JetField
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
@@ -67,5 +67,5 @@ def test_the_leading_coefficient_is_the_limit_of_delta_j(
         assume(abs(expected) > mpmath.mpf(10) ** -6)
         assert abs(limit + expected) > mpmath.mpf(10) ** -30, "the other sign"
         if eta % 2 == 0:
-            potential = potential_of_lie(JetFlow.from_jets(jets), eta).divergence
+            potential = potential_of_lie(JetField.from_jets(jets), eta).divergence
             assert abs(limit - at(jets, along_flow(jets, potential), hamiltonian, point)) < 1e-30

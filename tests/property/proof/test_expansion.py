@@ -29,10 +29,10 @@ from verify.algebra.formula import parse
 from verify.algebra.ring import Decision
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
-from verify.proof.order import prove
+from verify.proof.expansion import MOST_ORDERS, Leading, TaylorExpansion
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import potential_of
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes import get
 from verify.schemes.maps.closed_form import h_inside
 from verify.verdict import Verdict
@@ -83,7 +83,7 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     if first is not None:
         assert proof.order == first
         assert zero_there(proof.leading - found[first])
-    expansion = Expansion(part.ring, part.elements[0])
+    expansion = TaylorExpansion(part.ring, part.elements[0])
     assert not expansion.polynomial
     for n in (3, 0, 1, 5):
         ring, x = expansion.coefficient(n)
@@ -114,7 +114,7 @@ def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: in
 def test_the_coefficients_of_a_polynomial_are_those_that_are_given(given_: list[str]) -> None:
     whole = sum((parse(x) * H**n for n, x in enumerate(given_)), sympy.S.Zero)
     ring, (x,) = embed([whole], ("p", "q", "h"))
-    expansion = Expansion(ring, x)
+    expansion = TaylorExpansion(ring, x)
     assert expansion.polynomial
     assert expansion.coefficient(len(given_))[1].is_zero()
     for n, text in enumerate(given_):

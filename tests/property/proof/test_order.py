@@ -31,8 +31,8 @@ from verify import schemes
 from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 

@@ -12,7 +12,7 @@ from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Leading
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import Potential, potential_of
 from verify.schemes import get
 

@@ -17,8 +17,8 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.a_posteriori import certify
-from verify.runs.run import run
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.requested_run import run
 from verify.scenes.observables import REPORTED
 
 

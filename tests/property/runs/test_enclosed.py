@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 sizes = st.builds(Fraction, st.integers(1, 20), st.sampled_from([3, 7, 11, 15]))
 

@@ -17,9 +17,9 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.runs.a_posteriori import certify
-from verify.runs.estimated import resolve
-from verify.runs.run import run
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.estimates import resolve
+from verify.runs.requested_run import run
 
 SEEDS = range(12)
 SLACK = Fraction(1, 10**70)  # of the values that are compared with, in parts of their size

@@ -13,9 +13,9 @@ import pytest
 import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import convergence_of
+from verify.proof.order_for_one_h import convergence_of
 from verify.schemes.conditions.splitting_conditions import Splitting, sums_before
-from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.words import Kinetic
 from verify.schemes.maps.kinds import splittings
 
 Polynomial = dict[tuple[int, int, int], Fraction]  # by the powers of p, q, t

@@ -15,11 +15,11 @@ from tests.helpers.sampled.formulas import polynomials, rationals
 from tests.helpers.symmetry import palindromic, prove_symmetry
 from verify.algebra.embedding import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.symmetry import judge_symmetry
+from verify.proof.map_symmetry import judge_symmetry
+from verify.proof.order_conditions import prove_by_conditions
 from verify.schemes import get
+from verify.schemes.conditions.condition import decimal_of
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
-from verify.schemes.conditions.residue import decimal_of
 from verify.verdict import Verdict
 
 quick = drawn(25)

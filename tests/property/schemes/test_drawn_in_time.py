@@ -20,9 +20,9 @@ from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.symmetry import judge_symmetry
-from verify.runs.run import run
+from verify.proof.map_symmetry import judge_symmetry
+from verify.proof.order_for_one_h import prove
+from verify.runs.requested_run import run
 from verify.schemes import get
 from verify.strategies.hamiltonians import hamiltonians
 from verify.verdict import Verdict

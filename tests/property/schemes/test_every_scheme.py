@@ -12,8 +12,8 @@ from tests.helpers.symmetry import prove_symmetry
 from verify import schemes
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get, names
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.methods.taylor.lie import eta_of
@@ -29,7 +29,7 @@ few = drawn(12)
 def test_a_scheme_has_for_every_h_what_it_claims_and_no_more(name: str, separable: bool) -> None:
     scheme = get(name)
     assert scheme.name == name
-    proof = prove_every(name, separable)
+    proof = prove_for_every_h(name, separable)
     assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, scheme.order)
     assert proof.scheme == name
     assert proof.area_preserving == scheme.area_preserving
@@ -79,7 +79,10 @@ def test_a_schemes_symmetry_and_explicitness_are_those_of_its_steps(name: str) -
 def test_for_one_h_a_scheme_has_the_orders_that_it_has_for_every(name: str) -> None:
     scheme = get(name)
     text = SEPARABLE if scheme.needs_separable else MIXED
-    proof, of_every = prove(scheme.step_map(Hamiltonian.parse(text)), scheme), prove_every(name)
+    proof, of_every = (
+        prove(scheme.step_map(Hamiltonian.parse(text)), scheme),
+        prove_for_every_h(name),
+    )
     assert proof.verdict is Verdict.PROVED
     assert proof.convergence_order == scheme.order
     assert (proof.order, proof.area_preserving) == (of_every.order, of_every.area_preserving)
@@ -123,7 +126,7 @@ def test_the_truncated_flow_is_there_for_1_to_100(eta: int) -> None:
             get(f"lie{eta}")
     if eta > 14:
         with pytest.raises(InputError, match="of order 14 at most"):
-            prove_every(f"lie{min(eta, 100)}")
+            prove_for_every_h(f"lie{min(eta, 100)}")
     assert eta_of(f"li{eta}") is eta_of(f"lie{eta}x") is None
 
 

@@ -10,7 +10,11 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import rationals
-from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
+from verify.schemes.conditions.words.equations import (
+    LETTERS_BY_KIND,
+    MOST_ORDER_BY_KIND,
+    logarithm_equations,
+)
 from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
 from verify.schemes.conditions.words.words import (
     STEPS,
@@ -72,7 +76,7 @@ def kinds_of(kind: str, count: int) -> list[str]:
 def parts_of(kind: str, given_: Sequence[Fraction]) -> list[dict[Word, Fraction]]:
     """What is exponentiated, by words of one letter."""
     pairs = zip(kinds_of(kind, len(given_)), given_, strict=True)
-    return [{((k, n),): w ** (n + 1) for k, n in letters(KINDS[kind], 9) if k in own}
+    return [{((k, n),): w ** (n + 1) for k, n in letters(LETTERS_BY_KIND[kind], 9) if k in own}
             for own, w in pairs]  # fmt: skip
 
 
@@ -82,11 +86,11 @@ def step(kind: str, given_: Sequence[Fraction], bound: bool = False) -> StepWord
 
 
 def every(kind: str, most: int) -> list[Word]:
-    return [word for n in range(most + 1) for word in words(KINDS[kind], n)]
+    return [word for n in range(most + 1) for word in words(LETTERS_BY_KIND[kind], n)]
 
 
 @drawn(20)
-@given(st.sampled_from([*KINDS]), sizes)
+@given(st.sampled_from([*LETTERS_BY_KIND]), sizes)
 def test_a_steps_words_are_those_of_the_product_of_exponentials(
     kind: str, given_: list[Fraction]
 ) -> None:
@@ -96,7 +100,7 @@ def test_a_steps_words_are_those_of_the_product_of_exponentials(
 
 
 @drawn(20)
-@given(st.sampled_from([*KINDS]), sizes)
+@given(st.sampled_from([*LETTERS_BY_KIND]), sizes)
 def test_the_logarithms_words_are_those_of_the_logarithm(kind: str, given_: list[Fraction]) -> None:
     found, wanted = step(kind, given_), logarithm(product(parts_of(kind, given_), 5), 5)
     for word in every(kind, 5)[1:]:
@@ -104,44 +108,44 @@ def test_the_logarithms_words_are_those_of_the_logarithm(kind: str, given_: list
 
 
 @drawn(10)
-@given(st.sampled_from([*KINDS]), st.lists(rationals(4), min_size=1, max_size=3))
+@given(st.sampled_from([*LETTERS_BY_KIND]), st.lists(rationals(4), min_size=1, max_size=3))
 def test_a_residue_is_the_combination_of_the_logarithms_words_less_its_value(
     kind: str, given_: list[Fraction]
 ) -> None:
     found, wanted = step(kind, given_), logarithm(product(parts_of(kind, given_), 6), 6)
-    for condition in conditions(kind, 6):
+    for condition in logarithm_equations(kind, 6):
         total = sum(n * wanted.get(word, Fraction(0)) for n, word in condition.terms)
-        assert condition.residue(found) == total - condition.value
+        assert condition.residual(found) == total - condition.value
 
 
 @drawn(20)
-@given(st.sampled_from([*KINDS]), st.lists(rationals(4), min_size=3, max_size=5))
+@given(st.sampled_from([*LETTERS_BY_KIND]), st.lists(rationals(4), min_size=3, max_size=5))
 def test_no_residue_is_larger_than_its_majorant_at_the_sizes_of_the_parts(
     kind: str, given_: list[Fraction]
 ) -> None:
     """Of a combination with signs all of its words count, whatever theirs are."""
-    most = MOST_ORDER["nystrom"]
+    most = MOST_ORDER_BY_KIND["nystrom"]
     own, large = step(kind, given_), step(kind, [*map(abs, given_)], bound=True)
-    for condition in conditions(kind, most):
-        bound = condition.residue(large)
-        assert abs(condition.residue(own)) <= bound, condition.name
+    for condition in logarithm_equations(kind, most):
+        bound = condition.residual(large)
+        assert abs(condition.residual(own)) <= bound, condition.name
         alone = (abs(n) * large.logarithm(word) for n, word in condition.terms)
         assert bound == condition.value + sum(alone)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LETTERS_BY_KIND)
 @pytest.mark.parametrize("most", range(1, 8))
 def test_lyndon_words_are_smaller_than_all_their_turns(kind: str, most: int) -> None:
-    own = words(KINDS[kind], most)
+    own = words(LETTERS_BY_KIND[kind], most)
     turned = [w for w in own if all(w < w[k:] + w[:k] for k in range(1, len(w)))]
-    assert sorted(lyndon(KINDS[kind], most)) == sorted(turned)
+    assert sorted(lyndon(LETTERS_BY_KIND[kind], most)) == sorted(turned)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LETTERS_BY_KIND)
 def test_there_are_as_many_conditions_as_are_known(kind: str) -> None:
-    found = conditions(kind, MOST_ORDER[kind])
+    found = logarithm_equations(kind, MOST_ORDER_BY_KIND[kind])
     assert len(found) == COUNTS[kind]
-    assert {x.order for x in found} <= set(range(1, MOST_ORDER[kind] + 1))
+    assert {x.order for x in found} <= set(range(1, MOST_ORDER_BY_KIND[kind] + 1))
     assert [x.value for x in found] == [int(x.order == 1) for x in found]
     assert len({x.name for x in found}) == len(found)
     spelled = [x.name for x in found if x.order > 3]
@@ -149,7 +153,7 @@ def test_there_are_as_many_conditions_as_are_known(kind: str) -> None:
 
 
 @drawn(20)
-@given(st.sampled_from([*KINDS]), st.integers(1, 6))
+@given(st.sampled_from([*LETTERS_BY_KIND]), st.integers(1, 6))
 def test_the_flow_satisfies_all_conditions(kind: str, most: int) -> None:
     """exp(K + D), and exp(Y₁): each coefficient of a word of n letters is 1/n!."""
 
@@ -159,4 +163,4 @@ def test_the_flow_satisfies_all_conditions(kind: str, most: int) -> None:
             return Fraction(plain, factorial(len(word)))
 
     flow = Flow(PlainNumbers(Fraction(1)), [])
-    assert all(x.residue(flow) == 0 for x in conditions(kind, most))
+    assert all(x.residual(flow) == 0 for x in logarithm_equations(kind, most))

@@ -20,7 +20,7 @@ from tests.helpers.stepping.implicit_steps import (
 )
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.verdict import Verdict
 

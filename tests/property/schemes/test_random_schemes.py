@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import proof_of
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
-from verify.algebra.series.jets import Jets
+from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.every import counterexample, prove_every
-from verify.proof.order import prove
+from verify.proof.order_conditions import prove_by_conditions
+from verify.proof.order_for_every_h import counterexample, prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get, names
 from verify.schemes.conditions.every_hamiltonian import (
     RungeKutta,
@@ -159,7 +159,7 @@ def test_a_users_formulas_are_the_map_that_they_write(a: Fraction, b: Fraction, 
         with pytest.raises(InputError, match="write it as"):
             get(bad)
     with pytest.raises(InputError, match="given for one H"):
-        prove_every(scheme.name)
+        prove_for_every_h(scheme.name)
 
 
 def test_the_schemes_are_named() -> None:

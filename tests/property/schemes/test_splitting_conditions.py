@@ -18,7 +18,7 @@ from tests.helpers.planted.splittings import coefficient
 from tests.helpers.symmetry import prove_symmetry, symmetry_conditions
 from verify.algebra.embedding import embed
 from verify.errors import InputError
-from verify.proof.by_conditions import first_wrong, prove_by_conditions
+from verify.proof.order_conditions import first_wrong, prove_by_conditions
 from verify.schemes import get
 from verify.schemes.conditions.splitting_conditions import MOST_ORDER, Splitting
 from verify.schemes.methods.user import splitting as own_splitting

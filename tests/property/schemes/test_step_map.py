@@ -17,10 +17,10 @@ from tests.helpers.sampled.maps import coefficients, determinant, order_of_flow,
 from verify.algebra.formula import parse
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import convergence_of, prove
+from verify.proof.order_for_one_h import convergence_of, prove
 from verify.schemes import get
+from verify.schemes.maps.closed_form import group_by_powers
 from verify.schemes.maps.parts import parts_of
-from verify.schemes.maps.step_map import group_by_powers
 from verify.verdict import Verdict
 
 quick = drawn(14)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.lie_derivatives import lie_derivatives
 from tests.helpers.sampled.formulas import plain, polynomials
-from verify.algebra.series.jets import Jets
+from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -25,11 +25,17 @@ from verify.schemes.conditions.coloured_trees import (
     symmetry,
     vertices,
 )
-from verify.schemes.conditions.elementary_differentials import Differentials, cancels
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.tree_conditions import MOST_ORDER, TreeConditions, gaps_of, trees
-from verify.schemes.conditions.tree_order import order_of
+from verify.schemes.conditions.tree_conditions import (
+    MOST_ORDER,
+    Differentials,
+    TreeConditions,
+    cancels,
+    gaps_of,
+    trees,
+)
+from verify.schemes.maps.kinds.implicit_runge_kutta import order_of
 
 quick = drawn(25)
 

@@ -20,10 +20,10 @@ from tests.examples import drawn
 from tests.helpers.sampled.formulas import monomial, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.plane.growth_law import GrowthLaw, growth_law
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.run import RunResult
-from verify.studies.growth import prediction as growth
-from verify.studies.growth.prediction import compute_average, predict_runs
+from verify.studies import growth_prediction as growth
+from verify.studies.growth_prediction import compute_average, predict_runs
 
 TIME = 6
 STEP_SIZES = tuple(Fraction(1, n) for n in (25, 50, 100, 400))

@@ -11,14 +11,14 @@ from hypothesis import assume, given
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import formulas, points
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse, read
 from verify.errors import InputError
 
 
-def domain(text: str) -> Domain:
-    return Domain.from_requirements(read(text)[1])
+def domain(text: str) -> FormulaDomain:
+    return FormulaDomain.from_requirements(read(text)[1])
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def defined(text: str, point: dict[str, Fraction]) -> bool:
 def test_a_formula_is_defined_exactly_in_its_domain(text: str, point: dict[str, Fraction]) -> None:
     assume("pi" not in text)  # tan(π) is not 0 in digits
     try:
-        found = Domain.from_requirements(read(text, point)[1])
+        found = FormulaDomain.from_requirements(read(text, point)[1])
     except InputError:
         return
     inside = found.contains(point)
@@ -115,7 +115,11 @@ def test_domains_meet_in_what_both_ask_for() -> None:
     assert EVERYWHERE & both == both
     assert not EVERYWHERE
     assert str(both.prose) == "p > 0, q > 0"
-    assert (both & Domain.from_requirements((), "in words")).texts == ("p > 0", "q > 0", "in words")
+    assert (both & FormulaDomain.from_requirements((), "in words")).texts == (
+        "p > 0",
+        "q > 0",
+        "in words",
+    )
 
 
 def test_a_value_that_is_put_in_lies_in_the_domain_or_is_refused() -> None:

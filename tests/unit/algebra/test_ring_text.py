@@ -9,7 +9,6 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse, symbol
-from verify.algebra.ring_text import as_expression, as_expression_at_0
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -68,8 +67,8 @@ def test_where_h_is_0_terms_with_it_are_gone_and_so_it_is_in_arguments() -> None
         p / h,  # no number there
     ):
         ring, (element,) = embed([x], ("p", "h"))
-        there = as_expression_at_0(ring, element, h)
-        assert there == as_expression(ring, element).subs(h, 0)
+        there = ring.expression_at_0(element, h)
+        assert there == ring.expression(element).subs(h, 0)
         assert not there.has(h)
     assert there.has(sympy.zoo)
 
@@ -80,7 +79,7 @@ def test_where_it_is_no_expression_it_is_no_number(formula: str) -> None:
     names = {name: symbol(name) for name in "qh"}
     ring, (element,) = embed([sympy.sympify(formula, names)], ("q", "h"))
     for _ in range(3):
-        there = as_expression_at_0(ring, element, symbol("h"))
+        there = ring.expression_at_0(element, symbol("h"))
         assert there.has(sympy.nan, sympy.zoo, sympy.oo)
         element = ring.diff(element, "h")
 

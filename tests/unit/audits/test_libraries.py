@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 
 from tests.paths import ROOT
+from verify.audits import integrators_report as others_report
 from verify.audits import libraries as others
-from verify.audits import printed_libraries
-from verify.audits import report as others_report
-from verify.audits.claims import claims_of
+from verify.audits import library_claims
+from verify.audits.integrators_report import make_integrators_report
 from verify.audits.libraries.nodepy import _order_method, claimed_orders
-from verify.audits.methods.integrator import Comparison, FloatStep, ReleasedIntegrator
-from verify.audits.methods.measured import finding
-from verify.audits.report import make_integrators_report
+from verify.audits.library_claims import claims_of
+from verify.audits.methods.float_step import finding
+from verify.audits.methods.integrator import FloatStep, LibraryComparison, ReleasedIntegrator
 from verify.verdict import Verdict
 
 LIBRARIES = [name for name in others.names() if others.get(name).LIBRARY is not None]
@@ -29,7 +29,7 @@ def hide(monkeypatch: pytest.MonkeyPatch, *kept: str) -> None:
         return ModuleSpec(name, None) if name in kept else None
 
     monkeypatch.setattr(others, "find_spec", find)
-    monkeypatch.setattr(printed_libraries, "files", list)
+    monkeypatch.setattr(library_claims, "files", list)
 
 
 def test_every_file_says_what_it_is() -> None:
@@ -77,7 +77,9 @@ def leaves() -> Any:
 
 
 def breaks_off() -> Any:
-    yield ReleasedIntegrator("first", "by hand", "nowhere", Comparison("it is itself", fails))
+    yield ReleasedIntegrator(
+        "first", "by hand", "nowhere", LibraryComparison("it is itself", fails)
+    )
     yield from others.get("literature").integrators()
     raise ValueError("cannot convert NaN to integer ratio")
 
@@ -212,7 +214,7 @@ def test_tables_of_scipy_have_their_orders() -> None:
 
 def test_heyokas_taylor_step_is_lie_eta() -> None:
     found = integrators("heyoka")["Taylor and lieη"].method
-    assert isinstance(found, Comparison)
+    assert isinstance(found, LibraryComparison)
     verdict, evidence, rows = found.compare()
     assert verdict is Verdict.MEASURED, evidence
     assert len(rows) > 3

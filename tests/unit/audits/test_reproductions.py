@@ -7,10 +7,9 @@ from fractions import Fraction
 import pytest
 
 from verify.audits import reproductions
-from verify.audits.claims import claims_of
 from verify.audits.libraries import literature
-from verify.schemes.printed.splitting_order import judge_order
-from verify.schemes.printed.splitting_table import PrintedTable
+from verify.audits.library_claims import claims_of
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}

@@ -6,14 +6,18 @@ from typing import Any
 
 import pytest
 
-from verify.audits.claims import claims_of
-from verify.audits.methods.integrator import FloatStep, ReleasedIntegrator
-from verify.audits.methods.scripted import AGAIN, EACH, Driver, Problem, drive_problems
-from verify.audits.methods.tabled import table_integrator, text
-from verify.audits.printed_libraries import files
-from verify.audits.second.look import at_step, at_table
-from verify.integrators.tables.check import read_tables
+from verify.audits.library_claims import claims_of, files
+from verify.audits.methods.driver import (
+    PROBLEMS,
+    SECOND_PROBLEMS,
+    Driver,
+    ScriptedProblem,
+    drive_problems,
+)
+from verify.audits.methods.integrator import FloatStep, ReleasedIntegrator, table_integrator, text
+from verify.audits.second_look import look_at_step, look_at_table
 from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.table_file import read_tables
 from verify.verdict import Verdict
 
 SOME = (
@@ -39,9 +43,9 @@ def test_a_right_table_is_not_shown_to_be_wrong() -> None:
     some = right_tables()[::SOME]
     assert some
     for entry, order in some:
-        look = at_table(entry, "order", order)
-        assert not look.confirms, (entry.name, look.sentence)
-        assert all(x.order is None or x.order >= order for x in look.slopes), entry.name
+        second_look = look_at_table(entry, "order", order)
+        assert not second_look.confirms, (entry.name, second_look.sentence)
+        assert all(x.order is None or x.order >= order for x in second_look.slopes), entry.name
 
 
 # Splittings of Nielsen for nearly harmonic systems, arXiv:1501.04345: of order 6 and 7 for the
@@ -84,7 +88,7 @@ def test_a_method_that_is_right_on_the_harmonic_oscillator_alone_is_caught(order
 
 def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where our conditions were wrong: a right table, said to be of too low an order."""
-    from verify.audits.second import look
+    from verify.audits import second_look
 
     rk4: dict[str, Any] = {
         "a": [[], ["1/2"], ["0", "1/2"], ["0", "0", "1"]],
@@ -92,7 +96,7 @@ def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.Monke
     }
     right, wrong = (table_integrator("RK4", "runge-kutta", "", "", order=n, **rk4) for n in (4, 5))
     assert [c.verdict for c in claims_of(wrong, "mine", "mine")] == [Verdict.REFUTED]
-    monkeypatch.setattr(look, "claimed_of", lambda entry, kind: 4)
+    monkeypatch.setattr(second_look, "claimed_of", lambda entry, kind: 4)
     (claim,) = claims_of(wrong, "mine", "mine")
     assert claim.verdict is Verdict.UNDECIDED
     assert not claim.severity
@@ -144,22 +148,24 @@ def test_an_order_that_is_claimed_too_high_is_refuted_of_steps() -> None:
 
 def test_a_step_that_is_wrong_at_one_problem_alone_is_not_refuted() -> None:
     """The second problem is asked before anything is held against a library."""
-    plain = next(drive_problems("mine", verlet(), "", "nowhere", 3, None, EACH[:1]))
+    plain = next(drive_problems("mine", verlet(), "", "nowhere", 3, None, PROBLEMS[:1]))
     right = plain.method
     assert isinstance(right, FloatStep)
 
     def exact() -> Any:
         raise RuntimeError("no second problem can be driven")
 
-    other = FloatStep(right.hamiltonian, exact, right.points, right.ladder)
+    other = FloatStep(right.formula, exact, right.points, right.ladder)
     told = ReleasedIntegrator("mine", "", "", right, 3, None, "", other)
-    assert not at_step(told, 3).confirms
+    assert not look_at_step(told, 3).confirms
     (claim,) = claims_of(told, "m", "m")
     assert claim.verdict is Verdict.UNDECIDED
 
 
-@pytest.mark.parametrize("problem", [*EACH, *AGAIN.values()], ids=lambda x: x.description)
-def test_the_lines_of_a_problem_are_its_force(problem: Problem) -> None:
+@pytest.mark.parametrize(
+    "problem", [*PROBLEMS, *SECOND_PROBLEMS.values()], ids=lambda x: x.description
+)
+def test_the_lines_of_a_problem_are_its_force(problem: ScriptedProblem) -> None:
     names: dict[str, Any] = {}
     exec(f"import numpy as np\n{problem.force}", names)  # noqa: S102 - our own
     import numpy as np
@@ -167,7 +173,7 @@ def test_the_lines_of_a_problem_are_its_force(problem: Problem) -> None:
 
     n, t = problem.degrees, 0.7
     q = np.array([0.3, -0.45][:n])
-    given = problem.exact
+    given = problem.hamiltonian
     symbols = {str(x): x for x in given.exact.free_symbols}
     at = {symbols[name]: value for name, value in zip(given.coordinates[n:], q, strict=True)}
     at |= {symbols["t"]: t} if "t" in symbols else {}

@@ -3,9 +3,9 @@
 import pytest
 from sympy import Rational, S, sqrt
 
-from verify.audits.claims import claims_of
+from verify.audits.library_claims import claims_of
 from verify.audits.methods.integrator import ExactTableau, ReleasedIntegrator
-from verify.audits.methods.tableau import order_of, repair, symplecticity
+from verify.audits.methods.tableau_proofs import order_of, repair, symplecticity
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.methods.runge_kutta.gauss4 import TABLEAU as GAUSS4
 from verify.schemes.methods.runge_kutta.gauss6 import TABLEAU as GAUSS6

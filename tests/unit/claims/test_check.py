@@ -3,8 +3,8 @@
 import math
 from pathlib import Path
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import prepare
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.claim import ClaimResult

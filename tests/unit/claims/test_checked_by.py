@@ -4,12 +4,12 @@ from typing import Any
 
 import pytest
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
-from verify.claims.quantified import marks_for_every, marks_for_hamiltonian
+from verify.claims.claims_file import load_claims
+from verify.claims.quantified_claims import marks_for_every, marks_for_hamiltonian
+from verify.claims.verdicts import prepare
 from verify.execution.execute import Store
 from verify.proof.certificates import checker
-from verify.proof.certificates import established as certificates
+from verify.proof.certificates import established_statement as certificates
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 

@@ -8,10 +8,9 @@ from typing import get_args
 import pytest
 
 from verify.claims import kinds
-from verify.claims.claim import Claim
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
+from verify.claims.base_claim import Claim, Findings
+from verify.claims.claims_file import load_claims
+from verify.claims.run_claims import RunClaim
 from verify.discovery import Catalogue
 from verify.errors import InputError
 from verify.verdict import Verdict
@@ -19,12 +18,12 @@ from verify.verdict import Verdict
 PLANTED = """
 from typing import Literal
 
-from verify.claims.claim import Claim
+from verify.claims.base_claim import Claim
 from verify.verdict import Verdict
 
 
 class Named(Claim):
-    only_here = "its name is its own"
+    obstacle = "its name is its own"
     kind: Literal["named"]
     name: str
 
@@ -80,7 +79,7 @@ def test_a_planted_kind_is_found_and_judged(planted: Path, name: str, verdict: V
     found = file.claims[0].judge(Findings(file.scenes))
     assert (found.kind, found.verdict, found.evidence) == ("named", verdict, "it is c")
     assert found.statement.parts == ("It is ", "c^2", ".")
-    assert file.claims[0].why_only_here() == "its name is its own"
+    assert file.claims[0].why_not_transferable() == "its name is its own"
 
 
 def test_without_its_file_the_kind_is_unknown(tmp_path: Path) -> None:

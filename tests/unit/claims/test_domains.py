@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.kinds import models
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

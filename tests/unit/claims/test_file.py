@@ -14,16 +14,15 @@ from tests.helpers.constructed.runs import (
     made_run,
     made_scene,
 )
-from verify.claims.claim import Claim
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Claim, Findings
+from verify.claims.claims_file import load_claims
 from verify.claims.kinds.criteria import CriteriaClaim
 from verify.claims.kinds.less import LessClaim
 from verify.claims.kinds.magnitude import MagnitudeClaim
 from verify.claims.kinds.monotone import MonotoneClaim
 from verify.claims.kinds.spread import SpreadClaim
 from verify.claims.kinds.step_map import StepMapClaim
-from verify.claims.kinds.table import TableClaim
+from verify.claims.kinds.table import PrintedTableClaim
 from verify.errors import InputError
 from verify.studies.kinds.grid import grid_task
 from verify.verdict import Verdict
@@ -70,7 +69,9 @@ def test_criteria_hold_together_and_the_weakest_counts(
 
 H = (Fraction(1, 100), Fraction(1, 50))
 ON_RUNS: dict[str, Claim] = {
-    "table": TableClaim(**CLAIM, kind="table", step_sizes=H, printed=("-20.0000", "-20.0000")),
+    "table": PrintedTableClaim(
+        **CLAIM, kind="table", step_sizes=H, printed=("-20.0000", "-20.0000")
+    ),
     "spread": SpreadClaim(**CLAIM, kind="spread", quantity="mse", factor=2),
     "monotone": MonotoneClaim(**CLAIM, kind="monotone", quantity="mse", direction="increases"),
     "less": LessClaim(**CLAIM, kind="less", quantity="mse", than="abs_lambda"),

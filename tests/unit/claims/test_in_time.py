@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
@@ -53,7 +53,7 @@ def test_a_claim_in_time(tmp_path: Path, keys: str, expected: Verdict) -> None:
 
 def test_a_claim_on_a_run_has_its_t0(tmp_path: Path) -> None:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.runs.run import run
+    from verify.runs.requested_run import run
 
     exact = Hamiltonian.parse("p**2/2 - (1 + cos(2*t)/2)*cos(q)")
     found = run(exact, "lie2", q=1.5, p=0, step_size="0.1", steps=20, t0="1/3", digits=12,

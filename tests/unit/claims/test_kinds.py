@@ -18,16 +18,15 @@ from tests.helpers.planted.mutation import mutants
 from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
 from tests.helpers.sampled.identities.drawn import HIDDEN
 from tests.paths import ROOT
-from verify.claims.claim import Claim
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
-from verify.claims.judging import add_claims
+from verify.claims.base_claim import Claim, Findings
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import add_claims
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene, load_scene
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 from verify.verdict import Verdict
 
 PAPER = ROOT / "reports" / "paper"

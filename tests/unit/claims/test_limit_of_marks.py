@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 
 from verify import effort
-from verify.claims.findings import Findings
-from verify.claims.judging import judge_claim
+from verify.claims.base_claim import Findings
 from verify.claims.kinds import models
-from verify.claims.quantified import marks_for_hamiltonian
-from verify.execution.keeping import NOTHING
+from verify.claims.quantified_claims import marks_for_hamiltonian
+from verify.claims.verdicts import judge_claim
+from verify.execution.keeper import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.checked import small_checker
-from verify.proof.checked.proved import DEFECT, ProvedStatement
+from verify.proof.checked import proof_marks
+from verify.proof.checked.proved_statement import DEFECT, ProvedStatement
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
@@ -64,16 +64,16 @@ def test_a_certificate_that_is_not_made_in_time_gives_no_mark_and_the_next_is_tr
             len(str(1))
         return {}
 
-    from verify.proof.certificates.every import certify_every
-    from verify.proof.every import prove_every
+    from verify.proof.certificates.certification import certify_for_every_h
+    from verify.proof.order_for_every_h import prove_for_every_h
 
-    proof = prove_every("symplectic-euler")
-    makers = (never, lambda: certify_every(proof))
+    proof = prove_for_every_h("symplectic-euler")
+    makers = (never, lambda: certify_for_every_h(proof))
     scheme = get("symplectic-euler")
     proved = ProvedStatement(
-        scheme, DEFECT, True, every=True, timed=False, degrees=1, certificates=makers
+        scheme, DEFECT, True, for_every_h=True, timed=False, degrees=1, certificates=makers
     )
-    marks = list(small_checker.marks(proved))
+    marks = list(proof_marks.small_checker_marks(proved))
     assert len(marks) == (0 if ending else 1)  # what is refused gives none; what is not made, next
 
 
@@ -82,9 +82,7 @@ def test_the_mark_is_there_where_it_is_made_in_time(monkeypatch: pytest.MonkeyPa
     marks_for_hamiltonian.cache_clear()
     assert any("small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT))
     marks_for_hamiltonian.cache_clear()
-    monkeypatch.setattr(
-        small_checker, "limit_effort", lambda *of: effort.limit_effort(*of, most=10)
-    )
+    monkeypatch.setattr(proof_marks, "limit_effort", lambda *of: effort.limit_effort(*of, most=10))
     assert not any(
         "small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT)
     )

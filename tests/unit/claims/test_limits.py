@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.claims.test_check import check_file
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError, LimitError
 from verify.verdict import Verdict
 

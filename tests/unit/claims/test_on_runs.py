@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.runs import CLAIM, Given, made_findings, made_run, made_scene
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.kinds.bounded import BoundedClaim
 from verify.claims.kinds.growth import GrowthClaim
-from verify.claims.kinds.table import TableClaim
+from verify.claims.kinds.table import PrintedTableClaim
 from verify.claims.kinds.value import ValueClaim
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -116,7 +116,7 @@ def test_every_digit_that_is_changed_refutes_a_value(place: int) -> None:
 def test_a_table_has_a_row_for_each_initial_value(
     quantity: Any, rows: Any, expected: Verdict
 ) -> None:
-    claim = TableClaim(**CLAIM, kind="table", quantity=quantity, step_sizes=(H,), rows=rows)
+    claim = PrintedTableClaim(**CLAIM, kind="table", quantity=quantity, step_sizes=(H,), rows=rows)
     scene = made_scene(("0.01",), [("1", "0"), ("2", "0")])
 
     def values(_: Fraction, k: int) -> dict[str, Given]:

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from tests.helpers.sampled.identities.drawn import HIDDEN
-from verify.algebra.domain import EVERYWHERE, Domain
-from verify.claims.findings import Findings
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
+from verify.claims.base_claim import Findings
 from verify.claims.kinds.area_preserving import AreaClaim
 from verify.claims.kinds.convergence_order import ConvergenceOrderClaim
 from verify.claims.kinds.defect_order import DefectOrderClaim
@@ -166,7 +166,7 @@ def test_area_is_judged_by_what_is_known() -> None:
 
 @dataclass(frozen=True)
 class Stub:
-    """The fields of `verify.proof.every.EveryProof` that a claim asks for."""
+    """The fields of `verify.proof.proof_for_every_h.ProofForEveryH` that a claim asks for."""
 
     verdict: Verdict = PROVED
     reason: str = "by hand"
@@ -174,7 +174,7 @@ class Stub:
     area_preserving: bool | None = False
     convergence_order: int | None = 2
     leading: str = "H_p*H_ppq - 2*H_q*H_ppp"
-    domain: Domain = EVERYWHERE
+    domain: FormulaDomain = EVERYWHERE
     convergence_decided: bool = True
     nearby: None = None
 
@@ -188,9 +188,9 @@ def proofs(monkeypatch: pytest.MonkeyPatch) -> dict[tuple[str, bool], Stub]:
     """What is proved, by scheme and whether H is separable."""
     known = {("lie2", False): Stub(), ("lie2", True): Stub(),
              ("symplectic-euler", True): EULER, ("lie3", False): OPEN}  # fmt: skip
-    module = ModuleType("verify.proof.every")
-    module.prove_every = lambda name, separable=False, **_: known[name, separable]  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "verify.proof.every", module)
+    module = ModuleType("verify.proof.order_for_every_h")
+    module.prove_for_every_h = lambda name, separable=False, **_: known[name, separable]  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "verify.proof.order_for_every_h", module)
     return known
 
 

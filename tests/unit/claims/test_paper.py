@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.paths import ROOT
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 
 FILE = load_claims(ROOT / "reports" / "paper" / "claims.toml")
 PAGES = ("README.md", "docs/explanation/results-of-the-paper.md")

@@ -18,11 +18,11 @@ from tests.helpers.constructed.runs import (
     made_scene,
     one_changed,
 )
-from verify.claims.findings import Findings
-from verify.claims.kinds.table import TableClaim
+from verify.claims.base_claim import Findings
+from verify.claims.kinds.table import PrintedTableClaim
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED
@@ -32,8 +32,10 @@ LAST = (H[-1], len(STARTS) - 1)  # where a mistake is put: at the last run of al
 ROW = ["-19.3010", "-18.1234", "-17.0000", "-16.5229", "-15.9999", "-15.0001"]
 
 
-def table(printed: list[str], step_sizes: list[Fraction] = H) -> TableClaim:
-    return TableClaim(**CLAIM, kind="table", step_sizes=tuple(step_sizes), printed=tuple(printed))
+def table(printed: list[str], step_sizes: list[Fraction] = H) -> PrintedTableClaim:
+    return PrintedTableClaim(
+        **CLAIM, kind="table", step_sizes=tuple(step_sizes), printed=tuple(printed)
+    )
 
 
 def as_in_row(share: Fraction = Fraction(0), bound: Any = 0) -> Values:

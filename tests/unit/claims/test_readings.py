@@ -5,13 +5,18 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
-from verify.scenes.results.claim import Standing
-from verify.scenes.results.statement import Outcome, describe_counts, outcome_of, statements_of
+from verify.scenes.results.claim import (
+    Outcome,
+    Standing,
+    describe_counts,
+    outcome_of,
+    statements_of,
+)
 from verify.verdict import Verdict
 
 HEAD = 'title = "A paper"\n[defaults]\nscheme = "lie2"\nsystem = "harmonic"\nkind = "order"\n'

@@ -7,21 +7,19 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
-from verify.claims.judging import add_claims
+from verify.claims.base_claim import Findings
+from verify.claims.claims_file import load_claims
 from verify.claims.kinds.flow_area import FlowAreaClaim, conserves_area
 from verify.claims.kinds.flow_distance import FlowDistanceClaim
+from verify.claims.verdicts import add_claims
 from verify.errors import InputError
-from verify.execution.keeping import NOTHING
-from verify.execution.plan import Plan
-from verify.execution.study import plan_of
+from verify.execution.keeper import NOTHING
+from verify.execution.plan import Plan, plan_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.scene import Scene, scene_from
-from verify.studies.kinds.regions import need_flows
-from verify.studies.regions.task import FlowTask
+from verify.studies.kinds.regions import FlowTask, need_flows
 from verify.verdict import Verdict
 
 PROVED, REFUTED = Verdict.PROVED, Verdict.REFUTED

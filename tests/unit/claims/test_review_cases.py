@@ -6,15 +6,15 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.maps import by_formulas
-from verify.claims.report import make_report
+from verify.claims.verdicts import make_report
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.runs.run import run
+from verify.proof.order_for_one_h import prove
+from verify.runs.requested_run import run
 from verify.scenes.scene import scene_from
-from verify.studies.criteria import judge
+from verify.studies.criteria_verdicts import judge
 from verify.verdict import Verdict
 
 

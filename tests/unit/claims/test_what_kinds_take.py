@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from verify.claims.claim import Claim
-from verify.claims.file import load_claims
+from verify.claims.base_claim import Claim
+from verify.claims.claims_file import load_claims
 from verify.claims.kinds import models
 from verify.errors import InputError
 

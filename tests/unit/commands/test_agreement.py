@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from verify.commands.shared.proofs import agreement_json, describe_agreement
+from verify.commands.shared.proof_output import agreement_json, describe_agreement
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
@@ -20,7 +20,7 @@ def test_an_order_that_is_shown_to_be_no_higher_is_known(scheme: str, order: int
     for found in (
         plane,
         prove(get(scheme).step_map(HENON), get(scheme)),
-        prove_every(scheme, degrees=2),
+        prove_for_every_h(scheme, degrees=2),
     ):
         assert describe_agreement(found) == f"up to h^{order}"
         told = {"convergence_order": order, "convergence_order_known": True}

@@ -6,8 +6,8 @@ import pytest
 
 from verify.commands.explore import _explore
 from verify.execution.executors import ANYWHERE
-from verify.exploration import explore
-from verify.exploration.explore import Exploration
+from verify.exploration import exploring
+from verify.exploration.exploring import Exploration
 from verify.scenes.results.exploration import EarlierFailure, ExploreReport, ShrunkResult
 
 ASKED = Exploration(seed=0, examples=1, properties=("time-scaling",))
@@ -38,6 +38,6 @@ def test_what_fails_now_or_still_is_the_exit_status(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     report = ExploreReport(seed=0, examples=1, properties=(), failures=failures, again=earlier)
-    monkeypatch.setattr(explore, "explore", lambda *_, **__: report)
+    monkeypatch.setattr(exploring, "explore", lambda *_, **__: report)
     answer = _explore(ASKED, {}, tmp_path, None, ANYWHERE)
     assert (answer.failed, answer.problem) == (failed, None)

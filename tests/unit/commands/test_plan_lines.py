@@ -4,7 +4,7 @@ import pytest
 
 from verify.commands.plan import _LINES
 from verify.scenes.scene import scene_from_toml
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 
 STARTS = "initial_values = [{ q = [0, 0.1], p = [0.4, 0] }]"
 PASSES = f"""

@@ -7,7 +7,7 @@ import pytest
 from tests.helpers.constructed.plans import CONTENT
 from tests.helpers.constructed.scenes import load
 from verify.execution.plan import Plan
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 
 
 @pytest.fixture

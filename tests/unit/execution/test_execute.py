@@ -19,7 +19,7 @@ from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.plan import Plan
 from verify.scenes.frozen import Frozen
-from verify.studies.proofs.one import ProofTask
+from verify.studies.kinds.proofs import ProofTask
 
 
 def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:

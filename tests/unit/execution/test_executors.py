@@ -37,7 +37,7 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import fingerprint
+from verify.execution.keeper import fingerprint
 
 
 class Finished:

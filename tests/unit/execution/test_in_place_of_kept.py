@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import execute
 from verify.execution.executors import THIS_PROCESS
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.execution.plan import Plan
 
 IN_PLACE: dict[str, Callable[[Path], None]] = {

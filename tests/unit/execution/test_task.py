@@ -18,7 +18,8 @@ from verify.scenes.frozen import Frozen
 
 def kinds() -> list[type[Task]]:
     for module in pkgutil.walk_packages(verify.__path__, "verify."):
-        if module.name.rpartition(".")[2] in ("task", "tasks") or ".proofs." in module.name:
+        parent, _, name = module.name.rpartition(".")
+        if name in ("task", "tasks") or parent in ("verify.studies.kinds", "verify.reference.make"):
             import_module(module.name)
     return sorted(
         {kind for kind in subclasses(Task) if not inspect.isabstract(kind)},

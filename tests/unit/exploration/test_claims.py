@@ -7,16 +7,16 @@ import pytest
 
 from tests.paths import ROOT
 from tests.unit.exploration.test_explore import exploration
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
-from verify.exploration.claims import claim_property, claim_texts, claims_left_out
-from verify.exploration.explore import explore, load_failures, save_failures
+from verify.exploration.claim_properties import claim_property, claim_texts, claims_left_out
+from verify.exploration.exploring import explore, load_failures, save_failures
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import sample_scene
+from verify.exploration.scenes_of_seed import sample_scene
 from verify.scenes.scene import load_scene, scene_from
 
 PAPER = ROOT / "reports" / "paper"

@@ -8,16 +8,15 @@ from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.exploration import properties
-from verify.exploration.explore import Exploration, explore, load_failures, save_failures
+from verify.exploration.exploring import Exploration, explore, load_failures, save_failures
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import sample_scene
+from verify.exploration.scenes_of_seed import sample_scene
 from verify.exploration.tasks import ExploreTask
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.scenes.results.exploration import ExploreReport
-from verify.scenes.scene import load_scene
-from verify.scenes.toml_text import scene_text
+from verify.scenes.scene import load_scene, scene_text
 
 CHEAP = ("quadratic-hamiltonians", "time-scaling")
 LIES = SampleSpace(schemes=("lie1", "lie2"), degree=3)
@@ -86,7 +85,7 @@ def test_examples_are_counted_and_properties_hold() -> None:
 
 def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = explore(exploration(), Store(None), where=THIS_PROCESS)
-    monkeypatch.setattr("verify.exploration.explore._STRETCH", 7)
+    monkeypatch.setattr("verify.exploration.exploring._STRETCH", 7)
     assert len(exploration().plan.tasks) == 5
     assert explore(exploration(), Store(None), where=THIS_PROCESS) == whole
 

@@ -9,9 +9,8 @@ from tests.helpers.constructed.galleries import at, gallery, shown
 from verify.commands.hunt import _describe_loss, _format_command, _write_scenes
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
-from verify.exploration.gallery import gallery as gallery_of
-from verify.exploration.gallery import meaningless
-from verify.exploration.hunting import Hunt
+from verify.exploration.hunting import Hunt, find_meaningless_span
+from verify.exploration.hunting import gallery as gallery_of
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
 
@@ -38,7 +37,7 @@ def _text(formula: str) -> str:
 def test_where_lambda_is_meaningless(
     series: list[tuple[int, str, str]], first: int | None, over: int | None
 ) -> None:
-    found = meaningless([at(*each) for each in series])
+    found = find_meaningless_span([at(*each) for each in series])
     assert (found.first, found.over) == (first, over)
 
 

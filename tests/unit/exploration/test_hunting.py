@@ -13,11 +13,10 @@ from verify import strategies
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS, Placement
-from verify.execution.keeping import NOTHING
+from verify.execution.keeper import NOTHING
 from verify.exploration import hunting, island_search
-from verify.exploration.different_scenes import scene_of, select_by_shape, select_different
 from verify.exploration.hunting import Hunt, hunt
-from verify.exploration.island_search import neighbours
+from verify.exploration.island_search import neighbours, scene_of, select_by_shape, select_different
 from verify.exploration.measures import MEASURES, Measure
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace

@@ -8,8 +8,8 @@ import pytest
 from verify.exploration.measures import MEASURES, _greatest, digits_lost, growth, rounding_share
 from verify.exploration.sample import Sample
 from verify.scenes.scene import scene_from
-from verify.studies.separation.separate import separate
-from verify.studies.separation.stepper.trail import Trail
+from verify.studies.separation.chain import Trail
+from verify.studies.separation.truncation_and_rounding import separate
 
 
 def sample(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:

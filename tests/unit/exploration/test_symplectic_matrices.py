@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from verify.exploration.oracles.symplectic_matrices import (
-    Exact,
+from verify.exploration.equivariance import (
+    RationalMatrix,
     coordinate_change,
     cyclic_shift,
     exchange_of_p_and_q,
@@ -15,22 +15,26 @@ from verify.exploration.oracles.symplectic_matrices import (
 every_n = pytest.mark.parametrize("n", [1, 2, 3])
 
 
-def omega(n: int) -> Exact:
-    return Exact([[(b == a + n) - (a == b + n) for b in range(2 * n)] for a in range(2 * n)])
+def omega(n: int) -> RationalMatrix:
+    return RationalMatrix(
+        [[(b == a + n) - (a == b + n) for b in range(2 * n)] for a in range(2 * n)]
+    )
 
 
-def form_of(matrix: Exact) -> Exact:
+def form_of(matrix: RationalMatrix) -> RationalMatrix:
     """MᵀΩM."""
     return matrix.transpose() * omega(matrix.nrows() // 2) * matrix
 
 
 @every_n
 @pytest.mark.parametrize("make", [symplectic, coordinate_change])
-def test_what_a_seed_chooses_is_symplectic(make: Callable[[int, int], Exact], n: int) -> None:
+def test_what_a_seed_chooses_is_symplectic(
+    make: Callable[[int, int], RationalMatrix], n: int
+) -> None:
     chosen = [make(seed, n) for seed in range(40)]
     assert all(form_of(matrix) == omega(n) for matrix in chosen)
     assert len({str(matrix) for matrix in chosen}) > 5
-    one = Exact([[int(a == b) for b in range(2 * n)] for a in range(2 * n)])
+    one = RationalMatrix([[int(a == b) for b in range(2 * n)] for a in range(2 * n)])
     assert one not in chosen
 
 

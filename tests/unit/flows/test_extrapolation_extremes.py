@@ -7,7 +7,15 @@ from typing import Any
 import mpmath
 import pytest
 
-from tests.unit.flows.test_solution import CUBIC, DUFFING, LENNARD_JONES, PENDULUM, PI, near, solve
+from tests.unit.flows.test_solution import (
+    CUBIC,
+    DUFFING,
+    LENNARD_JONES,
+    PENDULUM,
+    PI,
+    near,
+    solve,
+)
 from verify.flows.extrapolation import NoFlowError
 
 EXTREME: dict[str, tuple[str, Any, Any, Any]] = {

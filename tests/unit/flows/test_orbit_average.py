@@ -8,8 +8,8 @@ import pytest
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.flows.closed_orbit import Orbit, closed_orbit
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.closed_orbit import ClosedOrbit, closed_orbit
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.flows.orbit_average import Average, average, bounded_part, phase
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -25,7 +25,7 @@ def averaged(formula: str, g: str, p: Exact, q: Exact, digits: int = 15) -> Aver
     return average(hamiltonian, (ring, x), (Fraction(p), Fraction(q)), digits)
 
 
-def orbit(formula: str, p: Exact, q: Exact, digits: int = 15) -> Orbit:
+def orbit(formula: str, p: Exact, q: Exact, digits: int = 15) -> ClosedOrbit:
     return closed_orbit(Hamiltonian.parse(formula), (Fraction(p), Fraction(q)), digits, 32)
 
 
@@ -223,7 +223,7 @@ def test_near_the_separatrix_the_digits_asked_for_are_there_all_the_same() -> No
 def test_the_bounded_part_is_the_integral_of_what_is_not_the_average() -> None:
     """On q = 2 cos t, p = −2 sin t: q² − 2 = 2 cos 2t, whose integral is sin 2t."""
     part = bounded_part(averaged("p**2/2 + q**2/2", "q**2", 0, 2))
-    number = Flow(canonical_field(Hamiltonian.parse("p**2/2 + q**2/2"))[0], 15).number
+    number = NumericalFlow(canonical_field(Hamiltonian.parse("p**2/2 + q**2/2"))[0], 15).number
     for k in range(-20, 20):
         t = mpmath.mpf(k) / 3
         z = tuple(number(Fraction(float(x))) for x in (-2 * mpmath.sin(t), 2 * mpmath.cos(t)))

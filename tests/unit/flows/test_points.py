@@ -12,13 +12,13 @@ from verify.arithmetic.float_context import WIDE
 from verify.errors import InputError
 from verify.flows import extrapolation_of_many as flow_of_many
 from verify.flows import points as module
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.flows.points import Points, exact_points
 from verify.flows.solution import exact_solution, solution_from
-from verify.hamiltonians import known_flows, systems
+from verify.hamiltonians import flow_recognition, systems
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.motion import Motion
+from verify.hamiltonians.named_system import Motion
 
 ALL = systems.all_systems()
 STILL = {name: system for name, system in ALL.items() if not system.time_dependent}
@@ -112,7 +112,7 @@ def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str
     times = LONG if closed else (Fraction(60),)
     p, q = cloud(float(p0), float(q0), 2)
     found = carried(h, p, q, times)
-    assert not found.alone
+    assert not found.outliers
     assert largest_error(h, p, q, times, found) <= found.bound
     assert found.bound <= 1e-12 * size(p, q, found.points["p"], found.points["q"])
 
@@ -246,7 +246,7 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
     formula: str, wrong: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The control of all that is held against `largest_error`, by the numerical flow."""
-    right = known_flows.motions
+    right = flow_recognition.motions
     h, (p, q), times = Hamiltonian.parse(formula), cloud(0.3, 1.0, 3), (Fraction(10),)
     assert by_numerical_flow(h, p, q, times[0], carried(h, p, q, times))
 
@@ -257,13 +257,13 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
 
         return motion
 
-    monkeypatch.setattr(known_flows, "motions", planted)
+    monkeypatch.setattr(flow_recognition, "motions", planted)
     forget()
     assert not by_numerical_flow(h, p, q, times[0], carried(h, p, q, times))
 
 
 def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) -> None:
-    h, (p, q), right = Hamiltonian.parse(HARD), cloud(0.3, 1.0, 5), known_flows.motions
+    h, (p, q), right = Hamiltonian.parse(HARD), cloud(0.3, 1.0, 5), flow_recognition.motions
     alone = carried(h, p, q, LONG)
     forget()
     made = []
@@ -271,7 +271,7 @@ def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) ->
     def counted(hamiltonian: Hamiltonian) -> Any:
         return lambda *start: made.append(start) or right(hamiltonian)(*start)
 
-    monkeypatch.setattr(known_flows, "motions", counted)
+    monkeypatch.setattr(flow_recognition, "motions", counted)
     for k, time in enumerate(LONG):
         found = carried(h, p, q, [time])
         assert np.array_equal(found.points["p"][0], alone.points["p"][k])
@@ -281,7 +281,7 @@ def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) ->
 
 def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Points) -> bool:
     """Whether all points are within their bound of what the numerical flow finds."""
-    flow = Flow(canonical_field(h)[0], 25)
+    flow = NumericalFlow(canonical_field(h)[0], 25)
     ours, errors = (found.points["p"], found.points["q"]), []
     for i in range(len(p)):
         z = flow.follow((flow.number(Fraction(p[i])), flow.number(Fraction(q[i]))), time)

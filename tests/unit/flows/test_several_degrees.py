@@ -6,11 +6,16 @@ import pytest
 
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, exact_solution, numerical_solution, solution_from
+from verify.flows.solution import (
+    ExactSolution,
+    exact_solution,
+    numerical_solution,
+    solution_from,
+)
 from verify.hamiltonians import systems
+from verify.hamiltonians.flow_recognition import uncouple
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
-from verify.hamiltonians.uncoupled import uncouple
+from verify.hamiltonians.run_domain import point_of
 
 KEPLER = systems.get("kepler").hamiltonian({"mu": 1})
 HENON = systems.get("henon-heiles").hamiltonian({})
@@ -26,12 +31,12 @@ ELLIPSES: dict[str, Start] = {
 }
 
 
-def after(hamiltonian: Hamiltonian, start: Start, time: str, digits: int = DIGITS) -> Solution:
+def after(hamiltonian: Hamiltonian, start: Start, time: str, digits: int = DIGITS) -> ExactSolution:
     q, p = start
     return exact_solution(hamiltonian, q=q, p=p, time=Fraction(time), digits=digits)
 
 
-def apart(one: Solution, other: Solution) -> Fraction:
+def apart(one: ExactSolution, other: ExactSolution) -> Fraction:
     return max(abs(one.point[name] - other.point[name]) for name in one.point)
 
 

@@ -12,14 +12,14 @@ from verify.arithmetic.exact import plain
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import solution as solution_module
-from verify.flows.closed_form import MOST_DIGITS, evaluate
-from verify.flows.extrapolation import Flow, NoFlowError
-from verify.flows.solution import NOT_KNOWN, Solution, exact_solution, leaves_by_algebra
+from verify.flows.ball_evaluation import MOST_DIGITS, evaluate
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
+from verify.flows.solution import NOT_KNOWN, ExactSolution, exact_solution, leaves_by_algebra
 from verify.hamiltonians import systems
 from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.flow_recognition import closed_form, named_systems, potential
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.known_flows import closed_form, named_systems, potential
-from verify.hamiltonians.motion import Motion, exactly
+from verify.hamiltonians.named_system import Motion, exactly
 
 DUFFING = "p**2/2 + q**2/2 + delta*q**4/4"
 PENDULUM = "p**2/2 - cos(q)"
@@ -29,7 +29,9 @@ PI = "3.141592653589793238462643383279502884197169399375105820974944592307816406
 REGIMES = [(name, r) for name, system in systems.all_systems().items() for r in system.regimes]
 
 
-def solve(formula: str, p: Any, q: Any, time: Any, digits: int = 30, **parameters: Any) -> Solution:
+def solve(
+    formula: str, p: Any, q: Any, time: Any, digits: int = 30, **parameters: Any
+) -> ExactSolution:
     hamiltonian = Hamiltonian.parse(formula, parameters)
     p, q, time = Fraction(p), Fraction(q), Fraction(time)
     return exact_solution(hamiltonian, p=p, q=q, time=time, digits=digits)
@@ -134,7 +136,7 @@ def test_a_known_flow_is_recognised_in_other_words(formula: str, system: str) ->
     assert closed_form(hamiltonian, Fraction(1, 3), Fraction(1, 2)) is not None
     found = solve(formula, "1/3", "1/2", "7/5", 30)
     assert "closed form" in found.method
-    flow = Flow(canonical_field(hamiltonian)[0], 35)
+    flow = NumericalFlow(canonical_field(hamiltonian)[0], 35)
     z = flow.follow((flow.number(Fraction(1, 3)), flow.number(Fraction(1, 2))), Fraction(7, 5))
     for x, y in zip((found.p, found.q), map(flow.arithmetic.exact, z), strict=True):
         assert abs(x - y) < Fraction(1, 10**28)
@@ -189,7 +191,7 @@ def test_a_blow_up_is_an_error_that_names_its_time(formula: str, p: Any, q: Any,
     assert where(formula, p, q, told * Fraction(99, 100)) is None
     assert abs(solve(formula, p, q, told * Fraction(999, 1000), 10).q) > 20
     hamiltonian = Hamiltonian.parse(formula)
-    flow = Flow(canonical_field(hamiltonian)[0], 20)
+    flow = NumericalFlow(canonical_field(hamiltonian)[0], 20)
     with pytest.raises(NoFlowError, match=r"at about t = "):
         flow.follow((flow.number(Fraction(p)), flow.number(Fraction(q))), told * Fraction(101, 100))
 
@@ -299,11 +301,11 @@ def test_a_numerical_flow_that_is_cut_short_is_not_an_answer(
 ) -> None:
     """The control of the two flows' agreement: a step too long by 10⁻²⁵ at the lower precision."""
 
-    class Wrong(Flow):
+    class Wrong(NumericalFlow):
         def follow(self, z: Any, time: Fraction, most_steps: int = 1000) -> Any:
             off = Fraction(1) + Fraction(self.arithmetic.bits, 10**27)
             return super().follow(z, time * off, most_steps)
 
-    monkeypatch.setattr(solution_module, "Flow", Wrong)
+    monkeypatch.setattr(solution_module, "NumericalFlow", Wrong)
     with pytest.raises(NoFlowError, match="digits asked for are lost"):
         solve("p**2/2 + q**6", 1, 1, 1, 30)

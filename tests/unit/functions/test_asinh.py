@@ -13,18 +13,18 @@ from verify import arithmetic
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import BALLS
 from verify.algebra.formula import parse
-from verify.algebra.where_positive import sign_everywhere
+from verify.algebra.positivity import sign_everywhere
 from verify.arithmetic.compiled import native
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.functions import copy_function
+from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.trace import Tape
+from verify.pages.markdown.inline_text import tex
 from verify.pages.markdown.markup import tree
-from verify.pages.markdown.mathml_to_tex import tex
 from verify.pages.text import mathml
-from verify.proof.order import prove
-from verify.reference.check.tape import Tape as CheckersTape
-from verify.reference.check.taylor import Expansion
-from verify.runs.run import run
+from verify.proof.order_for_one_h import prove
+from verify.reference.check.tape import FormulaTape as CheckersTape
+from verify.reference.check.taylor import TapeExpansion
+from verify.runs.requested_run import run
 from verify.schemes import export, get
 from verify.schemes.export.program import program_of
 from verify.verdict import Verdict
@@ -160,7 +160,7 @@ def test_it_is_exported(language: str) -> None:
 def test_the_checker_of_reference_data_has_it_by_its_own_rule() -> None:
     checker = CheckersTape({})
     node = checker.diff(checker.read("asinh(q)**2"), "q")
-    expansion = Expansion(checker, [node])
+    expansion = TapeExpansion(checker, [node])
     expansion.begin(_balls("0", "-7/3", "0"))
     expected = 2 * math.asinh(-7 / 3) / math.hypot(1, 7 / 3)
     assert abs(float(expansion.value(node)) - expected) < 1e-14

@@ -18,11 +18,11 @@ from tests.helpers.programs.judged import judged
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.foreign.called import step_of_library
+from verify.integrators.foreign.foreign_function import step_of_library
 from verify.integrators.measures.survey import Request, places_of_field
-from verify.integrators.places.units import Field, units_of
+from verify.integrators.places.units import FloatField, units_of
 from verify.integrators.results import Claims, Finding
-from verify.integrators.user_code.number_type import DOUBLE
+from verify.integrators.user_code.user_map import DOUBLE
 
 BOTH = Claims(order=2, symplectic=True)
 
@@ -80,7 +80,7 @@ def test_a_body_near_the_speed_of_light_has_a_unit_of_p_and_one_of_q_by_it(speed
     found = judged(step, BOTH, hamiltonian=energy)
     assert found.convergence_order == 2, found.reason
     assert found.symplectic
-    places = places_of_field(Field(Hamiltonian.parse(energy)), moving=False)
+    places = places_of_field(FloatField(Hamiltonian.parse(energy)), moving=False)
     assert max(abs(x.z[0]) for x in places) < 10 * speed
     wrong = judged(step, BOTH, hamiltonian=energy.replace("+ q**2", "+ 1.001*q**2"))
     assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0)
@@ -128,7 +128,7 @@ def test_every_scale_of_h_is_looked_at(
      "p**2/2 + (1 - exp(-q))**2", "p**2/2 + q**2/2 + q**4/4", "p**2/2 - exp(-q)/q"],
 )  # fmt: skip
 def test_where_numbers_end_or_a_force_dies_out_is_no_scale_of_its_own(energy: str) -> None:
-    scales, _ = units_of(Field(Hamiltonian.parse(energy)))
+    scales, _ = units_of(FloatField(Hamiltonian.parse(energy)))
     assert len(scales) == 1
     assert all(1 / 10 <= x <= 10 for x in scales[0])
 

@@ -17,7 +17,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.survey import Request
 from verify.integrators.results import Claims
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 
 Function = Callable[..., Any]

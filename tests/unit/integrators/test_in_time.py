@@ -9,7 +9,7 @@ import pytest
 
 import verify
 from verify.errors import InputError
-from verify.flows.extrapolation import Flow
+from verify.flows.extrapolation import NumericalFlow
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
@@ -227,7 +227,7 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
     assert f"t = {example.t}" in str(example)
     gap = float(example.found)
     at = [float(x) for x in (*example.z.values(), example.t, example.h)]
-    flow = Flow(canonical_field(Hamiltonian.parse(DRIVEN))[0], 20)
+    flow = NumericalFlow(canonical_field(Hamiltonian.parse(DRIVEN))[0], 20)
     end = flow.advance(
         tuple(map(flow.number, (*example.z.values(), example.t))), flow.number(example.h)
     )

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
-from verify.integrators.user_code.repeated import changed_names, read_kept_state
+from verify.integrators.user_code.repetition import changed_names, read_kept_state
 
 
 @pytest.fixture(autouse=True)

@@ -6,7 +6,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from verify.integrators.probes.agreement import _evaluate_node
+from verify.integrators.measures.agreement import _evaluate_node
 
 MP = mpmath.mp.clone()
 MP.dps = 40

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
+from verify.integrators.user_code.faults import outcome, outcomes_elsewhere
 
 State = tuple[float, float]
 STATES: list[State] = [(0.1 * k, 1.0) for k in range(5)]

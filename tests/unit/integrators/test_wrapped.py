@@ -13,7 +13,7 @@ from tests.end_to_end.test_command_line import here
 from tests.helpers.programs import user_steps
 from tests.helpers.programs.judged import judged as found_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.places.wrapped import periods_of
+from verify.integrators.places.wrap_periods import periods_of
 from verify.integrators.results import Claims
 from verify.verdict import Verdict
 

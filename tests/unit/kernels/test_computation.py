@@ -1,6 +1,7 @@
 """What is made once and shared: programs, what is tried in them, and what bounds derivatives."""
 
 from collections.abc import Mapping
+from copy import copy
 from fractions import Fraction
 from itertools import permutations
 
@@ -19,8 +20,9 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.statements import EXTREMES, TANGENT
-from verify.kernels.step.computation import Observed, computation_of, step_map_of
-from verify.kernels.step.program import Evaluator, Program, _nest
+from verify.kernels.step.computation import StepRequest, computation_of, step_map_of
+from verify.kernels.step.evaluator import Evaluator, _nest
+from verify.kernels.step.operations import StepProgram
 from verify.scenes import observables
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
@@ -34,7 +36,7 @@ EXPLICIT = ["lie1", "lie2", "lie3"]
 # -- trials ---------------------------------------------------------------------------------------
 
 
-def written(program: Program) -> tuple[object, ...]:
+def written(program: StepProgram) -> tuple[object, ...]:
     """All that a program is."""
     lists = [*program.ops], [*program.static], [*program.depth], [*program.loops]
     return (*lists, program.cost, dict(program._index_of), dict(program._special))
@@ -47,8 +49,8 @@ def test_what_is_taken_back_leaves_nothing_and_is_put_back_as_it_was(
 ) -> None:
     program, _, evaluator, made = program_of(pipelined, one, two)
     elements: list[Poly] = [*made]
-    empty, longer = written(Program()), written(program)
-    tail = program.cut(Program().mark())
+    empty, longer = written(StepProgram()), written(program)
+    tail = program.cut(StepProgram().mark())
     assert written(program) == empty
     program.put_back(tail)
     assert written(program) == longer
@@ -60,7 +62,7 @@ def test_what_is_taken_back_leaves_nothing_and_is_put_back_as_it_was(
 
 
 def test_a_constant_that_is_taken_back_is_written_anew() -> None:
-    program = Program()
+    program = StepProgram()
     x, mark = program.input("p", static=False), program.mark()
     one = program.constant(Fraction(1))
     assert program.mul(x, one) == x
@@ -71,7 +73,7 @@ def test_a_constant_that_is_taken_back_is_written_anew() -> None:
 
 
 def test_what_is_live_is_found_anew_after_something_was_taken_back() -> None:
-    program = Program()
+    program = StepProgram()
     x, y = (program.input(name, static=False) for name in STATE)
     mark = program.mark()
     first = program.add(x, y)
@@ -82,6 +84,12 @@ def test_what_is_live_is_found_anew_after_something_was_taken_back() -> None:
     assert program.live([second]) == [x, second]
 
 
+def copied(evaluator: Evaluator) -> Evaluator:
+    other = copy(evaluator)
+    other.program, other._index_of = evaluator.program.copy(), dict(evaluator._index_of)
+    return other
+
+
 @drawn(60)
 @given(st.booleans(), polynomials, polynomials)
 def test_a_copy_grows_on_its_own(pipelined: bool, one: Polynomial, two: Polynomial) -> None:
@@ -89,7 +97,7 @@ def test_a_copy_grows_on_its_own(pipelined: bool, one: Polynomial, two: Polynomi
     x: Poly
     y: Poly
     x, y = made
-    before, other = written(program), evaluator.copy()
+    before, other = written(program), copied(evaluator)
     assert written(other.program) == before
     ours, theirs = x * x + y, other.evaluate(x * x + y)
     assert written(program) == before
@@ -107,14 +115,14 @@ def test_no_other_way_to_sum_a_polynomial_is_cheaper(
     found = rank(program, index, pipelined)
     for order in permutations(range(len(STATE))):
         for name in ("_horner", "_estrin"):
-            own = Program()
+            own = StepProgram()
             inputs = {n: own.input(n, static=n not in STATE) for n in VARIABLES}
             trial = Evaluator(own, evaluator.ring, inputs, pipelined)
             result = in_order(trial, element, order, name)
             assert found <= rank(own, result, pipelined), (order, name)
 
 
-def rank(program: Program, index: int, pipelined: bool) -> tuple[int, int]:
+def rank(program: StepProgram, index: int, pipelined: bool) -> tuple[int, int]:
     costs = program.depth[index], program.cost
     return costs if pipelined else (costs[1], costs[0])
 
@@ -156,7 +164,7 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
 
 def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
-    asked = Observed(pipelined=False, scaled=False, tangent=False, needs=frozenset({"delta_j"}))
+    asked = StepRequest(pipelined=False, scaled=False, tangent=False, needs=frozenset({"delta_j"}))
     one, two = (build(TaylorSeries(2), MIXED) for _ in range(2))
     assert computation_of(one, asked) is computation_of(one, asked)
     assert computation_of(one, asked) is not computation_of(two, asked)

@@ -10,7 +10,7 @@ from tests.helpers.known_areas import DUFFING, PENDULUM
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import LeftRangeError, PointMap
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 H, N = Fraction(1, 20), 40
 

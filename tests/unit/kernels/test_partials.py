@@ -6,11 +6,12 @@ from fractions import Fraction
 import flint
 import pytest
 
-from verify.kernels.step.program import Op, Program
-from verify.kernels.step.program_algebra import eliminate
+from verify.kernels.step.kinds import Op
+from verify.kernels.step.matrix_operations import eliminate
+from verify.kernels.step.operations import StepProgram
 
 
-def run(program: Program, inputs: dict[str, Fraction]) -> list[Fraction]:
+def run(program: StepProgram, inputs: dict[str, Fraction]) -> list[Fraction]:
     values: list[Fraction] = []
 
     def made(op: Op) -> Fraction:
@@ -40,7 +41,7 @@ def run(program: Program, inputs: dict[str, Fraction]) -> list[Fraction]:
 @pytest.mark.parametrize("size", [1, 2, 3, 4])
 @pytest.mark.parametrize("seed", range(3))
 def test_the_solution_is_that_of_the_system(size: int, seed: int) -> None:
-    draw, program = random.Random(f"{size} {seed}"), Program()  # noqa: S311 - no secret
+    draw, program = random.Random(f"{size} {seed}"), StepProgram()  # noqa: S311 - no secret
     unused = program.input("unused", static=False)  # so that no value of ours has the index 0
     assert unused == 0
 

@@ -24,8 +24,9 @@ from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.statements import EXTREMES, TANGENT
+from verify.kernels.step.evaluator import Evaluator
 from verify.kernels.step.kinds import Root
-from verify.kernels.step.program import Evaluator, Program
+from verify.kernels.step.operations import StepProgram
 from verify.scenes import observables
 
 VARIABLES = ("p", "q", "h", "delta")
@@ -50,7 +51,7 @@ def value_of(polynomial: Polynomial, at: Mapping[str, Fraction]) -> Fraction:
     )  # fmt: skip
 
 
-def results(program: Program, at: Mapping[str, Fraction]) -> list[Fraction]:
+def results(program: StepProgram, at: Mapping[str, Fraction]) -> list[Fraction]:
     """The value of every operation, by running them in order."""
     done: list[Fraction] = []
     binary = {"add": add, "sub": sub, "mul": mul}
@@ -69,7 +70,7 @@ def results(program: Program, at: Mapping[str, Fraction]) -> list[Fraction]:
 
 def program_of(
     pipelined: bool, *polynomials: Polynomial
-) -> tuple[Program, list[int], Evaluator, list[object]]:
+) -> tuple[StepProgram, list[int], Evaluator, list[object]]:
     """A program for the polynomials; p and q vary, h and delta are fixed in the loop."""
     symbols = [symbol(name) for name in VARIABLES]
     expressions = [
@@ -83,7 +84,7 @@ def program_of(
         for polynomial in polynomials
     ]
     ring, elements = embed(expressions, VARIABLES)
-    program = Program()
+    program = StepProgram()
     inputs = {n: program.input(n, static=n not in STATE) for n in VARIABLES}
     evaluator = Evaluator(program, ring, inputs, pipelined)
     return program, [evaluator.evaluate(x) for x in elements], evaluator, elements
@@ -118,7 +119,7 @@ def test_no_operation_occurs_twice(pipelined: bool, one: Polynomial, two: Polyno
 
 
 def test_a_sum_and_a_product_are_one_operation_in_either_order() -> None:
-    program = Program()
+    program = StepProgram()
     x, y = (program.input(n, static=False) for n in STATE)
     assert program.add(x, y) == program.add(y, x)
     assert program.mul(x, y) == program.mul(y, x)
@@ -150,7 +151,7 @@ def test_what_is_static_is_what_does_not_depend_on_p_and_q(
 
 @pytest.mark.parametrize("n", range(65))
 def test_a_power_is_right_and_takes_few_products(n: int) -> None:
-    program = Program()
+    program = StepProgram()
     x = program.input("p", static=False)
     index = program.power(x, n)
     assert results(program, {"p": Fraction(-3, 2)})[index] == Fraction(-3, 2) ** n
@@ -254,7 +255,7 @@ def test_where_area_is_preserved_nothing_of_delta_j_is_computed() -> None:
 
 def test_a_roots_degree_is_no_operand() -> None:
     """It was taken for one: the root of degree 1 of the results number x and 2."""
-    program = Program()
+    program = StepProgram()
     x = program.input("x", static=False)
     with pytest.raises(TypeError):
         program.call("root", x, 2)  # type: ignore[call-arg, arg-type]

@@ -14,10 +14,10 @@ from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.systems import mpfr
 from verify.functions import in_rings
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import Writer
-from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
+from verify.kernels.kernel import KernelWriter
+from verify.kernels.rounding import PRECISION, RoundedValue, analyse, rounding_of
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Program
+from verify.kernels.step.operations import StepProgram
 from verify.schemes import get
 
 BITS = 24
@@ -25,11 +25,11 @@ COARSE, FINE = mpfr.at_bits(BITS), mpfr.at_bits(400)
 Box = dict[str, tuple[Fraction, Fraction]]
 
 
-def counted(program: Program, root: int, box: Box) -> Fraction | None:
+def counted(program: StepProgram, root: int, box: Box) -> Fraction | None:
     """The bound of the value's error in COARSE, for exact inputs all over the box."""
     with flint.ctx.workprec(PRECISION):
         inputs = {
-            name: Rounded(rational_ball(low).union(rational_ball(high)), flint.arb(0))
+            name: RoundedValue(rational_ball(low).union(rational_ball(high)), flint.arb(0))
             for name, (low, high) in box.items()
         }
         live = Lowering(program, ()).live([root])
@@ -37,7 +37,7 @@ def counted(program: Program, root: int, box: Box) -> Fraction | None:
         return None if found is None else bounds(found[root].error)[1]
 
 
-def value(program: Program, root: int, at: dict[str, Fraction], made: Any) -> Fraction:
+def value(program: StepProgram, root: int, at: dict[str, Fraction], made: Any) -> Fraction:
     """The program's value at a point in that arithmetic, operation by operation."""
     found: list[Any] = []
     f = made.functions
@@ -73,9 +73,9 @@ def binary(low: int, high: int) -> st.SearchStrategy[Fraction]:
     return st.integers(low * 2**12, high * 2**12).map(lambda n: Fraction(n, 2**12))
 
 
-def delta_j(text: str) -> tuple[Program, int]:
+def delta_j(text: str) -> tuple[StepProgram, int]:
     step_map = get("lie2").step_map(Hamiltonian.parse(text))
-    writer = Writer(step_map, COARSE, frozenset({"lambda"}), compensated=False)
+    writer = KernelWriter(step_map, COARSE, frozenset({"lambda"}), compensated=False)
     return writer.program, writer.computation.outputs["dj"]
 
 
@@ -97,7 +97,7 @@ def test_the_bound_of_a_delta_j_holds_all_over_the_box(
 FUNCTIONS = [*in_rings(), "inverse", "root"]
 
 
-def applied(program: Program, kind: str, x: int, degree: int) -> int:
+def applied(program: StepProgram, kind: str, x: int, degree: int) -> int:
     """A function's value in the program; `degree`: of a root."""
     if kind == "root":
         return program.root(x, degree)
@@ -111,7 +111,7 @@ def test_the_bound_of_every_function_holds(
     kind: str, x: Fraction, y: Fraction, width: Fraction, sign: int
 ) -> None:
     """f(x (1/3 + y)): an argument that is rounded three times before the function is."""
-    program = Program()
+    program = StepProgram()
     inputs = [program.input(name, static=False) for name in "xy"]
     third = program.constant(Fraction(1, 3))
     argument = program.mul(inputs[0], program.add(third, inputs[1]))
@@ -141,10 +141,10 @@ def test_what_an_argument_is_off_is_magnified_by_the_functions_slope(
     if kind in ("log", "root") and middle < 0:
         return
     off = abs(middle) * Fraction(share)
-    program = Program()
+    program = StepProgram()
     root = applied(program, kind, program.input("x", static=False), 3)
     with flint.ctx.workprec(PRECISION):
-        given = {"x": Rounded(rational_ball(middle), rational_ball(off))}
+        given = {"x": RoundedValue(rational_ball(middle), rational_ball(off))}
         found = analyse(program, [0, root], given, lambda *_: flint.arb(0))
         assert found is not None
         bound = bounds(found[root].error)[1]
@@ -158,7 +158,7 @@ def test_what_an_argument_is_off_is_magnified_by_the_functions_slope(
 
 
 def test_there_is_no_bound_where_the_value_is_not_defined_all_over_the_box() -> None:
-    program = Program()
+    program = StepProgram()
     x = program.input("x", static=False)
     crossing: Box = {"x": (Fraction(-1), Fraction(1))}
     for kind in ("inverse", "log", "root"):
@@ -171,7 +171,7 @@ def test_there_is_no_bound_where_the_value_is_not_defined_all_over_the_box() -> 
 @pytest.mark.parametrize("first", [True, False], ids=["first", "second"])
 def test_a_factor_carries_the_others_error_whichever_comes_first(first: bool) -> None:
     """x − 1/3 next to 1/3 is little but the constant's rounding, and a product keeps that."""
-    program = Program()
+    program = StepProgram()
     if first:
         z = program.input("z", static=False)
     x = program.input("x", static=False)

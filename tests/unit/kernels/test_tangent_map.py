@@ -23,8 +23,8 @@ from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.runs.a_posteriori import square_of_norm
-from verify.runs.step_rounding import StepRounding
+from verify.runs.matrix_growth import square_of_norm
+from verify.runs.step_bounds import StepRounding
 
 ORBITS = {
     "duffing-lie2": case("p**2/2 + q**2/2 + 7*q**4/12", "lie2", "3/2", "1/3", "1/70", 60),

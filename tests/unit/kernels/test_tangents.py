@@ -23,9 +23,8 @@ from tests.helpers.stepping.steps_in_degrees import (
 )
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step import newton
-from verify.kernels.step.computation import Observed, computation_of
-from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.computation import StepRequest, computation_of
+from verify.kernels.step.lowering import Lowering, newton_constants
 from verify.schemes import get
 
 PLANE = "p**2*(1 + q**2)/2 + q**4/4 + p*q/3"
@@ -38,7 +37,7 @@ ENERGIES: dict[str, Callable[..., Any]] = {
 }
 POINT = [Fraction(n, d) for n, d in ((3, 7), (-2, 5), (5, 8), (4, 9))]
 H, DIGITS, ITERATIONS = Fraction(1, 50), 60, 60
-ASKED = Observed(pipelined=False, scaled=False, tangent=False, slopes=True)
+ASKED = StepRequest(pipelined=False, scaled=False, tangent=False, slopes=True)
 
 
 def number(x: Fraction) -> Any:
@@ -88,7 +87,7 @@ def slopes_of(text: str, name: str) -> list[Fraction]:
     scope = {
         **arithmetic.functions,
         **lowering.named_constants(arithmetic.number),
-        **newton.constants(arithmetic.bits, arithmetic.number),
+        **newton_constants(arithmetic.bits, arithmetic.number),
     }
     function = arithmetic.compile("\n    ".join(lines) + "\n", "at", scope)
     with arithmetic.context():

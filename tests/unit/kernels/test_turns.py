@@ -9,13 +9,13 @@ import pytest
 from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 from verify.kernels import run_inputs as module
 from verify.kernels.many_points import PointMap
 from verify.kernels.run_inputs import Turns, turns_of
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.run import RunResult
 
 DRIVEN = Hamiltonian.parse("p**2/2 - (1 + cos(5*t)/10)*cos(q)")

@@ -9,7 +9,7 @@ import pytest
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.observables import by_name
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.run import RunResult
 
 H = Fraction(1, 20)

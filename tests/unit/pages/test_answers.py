@@ -3,19 +3,19 @@
 from typing import Any
 
 from tests.unit.pages.test_page import claim, proof, real, report, scene
-from verify.pages.answers import Answer, answer_questions
+from verify.pages.answers import RefereeQuestion, answer_questions
 from verify.pages.page import page_view, render
 from verify.prose import read_prose
-from verify.scenes.causes import Cause
+from verify.scenes.paper_sections import Cause
+from verify.scenes.results.claim import statements_of
 from verify.scenes.results.report import Report
-from verify.scenes.results.statement import statements_of
 from verify.verdict import Verdict
 
 P, R = Verdict.PROVED, Verdict.REFUTED
 KEEPS = {"scheme": "symplectic-euler", "area_preserving": True, "order": None, "leading": "0"}
 
 
-def answered(made: Report) -> dict[str, Answer]:
+def answered(made: Report) -> dict[str, RefereeQuestion]:
     found = answer_questions(made, page_view(made).claims)
     return {each.question: each for each in found}
 

@@ -7,9 +7,9 @@ import pytest
 
 from tests.unit.pages.test_page import claim, page_of, proof, report, run, scene
 from verify.pages.page import page_view, render
-from verify.pages.sections.claim_view import Anchors, groups
+from verify.pages.sections.page_contents import Anchors, groups
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.statement import statements_of
+from verify.scenes.results.claim import statements_of
 from verify.verdict import Verdict
 
 # -- claims by section ----------------------------------------------------------------------------

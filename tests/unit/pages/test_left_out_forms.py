@@ -5,7 +5,7 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from verify.claims.report import make_report
+from verify.claims.verdicts import make_report
 from verify.commands.main import cli
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

@@ -13,17 +13,17 @@ from typing import Any
 import pytest
 
 from tests.helpers.pages.imported_modules import imported_by
-from verify.claims.claim import Claim
+from verify.claims.base_claim import Claim
 from verify.claims.kinds.monotone import MonotoneClaim
-from verify.claims.kinds.table import TableClaim
-from verify.claims.report import make_report
+from verify.claims.kinds.table import PrintedTableClaim
+from verify.claims.verdicts import make_report
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.pages.page import TEMPLATES, render, write
 from verify.pages.text.typography import number
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import Provenance, Report, SceneResult, read_report
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import scene_from
@@ -109,7 +109,7 @@ def real() -> Report:
         "duffing",
     )  # fmt: skip
     claims: list[Claim] = [
-        TableClaim.model_validate(
+        PrintedTableClaim.model_validate(
             common | {"id": "table-9", "kind": "table", "step_sizes": ["0.01", "0.02"],
                       "printed": ["-1.3010", "-1.0000"]}
         ),
@@ -269,7 +269,9 @@ def test_what_a_report_lacks_is_not_shown() -> None:
 
 
 def test_a_proof_is_shown_without_matplotlib() -> None:
-    assert not {"matplotlib", "verify.pages.figures.figures"} & imported_by("page_of('proof only')")
+    assert not {"matplotlib", "verify.pages.figures.step_size_figures"} & imported_by(
+        "page_of('proof only')"
+    )
 
 
 # -- what the page says ---------------------------------------------------------------------------

@@ -8,8 +8,8 @@ import pytest
 
 from tests.helpers.planted.theorem_controls import refused
 from verify.algebra.symbols import P, Q
-from verify.papers.checks import matrices, sums, triangle
-from verify.papers.checks.check import Check, same
+from verify.papers import elementary_identities
+from verify.papers.argument import Check, same
 from verify.papers.lie_derivative_scheme import (
     determinant,
     developables,
@@ -19,8 +19,8 @@ from verify.papers.lie_derivative_scheme import (
     two_norm,
 )
 from verify.papers.lie_derivative_scheme.convergence import _length_grows
-from verify.papers.lie_derivative_scheme.criteria import area, connections
-from verify.papers.lie_derivative_scheme.criteria_examples import (
+from verify.papers.lie_derivative_scheme.criteria import area_preservation, connections
+from verify.papers.lie_derivative_scheme.examples import (
     COMPENSATED,
     FRICTION,
     NOT_UNIFORM,
@@ -31,19 +31,19 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
 )
 
 PLANTED: list[tuple[Callable[..., Check], Any]] = [
-    (triangle.triangle, 0),
-    (triangle.triangle, -1),
-    (triangle.difference, "ac"),
-    (triangle.difference, "bc"),
-    (matrices.product_of_determinants, -1),
-    (matrices.derivative_of_the_field, 1),
-    (matrices.derivative_at_rest, 2),
-    (matrices.stretching, 2),
-    (sums.geometric, 1),
-    (sums.bound_of_eq_11, 2),
-    (sums.squares_of_times, 2),
-    (sums.mean_of_fourth_powers, 4),
-    (sums.compensated_changes, 1),
+    (elementary_identities.triangle, 0),
+    (elementary_identities.triangle, -1),
+    (elementary_identities.difference, "ac"),
+    (elementary_identities.difference, "bc"),
+    (elementary_identities.product_of_determinants, -1),
+    (elementary_identities.derivative_of_the_field, 1),
+    (elementary_identities.derivative_at_rest, 2),
+    (elementary_identities.stretching, 2),
+    (elementary_identities.geometric, 1),
+    (elementary_identities.bound_of_eq_11, 2),
+    (elementary_identities.squares_of_times, 2),
+    (elementary_identities.mean_of_fourth_powers, 4),
+    (elementary_identities.compensated_changes, 1),
     (matrix_vector.euler, 1),
     (matrix_vector.stays_linear, 1),
     (developables.contraction, 2),
@@ -89,7 +89,7 @@ def test_an_h_with_a_second_derivative_does_not_decouple_the_components() -> Non
 
 
 def test_an_h_whose_step_has_no_such_inverse_is_no_example_of_criterion_1() -> None:
-    assert refused(area.criterion_1("p**2*q"))
+    assert refused(area_preservation.criterion_1("p**2*q"))
 
 
 def test_a_run_that_does_not_cancel_is_no_example_of_a_weaker_criterion() -> None:

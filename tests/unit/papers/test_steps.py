@@ -5,9 +5,8 @@ import re
 import pytest
 
 from verify.papers import check_theorem, names
-from verify.papers.argument import Step, checks_of, proof, step
-from verify.papers.checks.check import BALLS, NUMBERS, Check
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.papers.argument import BALLS, NUMBERS, Check, Step, checks_of, proof, step
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.prose import Display, Formula
 from verify.verdict import Verdict
 

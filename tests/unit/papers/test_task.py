@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.judging import add_claims, judge_claim
 from verify.claims.kinds.theorem import TheoremClaim
+from verify.claims.verdicts import add_claims, judge_claim
 from verify.execution.execute import Store, execute
-from verify.execution.keeping import NOTHING
+from verify.execution.keeper import NOTHING
 from verify.execution.plan import Plan
 from verify.papers import check_theorem
 from verify.papers.argument import Argument

@@ -8,12 +8,12 @@ import pytest
 import sympy
 
 from verify.algebra.formula import parse, symbol
-from verify.algebra.series.jets import JetsInDegrees
+from verify.algebra.jets import JetsInDegrees
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof import every_by_series, every_proof
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof import proof_for_every_h, series_for_every_h
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 from verify.schemes.steps.two_form import TwoForm
 
@@ -60,7 +60,7 @@ CASES = [
 @pytest.mark.parametrize(("scheme", "formula", "timed"), CASES)
 def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     hamiltonian = Hamiltonian.parse(formula)
-    every = prove_every(scheme, degrees=hamiltonian.degrees, timed=timed)
+    every = prove_for_every_h(scheme, degrees=hamiltonian.degrees, timed=timed)
     one = prove(get(scheme).step_map(hamiltonian), get(scheme))
     assert (every.verdict, every.order, every.convergence_order) == (
         one.verdict, one.order, one.convergence_order)  # fmt: skip
@@ -79,11 +79,11 @@ def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
 def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_one(
     scheme: str, has_formula: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    form = prove_every(scheme, degrees=2).form
+    form = prove_for_every_h(scheme, degrees=2).form
     assert form is not None
     for most in (form.length, form.length - 1):
-        monkeypatch.setattr(every_proof, "MOST_TERMS", most)
-        found = prove_every(scheme, degrees=2)
+        monkeypatch.setattr(proof_for_every_h, "MOST_TERMS", most)
+        found = prove_for_every_h(scheme, degrees=2)
         assert bool(found.formula) is has_formula
         long = has_formula and most < form.length
         assert found.leading == (found.formula if long else form.text)
@@ -93,7 +93,7 @@ def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_on
 @pytest.mark.parametrize("scheme", ["lie1", "lie2", "lie3", "lie4", "rk4", "gauss4", "ruth3",
                                     "implicit-midpoint", "blanes-moan4"])  # fmt: skip
 def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str) -> None:
-    plane, more = prove_every(scheme), prove_every(scheme, degrees=2)
+    plane, more = prove_for_every_h(scheme), prove_for_every_h(scheme, degrees=2)
     assert (more.verdict, more.order) == (plane.verdict, plane.order)
     assert more.symplectic == plane.area_preserving
     assert more.convergence_order == plane.convergence_order
@@ -103,7 +103,7 @@ def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str) -> None:
 
 @pytest.mark.parametrize(("scheme", "degrees"), [("lie4", 2), ("lie3", 2), ("lie2", 3)])
 def test_telescoping_is_checked_identity_by_identity(scheme: str, degrees: int) -> None:
-    found = prove_every(scheme, degrees=degrees)
+    found = prove_for_every_h(scheme, degrees=degrees)
     even = get(scheme).order % 2 == 0
     assert found.telescopes is even
     said = " ".join(map(str, found.checked))
@@ -113,7 +113,7 @@ def test_telescoping_is_checked_identity_by_identity(scheme: str, degrees: int) 
 
 
 def test_a_wrong_potential_is_not_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = every_by_series.potential_of_lie
+    right = series_for_every_h.potential_of_lie
 
     def wrong(flow: Any, eta: int) -> TwoForm:
         form = right(flow, eta)
@@ -121,25 +121,25 @@ def test_a_wrong_potential_is_not_accepted(monkeypatch: pytest.MonkeyPatch) -> N
             form.ring, form.names, lambda a, b: form.entry(a, b) * (2 - (a == 1))
         )
 
-    monkeypatch.setattr(every_by_series, "potential_of_lie", wrong)
-    assert prove_every("lie2", degrees=2).telescopes is None
+    monkeypatch.setattr(series_for_every_h, "potential_of_lie", wrong)
+    assert prove_for_every_h("lie2", degrees=2).telescopes is None
 
 
 def test_a_wrong_clock_is_refuted_and_symplectic_all_the_same() -> None:
-    found = prove_every("stormer-verlet, clock frozen", degrees=3, timed=True)
+    found = prove_for_every_h("stormer-verlet, clock frozen", degrees=3, timed=True)
     assert (found.verdict, found.symplectic, found.convergence_order) == ("REFUTED", True, 1)
-    assert prove_every("stormer-verlet", degrees=3, timed=True).verdict == "PROVED"
+    assert prove_for_every_h("stormer-verlet", degrees=3, timed=True).verdict == "PROVED"
 
 
 def test_a_splitting_that_claims_too_much_is_refuted() -> None:
-    found = prove_every("kick 1/2; drift 1; kick 1/2; order 3", degrees=4)
+    found = prove_for_every_h("kick 1/2; drift 1; kick 1/2; order 3", degrees=4)
     assert (found.verdict, found.convergence_order) == ("REFUTED", 2)
 
 
 def test_for_which_h_it_is_said() -> None:
-    lie1 = prove_every("lie1", degrees=2)
+    lie1 = prove_for_every_h("lie1", degrees=2)
     assert lie1.quantifier == "every smooth H(p, q) in 2 degrees of freedom"
-    verlet = prove_every("stormer-verlet", degrees=3, timed=True)
+    verlet = prove_for_every_h("stormer-verlet", degrees=3, timed=True)
     assert "H = T(p, t) + V(q, t) in 3" in verlet.quantifier
 
 
@@ -155,7 +155,7 @@ def test_for_which_h_it_is_said() -> None:
 )
 def test_what_is_too_much_is_one_line(scheme: str, degrees: int, words: str) -> None:
     with pytest.raises((InputError, LimitError), match=words):
-        prove_every(scheme, degrees=degrees)
+        prove_for_every_h(scheme, degrees=degrees)
 
 
 def test_derivatives_of_h_are_what_sympy_finds() -> None:

@@ -7,21 +7,21 @@ import sympy
 
 from tests.helpers.lie_derivatives import lie_derivatives
 from verify import schemes
-from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import Jets, Poly
-from verify.claims.findings import Findings
+from verify.algebra.identities.polynomials import terms_of
+from verify.algebra.jets import Jets, Poly
+from verify.claims.base_claim import Findings
 from verify.claims.kinds import models
 from verify.errors import InputError
-from verify.hamiltonians.jet_flow import JetFlow
-from verify.proof import every
-from verify.proof.certificates.every import certify_every
-from verify.proof.every import prove_every
+from verify.hamiltonians.canonical_field import JetField
+from verify.proof import order_for_every_h
+from verify.proof.certificates.certification import certify_for_every_h
+from verify.proof.order_for_every_h import prove_for_every_h
 from verify.verdict import Verdict
 
 
 @pytest.mark.parametrize("eta", range(1, 7))
 def test_lie_for_every_h_in_time(eta: int) -> None:
-    found = prove_every(f"lie{eta}", timed=True)
+    found = prove_for_every_h(f"lie{eta}", timed=True)
     assert (found.verdict, found.order, found.convergence_order) == (Verdict.PROVED, eta + 1, eta)
     assert found.formula == f"-div(D^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
     assert found.telescopes is (eta % 2 == 0)
@@ -56,7 +56,7 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
     jets = Jets(4, timed=True)
     right = lie_derivatives(jets, "p", 2)
     monkeypatch.setattr(
-        JetFlow,
+        JetField,
         "derive",
         lambda self, x: sum(
             slope * self.ring.diff(x, name)
@@ -71,7 +71,7 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", [n for n in schemes.names() if schemes.get(n).needs_separable])
 def test_with_right_clocks_every_splitting_is_of_its_order(name: str) -> None:
-    found = prove_every(name, timed=True)
+    found = prove_for_every_h(name, timed=True)
     assert (found.verdict, found.area_preserving) == (Verdict.PROVED, True)
     assert found.convergence_order >= schemes.get(name).order
     assert found.quantifier == "every smooth H = T(p, t) + V(q, t)"
@@ -95,7 +95,7 @@ def test_wrong_clocks_are_refuted_with_their_condition_and_named(
 ) -> None:
     first, middle, last = (part.strip() for part in times.split(","))
     scheme = f"kick 1/2 {first}; drift 1 {middle}; kick 1/2 {last}; order 2"
-    found = prove_every(scheme, timed=True)
+    found = prove_for_every_h(scheme, timed=True)
     assert found.convergence_order == order
     if order == 2:
         assert found.verdict is Verdict.PROVED
@@ -107,7 +107,7 @@ def test_wrong_clocks_are_refuted_with_their_condition_and_named(
 
 
 def test_a_drifts_time_does_not_count_where_t_does_not_depend_on_it() -> None:
-    found = prove_every("kick 1/2 at 0; drift 1 at 7/3; kick 1/2 at 1; order 2", timed=True)
+    found = prove_for_every_h("kick 1/2 at 0; drift 1 at 7/3; kick 1/2 at 1; order 2", timed=True)
     assert (found.verdict, found.convergence_order) == (Verdict.REFUTED, 1)
     told = [str(line) for line in found.checked if "the map has order" in str(line)]
     assert told == [
@@ -117,7 +117,7 @@ def test_a_drifts_time_does_not_count_where_t_does_not_depend_on_it() -> None:
 
 def test_kicks_commute_and_conditions_of_kicks_alone_are_not_asked_for() -> None:
     """Of order 3, though K_1 and K_0 have another coefficient than in the exact flow."""
-    found = prove_every(
+    found = prove_for_every_h(
         "kick 7/24 at 0; drift 2/3; kick -1/12 at 0; kick 2/3 at 1/2; kick 1/6 at 1; drift -2/3; "
         "kick -1/24 at 0; drift 1; order 3",
         timed=True,
@@ -127,7 +127,7 @@ def test_kicks_commute_and_conditions_of_kicks_alone_are_not_asked_for() -> None
 
 @pytest.mark.parametrize("name", ["rk4", "explicit-midpoint", "implicit-midpoint", "gauss4"])
 def test_stages_at_their_times_keep_the_order_for_every_h(name: str) -> None:
-    found, claims = prove_every(name, timed=True), schemes.get(name)
+    found, claims = prove_for_every_h(name, timed=True), schemes.get(name)
     assert (found.verdict, found.convergence_order) == (Verdict.PROVED, claims.order)
     assert found.area_preserving is claims.area_preserving
     assert found.quantifier == "every smooth H(p, q, t)"
@@ -135,24 +135,24 @@ def test_stages_at_their_times_keep_the_order_for_every_h(name: str) -> None:
 
 def test_a_higher_claim_of_a_method_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
     claimed = replace(schemes.get("gauss4"), order=5)
-    monkeypatch.setattr(every, "get", lambda _: claimed)
-    found = prove_every("gauss4", timed=True)
+    monkeypatch.setattr(order_for_every_h, "get", lambda _: claimed)
+    found = prove_for_every_h("gauss4", timed=True)
     assert (found.verdict, found.convergence_order) == (Verdict.REFUTED, 4)
 
 
 def test_stages_one_after_the_other_are_proved_too() -> None:
-    found = prove_every("implicit-symplectic-euler", timed=True)
+    found = prove_for_every_h("implicit-symplectic-euler", timed=True)
     assert (found.verdict, found.area_preserving) == (Verdict.PROVED, True)
     assert found.quantifier == "every smooth H(p, q, t)"
 
 
 def test_other_schemes_are_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="up to lie8"):
-        prove_every("lie9", timed=True)
+        prove_for_every_h("lie9", timed=True)
     for_one = replace(schemes.get("rk4"), every_h=None)
-    monkeypatch.setattr(every, "get", lambda _: for_one)
+    monkeypatch.setattr(order_for_every_h, "get", lambda _: for_one)
     with pytest.raises(InputError, match="it cannot be proved for every H in t"):
-        prove_every("rk4", timed=True)
+        prove_for_every_h("rk4", timed=True)
 
 
 @pytest.mark.parametrize(("scheme", "order"), [("rk4", 5), ("explicit-midpoint", 3)])
@@ -160,16 +160,19 @@ def test_explicit_stages_have_the_order_that_the_prover_in_n_degrees_has(
     scheme: str, order: int
 ) -> None:
     """With the coefficient itself, which for an H without t is that of the proof without it."""
-    found, made = prove_every(scheme, timed=True), prove_every(scheme, degrees=2, timed=True)
+    found, made = (
+        prove_for_every_h(scheme, timed=True),
+        prove_for_every_h(scheme, degrees=2, timed=True),
+    )
     assert (found.verdict, found.order, found.area_preserving) == ("PROVED", order, False)
     assert (made.verdict, made.order, made.volume_order) == ("PROVED", order, order)
     assert (found.convergence_order, found.convergence_decided) == (order - 1, True)
     assert [c.holds for c in found.conditions].count(False) > 0
-    leading, without = map(sympy.sympify, (found.leading, prove_every(scheme).leading))
+    leading, without = map(sympy.sympify, (found.leading, prove_for_every_h(scheme).leading))
     of_t = [x for x in leading.free_symbols if x.name.endswith("t")]
     assert of_t
     assert sympy.expand(leading.subs(dict.fromkeys(of_t, 0)) - without) == 0
-    assert certify_every(found)
+    assert certify_for_every_h(found)
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,9 @@ from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import potential_of
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.verdict import Verdict
 
 DRIVEN = {

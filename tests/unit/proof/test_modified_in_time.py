@@ -10,9 +10,9 @@ from verify import schemes
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.plane.modified.equation import ModifiedEquation
-from verify.proof.plane.modified.one import modified_of
-from verify.runs.energy_drift import energy_drifts
+from verify.proof.plane.modified_equation import ModifiedEquation
+from verify.proof.plane.modified_for_one_h import modified_for_one_h
+from verify.runs.run_errors import energy_drifts
 from verify.schemes.maps.parts import parts_of
 from verify.verdict import Verdict
 
@@ -25,7 +25,7 @@ MIXED = "p**2/2 + p*q**2*sin(t) + q**2/2"
 
 def found(text: str, name: str, order: int = 4) -> ModifiedEquation:
     scheme = schemes.get(name)
-    return modified_of(scheme.step_map(Hamiltonian.parse(text)), scheme, order)
+    return modified_for_one_h(scheme.step_map(Hamiltonian.parse(text)), scheme, order)
 
 
 def stepped(text: str, name: str, z: list[mpmath.mpf], h: mpmath.mpf) -> list[mpmath.mpf]:

@@ -22,8 +22,8 @@ from tests.helpers.stepping.steps_in_degrees import (
 from verify.algebra.formula import parse, symbol
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes import get
 from verify.verdict import Verdict
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Proof, prove
+from verify.proof.order_for_one_h import Proof, prove
 from verify.proof.special_values import special_values
 from verify.schemes import get
 

@@ -7,7 +7,7 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane import potential
 from verify.proof.plane.potential import Potential, potential_of
 from verify.schemes import get

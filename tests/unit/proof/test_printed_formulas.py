@@ -5,13 +5,13 @@ from typing import Any
 import pytest
 
 from verify import schemes
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.kinds import models
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.plane.modified.one import modified_of
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.plane.modified_for_one_h import modified_for_one_h
+from verify.proof.proof_for_one_h import Proof
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 
@@ -95,15 +95,15 @@ def test_several_degrees() -> None:
 
 def test_a_modified_equation_takes_its_digits_for_what_they_are() -> None:
     scheme = schemes.get(ROTATION.format(a="0.041666666667", b="0.16666666667"))
-    found = modified_of(scheme.step_map(OSCILLATOR), scheme, 3)
+    found = modified_for_one_h(scheme.step_map(OSCILLATOR), scheme, 3)
     assert found.verdict in (Verdict.ENCLOSED, Verdict.MEASURED)
     half = schemes.get("p_next = p - 1.00000001*h*q; q_next = q + h*p_next")
-    assert modified_of(half.step_map(OSCILLATOR), half, 2).verdict in (
+    assert modified_for_one_h(half.step_map(OSCILLATOR), half, 2).verdict in (
         Verdict.ENCLOSED,
         Verdict.MEASURED,
     )
     wrong = schemes.get("p_next = p - 1.00001001*h*q; q_next = q + h*p_next")
-    assert modified_of(wrong.step_map(OSCILLATOR), wrong, 2).verdict is Verdict.REFUTED
+    assert modified_for_one_h(wrong.step_map(OSCILLATOR), wrong, 2).verdict is Verdict.REFUTED
 
 
 def claimed(kind: str, value: Any, scheme: str, **more: Any) -> Verdict:

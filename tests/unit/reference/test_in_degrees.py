@@ -15,14 +15,14 @@ from tests.helpers.constructed.reference import made, put, repaired
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
-from verify.reference.check.check import CheckResult, check
-from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import ColumnVerdict
-from verify.reference.compare.published import load
-from verify.reference.compare.submitted import has_degrees, read
-from verify.reference.make.make import PUBLISHED, data_of
+from verify.reference.check.folder_check import CheckResult, check
+from verify.reference.compare.comparison import TableComparison, compare
+from verify.reference.compare.published_data import load
+from verify.reference.compare.submitted_table import has_degrees, read
+from verify.reference.compare.table_agreement import ColumnVerdict
+from verify.reference.make.data_files import OF_DEGREES
+from verify.reference.make.data_folder import PUBLISHED, data_of
 from verify.reference.make.scene_plan import plan_references
-from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
 SCENES = {
@@ -272,7 +272,7 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
     return path
 
 
-def compared(folder: Path, table: Path, **given: str) -> Comparison:
+def compared(folder: Path, table: Path, **given: str) -> TableComparison:
     ours = load(folder, "heiles", planar=False)
     return compare(ours, read(table, ours, {"scheme": "lie2", **given}, {}))
 

@@ -31,10 +31,9 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step import tangent_map as tangent
 from verify.kernels.stepping import RunOutcome
-from verify.runs import step_rounding
-from verify.runs.a_posteriori import _Certificate, certify
-from verify.runs.derivatives import Derivatives
-from verify.runs.step_rounding import StepRounding
+from verify.runs import step_bounds
+from verify.runs.a_posteriori_bound import _Certificate, certify
+from verify.runs.step_bounds import StepDerivatives, StepRounding
 
 ZERO = flint.arb(0)
 
@@ -142,7 +141,7 @@ def free_products(patch: Patch) -> None:
         own = rounding_of(arithmetic)
         return lambda op, size: ZERO if op.kind == "mul" else own(op, size)
 
-    patch.setattr(step_rounding, "rounding_of", lying)
+    patch.setattr(step_bounds, "rounding_of", lying)
 
 
 def free_constants(patch: Patch) -> None:
@@ -152,7 +151,7 @@ def free_constants(patch: Patch) -> None:
         own = rounding_of(arithmetic)
         return lambda op, size: ZERO if op.kind == "const" else own(op, size)
 
-    patch.setattr(step_rounding, "rounding_of", lying)
+    patch.setattr(step_bounds, "rounding_of", lying)
 
 
 def exact_inputs(patch: Patch) -> None:
@@ -167,7 +166,7 @@ def exact_inputs(patch: Patch) -> None:
 
 def straight(patch: Patch) -> None:
     """The map has no second derivatives."""
-    patch.setattr(Derivatives, "second", lambda *_: ZERO)
+    patch.setattr(StepDerivatives, "second", lambda *_: ZERO)
 
 
 def narrow(patch: Patch) -> None:
@@ -178,7 +177,7 @@ def narrow(patch: Patch) -> None:
 
 def level(patch: Patch) -> None:
     """ΔJ is the same everywhere."""
-    patch.setattr(Derivatives, "gradient", lambda *_: ZERO)
+    patch.setattr(StepDerivatives, "gradient", lambda *_: ZERO)
 
 
 def exact_start(patch: Patch) -> None:

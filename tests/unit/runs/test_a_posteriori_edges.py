@@ -12,14 +12,14 @@ from tests.helpers.exact_orbits import assert_contained, case, enclosed_finely
 from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, float64, mpfr, mpmath
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.rounding import rounding_of
-from verify.kernels.step.kinds import Constant
+from verify.kernels.step.kinds import RationalConstant
 from verify.kernels.stepping import KernelRun
-from verify.runs.a_posteriori import certify
-from verify.runs.derivatives import Derivatives
-from verify.runs.run import run
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.requested_run import run
+from verify.runs.step_bounds import StepDerivatives
 from verify.scenes.observables import REPORTED
 
 FREE = "p**2/2"
@@ -138,7 +138,7 @@ def test_what_is_certified_is_what_was_asked_for(asked: tuple[str, ...]) -> None
     "value", [Fraction(1001, 64), Fraction(1, 3), Fraction(-7, 2), Fraction(1)]
 )
 def test_a_constant_is_off_by_what_its_number_is(made: Arithmetic, value: Fraction) -> None:
-    own = rounding_of(made)(Constant(value), flint.arb(0))
+    own = rounding_of(made)(RationalConstant(value), flint.arb(0))
     assert bounds(own)[1] >= abs(made.exact(made.number(value)) - value) >= bounds(own)[0]
     assert (own == 0) == (made.exact(made.number(value)) == value)
 
@@ -146,7 +146,7 @@ def test_a_constant_is_off_by_what_its_number_is(made: Arithmetic, value: Fracti
 def test_beyond_the_domain_of_the_map_there_is_no_bound_of_its_second_derivatives() -> None:
     """log q + log 1/q has the derivative 0 everywhere, and no value where q < 0."""
     scheme = "p_next = p + h*(log(q) + log(1/q)); q_next = q + h*p"
-    found = Derivatives.from_scheme(Hamiltonian.parse(FREE), scheme, volume=True, form=False)
+    found = StepDerivatives.from_scheme(Hamiltonian.parse(FREE), scheme, volume=True, form=False)
     assert found is not None
 
     def second(low: str, high: str) -> Any:

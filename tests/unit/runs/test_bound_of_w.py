@@ -12,9 +12,9 @@ from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.runs.a_posteriori import certify
+from verify.runs.a_posteriori_bound import certify
 from verify.runs.digits_on_demand import METHOD_OF_W, difference_of_w
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
 PENDULUMS = "p1**2/2 + p2**2/2 - cos(q1) - cos(q2) + (q1 - q2)**2/4"

@@ -14,7 +14,7 @@ import sympy
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.derivatives import Derivatives
+from verify.runs.step_bounds import StepDerivatives
 
 PLANE = [("p**2*(1 + q**2)/2 + q**4/4 + p*q", 2), ("p**2/2 + q**3 + p**3*q/5", 1)]
 SEVERAL = [("(p1**2 + p2**2)/2 + q1**2*q2 + p1*q2**2/3", 2),
@@ -60,10 +60,10 @@ def bounds_of(formula: str, order: int, box: dict[str, flint.arb], h: Fraction) 
         fixed = {"h": rational_ball(h)}
         made: Any
         if hamiltonian.planar:
-            made = Derivatives.from_scheme(hamiltonian, scheme, volume=True, form=False)
+            made = StepDerivatives.from_scheme(hamiltonian, scheme, volume=True, form=False)
             form = ()
         else:
-            made = Derivatives.from_scheme(hamiltonian, scheme, volume=True, form=True)
+            made = StepDerivatives.from_scheme(hamiltonian, scheme, volume=True, form=True)
             form = made.form(fixed, box)
         found = {"second": made.second(fixed, box), "gradient": made.gradient(fixed, box)}
         found |= dict(zip(("size", "slope"), form, strict=False))

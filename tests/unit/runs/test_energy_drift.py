@@ -9,9 +9,9 @@ import sympy
 
 import verify
 from verify.errors import InputError
-from verify.proof.plane.modified import one as modified
-from verify.runs import energy_drift
-from verify.runs.energy_drift import energy_drifts
+from verify.proof.plane.modified_for_one_h import modified_for_one_h
+from verify.runs import run_errors
+from verify.runs.run_errors import energy_drifts
 
 START = {"q": 1.5, "p": 0, "steps": 60}
 
@@ -47,14 +47,14 @@ def test_each_term_makes_the_drift_smaller_by_its_order(arithmetic) -> None:
 
 def test_a_wrong_term_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     def planted(*given):
-        found = modified.modified_of(*given)
+        found = modified_for_one_h(*given)
         term = found.terms[2]
         ring, x = term.energy
         wrong = dataclasses.replace(term, energy=(ring, x + ring.variable("q") ** 2 / 50))
         return dataclasses.replace(found, terms=(*found.terms[:2], wrong, *found.terms[3:]))
 
     right = energy_drifts(run("0.05"), 2)[1].largest
-    monkeypatch.setattr(energy_drift, "modified_of", planted)
+    monkeypatch.setattr(run_errors, "modified_for_one_h", planted)
     assert energy_drifts(run("0.05"), 2)[1].largest > 20 * right
 
 

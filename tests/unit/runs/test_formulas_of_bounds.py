@@ -20,19 +20,18 @@ from tests.helpers.run_bounds import CLOSE, Noted, Real, ball, ctx, drawn, numbe
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.flint_precision import working_precision
-from verify.kernels.rounding import PRECISION, Rounded
+from verify.kernels.rounding import PRECISION, RoundedValue
 from verify.observables import by_name
-from verify.runs import a_posteriori, form_bound
-from verify.runs.a_posteriori import _Certificate
-from verify.runs.derivatives import Derivatives, norm
-from verify.runs.step_rounding import StepErrors
+from verify.runs import matrix_growth
+from verify.runs.a_posteriori_bound import _Certificate
+from verify.runs.step_bounds import StepDerivatives, StepErrors, norm
 
 SEEDS = range(40)
 SIZES = 2, 4, 6, 8
 ALL = {name: each.bound for name, each in by_name().items() if each.bound}
 
 
-class Told(Derivatives):
+class Told(StepDerivatives):
     """Derivatives of a step as they were drawn; how far the box was widened stands in it."""
 
     def __init__(self, noted: Noted) -> None:
@@ -60,11 +59,11 @@ class Told(Derivatives):
 def certificate(noted: Noted) -> _Certificate:
     """A certificate of a run that noted this."""
     made = object.__new__(_Certificate)
-    zero = Rounded(flint.arb(0), flint.arb(0))
+    zero = RoundedValue(flint.arb(0), flint.arb(0))
     # The rounding of the matrix is of one entry alone, and the greatest of an entry of two.
     values = {"dm": zero, "dw_1": zero, "dw_2": zero, "de": zero}
 
-    def adding(size: flint.arb, x: Rounded) -> flint.arb:
+    def adding(size: flint.arb, x: RoundedValue) -> flint.arb:
         if x is values["de"]:
             assert size.overlaps(ball(noted.risen))
             return ball(noted.of_energy)
@@ -77,7 +76,7 @@ def certificate(noted: Noted) -> _Certificate:
 
     names = tuple("pq") if noted.size == 2 else tuple(f"z{k}" for k in range(noted.size))
     for k, name in enumerate(("dm", "dw_1", "de"), start=1):
-        values[name] = Rounded(flint.arb(k), flint.arb(0))
+        values[name] = RoundedValue(flint.arb(k), flint.arb(0))
     # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
     off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
     start, first = {n: Fraction(k) for k, n in enumerate(names)}, of_mpf(noted.start)
@@ -190,13 +189,13 @@ def test_where_the_quadratic_term_grows_beyond_twice_the_linear_one_nothing_is_c
 def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:
     """Y > 1, E > max ‖M‖, and an error of W of more than 3 max ‖M‖², each alone."""
     zero, one = flint.arb(0), flint.arb(1)
-    motion = form_bound.Motion(steps=10, least=one, rate=zero, top=one, path=one)
+    motion = matrix_growth.MatrixGrowth(steps=10, least=one, rate=zero, top=one, path=one)
     small = dict.fromkeys(
         ("error_sum", "second", "size", "slope", "matrix_rounding", "entry_rounding"), zero
     )
 
     def bound(**more: Any) -> flint.arb:
-        return form_bound.bound_total_defect(
+        return matrix_growth.bound_total_defect(
             motion, **small | {n: flint.arb(x) for n, x in more.items()}
         )
 
@@ -208,7 +207,7 @@ def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:
     assert bound(entry_rounding=0.29).is_finite()
     assert not bound(entry_rounding=0.31).is_finite()
     fast = replace(motion, rate=flint.arb(0.6))  # e^Q Q > 1
-    assert not form_bound.bound_total_defect(fast, **small).is_finite()
+    assert not matrix_growth.bound_total_defect(fast, **small).is_finite()
 
 
 # -- the inverse of M --------------------------------------------------------------------------
@@ -252,7 +251,7 @@ def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
         if not seen["det_low"] > 0:
             continue
         with working_precision(PRECISION):
-            least = a_posteriori.least_of(size, seen)
+            least = matrix_growth.least_of(size, seen)
         if not least > 0:
             continue
         exact_rows = ctx.matrix([[ctx.mpf(x.numerator) / x.denominator for x in r] for r in rows])
@@ -268,7 +267,7 @@ def test_the_inverses_bound_is_what_its_formula_says(size: int) -> None:
     for seed in SEEDS:
         seen = drawn(seed, size).seen
         with working_precision(PRECISION):
-            found = a_posteriori.least_of(size, {n: ball(x) for n, x in seen.items()})
+            found = matrix_growth.least_of(size, {n: ball(x) for n, x in seen.items()})
         assert abs(number(found) / run_bounds.least(size, seen) - 1) < CLOSE
 
 

@@ -12,13 +12,13 @@ from mpmath.ctx_mp import MPContext
 import verify
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.times_on_the_way import check_times
+from verify.hamiltonians.run_domain import check_times
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.runs.a_posteriori import certify
-from verify.runs.run import run
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.requested_run import run
 from verify.scenes.results.run import RunResult
 
 PENDULUM = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
@@ -133,10 +133,10 @@ def test_a_bound_that_forgets_the_clock_would_be_too_small(
     )
     outcome = kernel_run.run(made, tangent=True)
     right = certify(kernel_run, made, outcome)
-    from verify.runs import step_rounding
+    from verify.runs import step_bounds
 
-    true = step_rounding.error_of_time
-    monkeypatch.setattr(step_rounding, "error_of_time", lambda a, x: 1000 * true(a, x))
+    true = step_bounds.error_of_time
+    monkeypatch.setattr(step_bounds, "error_of_time", lambda a, x: 1000 * true(a, x))
     worse = certify(kernel_run, made, outcome)
     assert right is not None
     assert worse is not None

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from verify.commands.main import cli
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 LOG, POLE = "p**2/2 + q**2/2 + log(q)", "p**2/2 - 1/q"
 WELL = "p**2/2 + q**2/2 + 1/q"  # whose pole repels

@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from verify import arithmetic
-from verify.execution import keeping
-from verify.execution.keeping import Keeper
+from verify.execution import keeper as keeping
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
 

@@ -28,7 +28,7 @@ from tests.helpers.sampled.formulas import (
 )
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.observables import REPORTED
 from verify.scenes.results.run import RunResult
 

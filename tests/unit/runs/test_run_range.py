@@ -18,7 +18,7 @@ from verify import arithmetic
 from verify.arithmetic.number_system import ESCAPE_BITS
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
 

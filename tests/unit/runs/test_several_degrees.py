@@ -24,8 +24,8 @@ from tests.helpers.stepping.steps_in_degrees import (
 )
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.orbit import orbit_of
-from verify.runs.run import run
+from verify.runs.orbit_table import orbit_of
+from verify.runs.requested_run import run
 from verify.scenes.observables import names
 from verify.scenes.results.run import RunResult
 

@@ -12,8 +12,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.step import tangent_map
 from verify.kernels.stepping import KernelRun
-from verify.runs import a_posteriori, form_bound
-from verify.runs.a_posteriori import certify
+from verify.runs import matrix_growth
+from verify.runs.a_posteriori_bound import certify
 
 Patch = pytest.MonkeyPatch
 # Errors grow like e^t along p1, q1, while p2, q2 turn around and are coupled to them.
@@ -78,14 +78,14 @@ def test_a_row_that_is_left_out_is_caught(monkeypatch: Patch) -> None:
 def test_a_defect_without_the_rounding_of_its_matrix_is_caught(
     name: str, digits: int, monkeypatch: Patch
 ) -> None:
-    own: Callable[..., flint.arb] = form_bound.bound_total_defect
+    own: Callable[..., flint.arb] = matrix_growth.bound_total_defect
     zero = flint.arb(0)
 
     def lying(motion: Any, **given: Any) -> flint.arb:
         nothing = {"second": zero, "slope": zero, "matrix_rounding": zero, "entry_rounding": zero}
         return own(motion, **given | nothing)
 
-    monkeypatch.setattr(form_bound, "bound_total_defect", lying)
+    monkeypatch.setattr(matrix_growth, "bound_total_defect", lying)
     assert outside(name, digits, NEAR) == {"symplectic_defect"}
 
 
@@ -103,7 +103,7 @@ def test_the_inverse_of_a_matrix_is_no_larger_than_is_said() -> None:
         "det_low": flint.arb(int(exact.det().p)),
         "form_top": flint.arb(sum(x * x for x in above)),
     }
-    least = a_posteriori.least_of(4, seen)
+    least = matrix_growth.least_of(4, seen)
     assert least > 0
     inverse = exact.inv()
     size = sum(float(int(x.p)) ** 2 / float(int(x.q)) ** 2 for x in inverse.entries()) ** 0.5

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 
 import verify
-from verify.flows.solution import Point, Solution
-from verify.hamiltonians import known_flows
+from verify.flows.solution import ExactSolution, Point
+from verify.hamiltonians import flow_recognition
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs import solution_error
-from verify.runs.solution_error import solution_errors
+from verify.runs import run_errors
+from verify.runs.run_errors import solution_errors
 from verify.scenes.results.run import RunResult
 
 DRIVEN = {"gamma": "1/3", "omega": "3/2", "omega0": 1}
@@ -35,7 +35,7 @@ def test_followed_from_state_to_state_it_is_the_same(
     run: RunResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     closed = solution_errors(run, 4)
-    monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
+    monkeypatch.setattr(flow_recognition, "closed_form", lambda *_: None)
     followed = solution_errors(run, 4)
     assert [t for t, _ in closed] == [t for t, _ in followed]
     for (_, x), (_, y) in zip(closed, followed, strict=True):
@@ -47,15 +47,15 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
     run: RunResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A solution that says more than it knows is found out by the one of a single piece."""
-    true, lost = solution_error.solution_from, Fraction(1, 10**4)
+    true, lost = run_errors.solution_from, Fraction(1, 10**4)
 
-    def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> Solution:
+    def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> ExactSolution:
         found = true(h, at, time, *rest)
         moved = {**found.point, "p": found.point["p"] + lost}
         return found if time == 1 else replace(found, point=moved)
 
-    monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
-    monkeypatch.setattr(solution_error, "solution_from", careless)
+    monkeypatch.setattr(flow_recognition, "closed_form", lambda *_: None)
+    monkeypatch.setattr(run_errors, "solution_from", careless)
     assert all(Fraction(x.bound) > lost for _, x in solution_errors(run, 4))
 
 
@@ -68,7 +68,7 @@ def test_in_time_the_solution_is_that_from_t0_on(
     found = verify.run("p**2/2 - q*t", "lie1", q=1, p=0, step_size="1/10", steps=6, t0=t0,
                        digits=25)  # fmt: skip
     if not closed:
-        monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
+        monkeypatch.setattr(flow_recognition, "closed_form", lambda *_: None)
     errors = solution_errors(found, 10)
     begun, h = Fraction(t0), Fraction(1, 10)
     assert [t for t, _ in errors] == [begun + k * h for k in range(7)]
@@ -89,7 +89,7 @@ def test_of_a_driven_oscillator_the_closed_form_begins_at_t0_too(
     found = verify.run("forced-oscillator", "lie2", parameters=DRIVEN,
                        q=1, p=0, step_size="1/10", steps=6, t0=t0, digits=20)  # fmt: skip
     closed = solution_errors(found, 6)
-    monkeypatch.setattr(known_flows, "state_in_time", lambda *_: None)
+    monkeypatch.setattr(flow_recognition, "state_in_time", lambda *_: None)
     followed = solution_errors(found, 6)
     for (t, x), (s, y) in zip(closed, followed, strict=True):
         assert t == s

@@ -15,13 +15,13 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.clock import error_of_time
-from verify.kernels.rounding import PRECISION, Rounded
+from verify.kernels.kernel import error_of_time
+from verify.kernels.rounding import PRECISION, RoundedValue
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Program
+from verify.kernels.step.operations import StepProgram
 from verify.kernels.stepping import KernelRun
-from verify.runs.a_posteriori import certify
-from verify.runs.step_rounding import StepRounding
+from verify.runs.a_posteriori_bound import certify
+from verify.runs.step_bounds import StepRounding
 
 SEEDS = range(30)
 
@@ -48,7 +48,7 @@ def test_an_addition_loses_half_a_unit_of_a_sum_of_which_either_part_may_be_the_
         size, inside, error, unit = some(), some(), some(), some()
         with working_precision(PRECISION):
             made = bare(arithmetic=SimpleNamespace(absolute=absolute), unit=ball(unit))
-            found = made.error_of_addition(ball(size), Rounded(ball(-inside), ball(error)))
+            found = made.error_of_addition(ball(size), RoundedValue(ball(-inside), ball(error)))
         true = error if absolute else error + (size + inside + error) * unit
         assert abs(number(found) / true - 1) < CLOSE
 
@@ -59,7 +59,7 @@ def test_a_step_of_the_tangent_map_loses_what_its_products_and_sums_do(size: int
     unit = ctx.ldexp(1, -52)
     for seed in SEEDS:
         some = drawing(f"tangent {size} {seed}")
-        program, entries = Program(), size * size
+        program, entries = StepProgram(), size * size
         change = [program.input(f"approx(v{k})", static=False) for k in range(entries)]
         read = [(some(), some() * ctx.ldexp(1, -45)) for _ in range(entries)]
         tangent = SimpleNamespace(
@@ -68,7 +68,7 @@ def test_a_step_of_the_tangent_map_loses_what_its_products_and_sums_do(size: int
         )  # fmt: skip
         made = bare(kernel=SimpleNamespace(tangent=tangent), names=range(size))
         with working_precision(PRECISION):
-            main = {k: Rounded(ball(x), ball(lost)) for k, (x, lost) in enumerate(read)}
+            main = {k: RoundedValue(ball(x), ball(lost)) for k, (x, lost) in enumerate(read)}
             found = made.tangent_error(main)
             assert found is not None
         errors = [lost + (x + lost) * unit + ctx.ldexp(1, -96) for x, lost in read]

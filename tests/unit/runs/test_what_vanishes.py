@@ -7,7 +7,7 @@ import pytest
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
 from verify.observables import by_name
-from verify.runs import run as runs
+from verify.runs import requested_run as runs
 from verify.scenes.observables import names
 
 PLANE = Hamiltonian.parse("p**2/2 - cos(q)")

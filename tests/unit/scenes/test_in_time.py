@@ -9,14 +9,13 @@ from tests.helpers.constructed.scenes import load
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.runs.task import RunTask
-from verify.scenes.results.proof import EveryResult, ProofResult
+from verify.scenes.results.proof_result import EveryResult, ProofResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.scene import scene_from_toml
-from verify.scenes.toml_text import scene_text
-from verify.studies.plan import plan_scenes
-from verify.studies.proofs.every import EveryTask
+from verify.scenes.scene import scene_from_toml, scene_text
+from verify.studies.kinds.every import EveryTask
+from verify.studies.tasks_of_scenes import plan_scenes
 
 FROZEN = "kick 1/2 at 0; drift 1; kick 1/2 at 0; order 2"
 HEAD = f"""

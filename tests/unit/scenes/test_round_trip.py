@@ -7,23 +7,30 @@ from pydantic import ValidationError
 
 from tests.helpers.constructed.galleries import gallery, shown
 from tests.helpers.constructed.scenes import GOOD, HEAD, PAPER, load
-from verify.claims.file import load_claims
-from verify.claims.report import make_report
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import make_report
 from verify.execution import execute
 from verify.execution.executors import THIS_PROCESS
 from verify.prose import read_prose
-from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
+from verify.scenes.paper_sections import Cause
+from verify.scenes.results import (
+    bounded_value,
+    claim,
+    growth,
+    proof_result,
+    separation,
+    separation_parts,
+)
 from verify.scenes.results import bounded_value as value
-from verify.scenes.results import claim, form_value, growth, proof, separation, separation_parts
-from verify.scenes.results import orbit_sections as orbit_results
+from verify.scenes.results import orbit_points as orbit_results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import run as run_results
 from verify.scenes.results import stability as stability_results
 from verify.scenes.results import work_precision as work_precision_results
 from verify.scenes.results.exploration import GalleryScene
-from verify.scenes.results.proof import Formulas
+from verify.scenes.results.proof_result import Formulas
 from verify.scenes.results.report import Report, SceneResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import RatioResult
@@ -33,10 +40,10 @@ RESULTS = (
     claim,
     growth,
     orbit_results,
-    proof,
+    proof_result,
     separation,
     separation_parts,
-    form_value,
+    bounded_value,
     value,
     run_results,
     scene_results,

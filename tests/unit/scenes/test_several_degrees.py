@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
-from verify.claims.report import make_report
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import make_report, prepare
 from verify.errors import InputError
 from verify.execution import execute
 from verify.execution.executors import THIS_PROCESS

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.paths import ROOT
-from verify.audits.findings import confirmed
-from verify.claims.file import load_claims
+from verify.audits import mistake
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
-from verify.exploration.different_scenes import scene_of
-from verify.integrators.tables.check import check_table
+from verify.exploration.island_search import scene_of
+from verify.integrators.tables.table_file import check_table
 from verify.scenes.results.exploration import Worst
 from verify.scenes.scene import load_scene, scene_from_toml
 from verify.scenes.toml_file import read_toml, toml_data
@@ -100,7 +100,7 @@ def in_results(path: Path) -> object:
 
 
 READERS = [
-    read_toml, load_scene, load_claims, check_table, confirmed.read, in_results,
+    read_toml, load_scene, load_claims, check_table, mistake.read, in_results,
     lambda path: scene_from_toml(path.read_text(), path.name),
 ]  # fmt: skip
 

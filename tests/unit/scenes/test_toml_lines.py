@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.claims.file import load_claims
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.scenes.toml_file import lines_of
 

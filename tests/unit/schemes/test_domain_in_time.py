@@ -3,7 +3,7 @@
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 from verify.schemes.maps.step_map import AT_STAGES
 

@@ -14,15 +14,15 @@ from verify.errors import InputError
 from verify.execution.execute import compute_task
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.proof import Proof
-from verify.runs.run import run
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
+from verify.runs.requested_run import run
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.studies.stability.linear import stability_of_map
-from verify.studies.stability.nearby_linear import linear_stability
+from verify.studies.stability.linear_stability import stability_of_map
+from verify.studies.stability.scheme_interval import linear_stability
 from verify.verdict import Verdict
 
 IMPLICIT = ("implicit-midpoint", "implicit-symplectic-euler", "gauss4", "gauss6")
@@ -177,7 +177,7 @@ def test_what_needs_a_closed_form_is_refused_in_one_line(what: str) -> None:
 
 
 def test_a_proof_task_has_no_closed_form_and_is_done() -> None:
-    from verify.studies.proofs.one import ProofTask
+    from verify.studies.kinds.proofs import ProofTask
 
     for name in IMPLICIT:
         task = ProofTask(hamiltonian="p**2*q**2/2 + p**3", parameters={}, scheme=name)

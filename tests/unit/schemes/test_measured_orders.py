@@ -17,7 +17,7 @@ from verify import schemes
 from verify.arithmetic.arb import slope
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.order_conditions import prove_by_conditions
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

@@ -6,7 +6,7 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.scene import Scene
 
 

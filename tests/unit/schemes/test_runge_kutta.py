@@ -19,11 +19,11 @@ from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import Writer
-from verify.proof.order import prove
-from verify.proof.proof import Proof
-from verify.runs.derivatives import Derivatives
-from verify.runs.run import run
+from verify.kernels.kernel import KernelWriter
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
+from verify.runs.requested_run import run
+from verify.runs.step_bounds import StepDerivatives
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.maps.ball_algebra import step_in_balls
 from verify.schemes.maps.kinds.explicit_runge_kutta import build
@@ -170,7 +170,7 @@ def test_the_jacobian_is_that_by_hand_and_a_closed_forms_too(text: str, name: st
 def test_a_kernel_evaluates_each_stage_once() -> None:
     step_map = schemes.get("rk4").step_map(Hamiltonian.parse(SYSTEMS["pendulum"]))
     made = replace(arithmetic.get("mpmath", 30), compile=lambda *_: lambda *_: ())
-    source = Writer(step_map, made, frozenset({"lambda"}), compensated=False).kernel().source
+    source = KernelWriter(step_map, made, frozenset({"lambda"}), compensated=False).kernel().source
     assert source.count("cos_sin(") == 4
 
 
@@ -278,5 +278,6 @@ def test_a_run_is_the_one_by_hand_within_its_bound(
 @every_system
 def test_the_bounds_of_a_run_need_no_closed_form(text: str) -> None:
     assert (
-        Derivatives.from_scheme(Hamiltonian.parse(text), "rk4", volume=True, form=False) is not None
+        StepDerivatives.from_scheme(Hamiltonian.parse(text), "rk4", volume=True, form=False)
+        is not None
     )

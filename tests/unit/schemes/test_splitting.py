@@ -12,7 +12,7 @@ from tests.helpers.stepping.stepper import Stepper
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap

@@ -25,11 +25,11 @@ from tests.helpers.planted.splittings import (
 from tests.helpers.symmetry import prove_symmetry, symmetry_conditions
 from verify import schemes
 from verify.algebra.embedding import embed
-from verify.algebra.series.jets import Jets
+from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.exploration.properties.plane.order_by_jets import delta_j
-from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.every import prove_every
+from verify.proof.order_conditions import prove_by_conditions
+from verify.proof.order_for_every_h import prove_for_every_h
 from verify.schemes.conditions.splitting_conditions import (
     LETTERS,
     MOST_ORDER,
@@ -144,7 +144,7 @@ def test_with_nine_letters_they_no_longer_are_and_the_order_is_refused() -> None
 
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_every_splitting_has_its_order_and_area_exactly(name: str) -> None:
-    scheme, proof = schemes.get(name), prove_every(name)
+    scheme, proof = schemes.get(name), prove_for_every_h(name)
     assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, scheme.order)
     assert (proof.area_preserving, proof.separable) == (True, True)
     assert {c.residue for c in proof.conditions} == {"0"}

@@ -13,8 +13,8 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Program
-from verify.runs.run import run
+from verify.kernels.step.operations import StepProgram
+from verify.runs.requested_run import run
 from verify.schemes.maps.step_map import StepMap
 
 SYSTEMS = ("p**2/2 - cos(q)", "p**2/2 + p**3/9 + exp(q) - q")
@@ -65,7 +65,7 @@ def test_fixed_point_numbers_have_the_irrational_coefficients(name: str) -> None
 @pytest.mark.parametrize("digits", [30, 200])
 @pytest.mark.parametrize(("number", "degree"), [("2", 3), ("4", 3), ("2", 15), ("1/700", 5)])
 def test_a_given_root_is_rounded_as_the_bound_says(number: str, degree: int, digits: int) -> None:
-    program, fixed = Program(), arithmetic.get("fixed", digits)
+    program, fixed = StepProgram(), arithmetic.get("fixed", digits)
     root = program.root(program.constant(Fraction(number)), degree)
     lowering = Lowering(program, fixed.functions, bits=fixed.bits)
     assert lowering.function(root) is None
@@ -78,6 +78,6 @@ def test_a_given_root_is_rounded_as_the_bound_says(number: str, degree: int, dig
 
 
 def test_a_root_of_what_is_no_number_is_still_not_there() -> None:
-    program = Program()
+    program = StepProgram()
     root = program.root(program.input("h", static=True), 3)
     assert Lowering(program, arithmetic.get("fixed", 30).functions).function(root) == "root"

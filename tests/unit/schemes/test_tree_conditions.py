@@ -13,20 +13,19 @@ from tests.helpers.lie_derivatives import lie_derivatives
 from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from tests.helpers.symmetry import symmetry_conditions
 from verify import schemes
-from verify.algebra.series.jets import Jets
+from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof import every
-from verify.proof.every import EveryProof, counterexample, prove_every
-from verify.proof.order import convergence_of, prove
+from verify.proof import order_for_every_h
+from verify.proof.order_for_every_h import counterexample, prove_for_every_h
+from verify.proof.order_for_one_h import convergence_of, prove
+from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.schemes.conditions.coloured_trees import condition_text, density, symmetry, vertices
 from verify.schemes.conditions.condition import ByConditions, Condition
-from verify.schemes.conditions.elementary_differentials import Differentials, cancels
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.tree_conditions import TreeConditions, trees
-from verify.schemes.conditions.tree_order import order_of
-from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
+from verify.schemes.conditions.tree_conditions import Differentials, TreeConditions, cancels, trees
+from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map, order_of
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -64,9 +63,9 @@ def made(tableau: ImplicitTableau, order: int) -> Scheme:
 
 def proof_of(
     monkeypatch: pytest.MonkeyPatch, tableau: ImplicitTableau, order: int, separable: bool = False
-) -> EveryProof:
-    monkeypatch.setattr(every, "get", lambda _: made(tableau, order))
-    return prove_every("made", separable)
+) -> ProofForEveryH:
+    monkeypatch.setattr(order_for_every_h, "get", lambda _: made(tableau, order))
+    return prove_for_every_h("made", separable)
 
 
 # -- trees ----------------------------------------------------------------------------------------
@@ -150,7 +149,7 @@ def test_the_residue_is_that_of_plain_arithmetic() -> None:
 
 @pytest.mark.parametrize("name", ["gauss4", "gauss6"])
 def test_gauss_methods_are_proved_for_every_h(name: str) -> None:
-    proof, scheme = prove_every(name), schemes.get(name)
+    proof, scheme = prove_for_every_h(name), schemes.get(name)
     assert isinstance(scheme.every_h, ByConditions)
     assert proof.verdict is Verdict.PROVED
     assert (proof.convergence_order, proof.area_preserving) == (scheme.order, True)

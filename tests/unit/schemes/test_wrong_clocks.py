@@ -8,8 +8,8 @@ import sympy
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every import prove_every
-from verify.proof.order import convergence_of
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import convergence_of
 from verify.schemes.conditions.splitting_conditions import Splitting
 
 HALF = sympy.Rational(1, 2)
@@ -35,7 +35,7 @@ def test_the_times_of_verlet(clock: str, wanted: tuple[object, ...]) -> None:
 @pytest.mark.parametrize("base", ["stormer-verlet", "forest-ruth", "blanes-moan4"])
 def test_they_keep_their_order_without_time_and_have_order_1_with_it(base: str, clock: str) -> None:
     name, claimed = f"{base}, clock {clock}", schemes.get(base).order
-    still, timed = prove_every(name), prove_every(name, timed=True)
+    still, timed = prove_for_every_h(name), prove_for_every_h(name, timed=True)
     assert (still.verdict, still.convergence_order) == ("PROVED", claimed)
     assert (timed.verdict, timed.convergence_order) == ("REFUTED", 1)
     assert "as if" in str(timed.reason)

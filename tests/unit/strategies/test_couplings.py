@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from tests.helpers.sampled.drawing import fuzzed
 from verify.strategies.couplings import Coupling, couplings
-from verify.strategies.formulas import KINDS
-from verify.strategies.terms import Drawer, Limits
+from verify.strategies.terms import KINDS, Drawer, FormulaLimits
 
 NAMES = sympy.symbols("p q P Q")
 SIZES = (0, 1, -3, 1000, -(10**4))
@@ -24,7 +23,9 @@ every_coupling = pytest.mark.parametrize(
 
 
 def drawn(coupling: Coupling) -> list[tuple[str, str]]:
-    return fuzzed(st.composite(lambda draw: coupling.draw_sides(Drawer(draw, Limits())))(), 6)
+    return fuzzed(
+        st.composite(lambda draw: coupling.draw_sides(Drawer(draw, FormulaLimits())))(), 6
+    )
 
 
 def values(sides: tuple[str, str], axes: bool) -> list[mpmath.mpf]:

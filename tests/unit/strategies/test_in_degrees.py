@@ -10,10 +10,10 @@ from verify import Hamiltonian, InputError
 from verify import strategies as s
 from verify.algebra.formula import symbol
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.hamiltonians.uncoupled import uncouple
+from verify.hamiltonians.flow_recognition import uncouple
 from verify.scenes.values import InitialState
 from verify.strategies.couplings import couplings, number_variables
-from verify.strategies.formulas import KINDS
+from verify.strategies.terms import KINDS
 
 every_n = pytest.mark.parametrize("degrees", [2, 3])
 

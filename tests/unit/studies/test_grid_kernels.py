@@ -7,7 +7,7 @@ from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene, scene_from
 from verify.studies.kinds.grid import grid_runs
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 
 
 def grid(starts: int) -> Scene:

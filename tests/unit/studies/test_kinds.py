@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.unit.studies.test_plan import HEAD, load
-from verify.execution.study import Section, Study
+from tests.unit.studies.test_tasks_of_scenes import HEAD, load
+from verify.execution.plan import SceneQuestion, Study
 from verify.scenes.results.report import SceneResult
-from verify.studies import plan as module
+from verify.studies import tasks_of_scenes as module
 from verify.studies.kinds import studies
 from verify.studies.kinds.proofs import proof_task
-from verify.studies.plan import collect_findings, plan_scenes
+from verify.studies.tasks_of_scenes import collect_findings, plan_scenes
 
 OTHERS = {"name", "title", "hamiltonian", "parameters", "source", "time", "proofs", "criteria"}
 
@@ -40,7 +40,7 @@ def test_a_study_that_is_found_is_planned_and_shown(
     scene = load(tmp_path, HEAD)
     made = Study(
         99,
-        (Section(99, "what is new", "the scene has no [new]", lambda scene: False),),
+        (SceneQuestion(99, "what is new", "the scene has no [new]", lambda scene: False),),
         need=lambda plan, scene: plan.need(proof_task(scene, "rk4"), "new"),
         results_for_scene=lambda scene, results: {"new": len(results)},
     )

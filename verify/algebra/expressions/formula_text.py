@@ -3,20 +3,37 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import cache, lru_cache
 
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 
 @lru_cache(maxsize=512)
 def to_text(expression: sympy.Expr) -> str:
     """Format the expression as a formula that `parse` reads back to an equal expression."""
-    from verify.algebra.expressions.formula_printer import FormulaPrinter  # which imports sympy
-
     with _any_length():
-        return str(FormulaPrinter().doprint(expression))
+        return _printer()(expression)
+
+
+@cache
+def _printer() -> Callable[[sympy.Expr], str]:
+    """Return the function that prints an expression; its class is one of sympy's, imported here."""
+    from sympy.printing.str import StrPrinter
+
+    class FormulaPrinter(StrPrinter):  # type: ignore[misc]
+        """sympy's text form, but for e (a parameter named E?) and powers that are exponentials."""
+
+        def _print_Exp1(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
+            return "exp(1)"
+
+        def _print_Pow(self, expr: sympy.Expr, rational: bool = False) -> str:  # noqa: N802
+            if expr.exp.is_Rational:
+                return str(super()._print_Pow(expr, rational))
+            return f"exp({self._print(expr.exp * sympy.log(expr.base))})"
+
+    return lambda expression: str(FormulaPrinter().doprint(expression))
 
 
 @contextmanager

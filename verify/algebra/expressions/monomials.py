@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeAlias
 import gmpy2
 
 from verify.errors import InputError
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 
 DEEPEST = 6  # levels of nesting within a monomial, at most
 _LONGEST = 18  # digits of a number
@@ -36,7 +36,7 @@ class Monomials:
         self.collected: dict[Powers, gmpy2.mpq] = {}
 
     def take(self, node: ast.expr, sign: int) -> bool:
-        """Add the term times its sign; return False where it must be read in the ordinary way."""
+        """Add the term times its sign; return False if it must be read in the ordinary way."""
         powers: dict[str, int] = {}
         quotient = self._quotient(node, powers, DEEPEST)
         if quotient is None or max(powers.values(), default=0) > _MOST_POWER:
@@ -73,13 +73,13 @@ class Monomials:
             return sympy.Add(constant, *terms)
         # sympy's constructors sort and simplify every argument, which is the cost that is avoided
         # here: the arguments are put in its normal form at once.
-        terms.sort(key=_place())
+        terms.sort(key=_sort_key())
         return _build_ordered(sympy.Add, terms if constant.is_zero else [constant, *terms])
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
         """Return the number before the names, and add the names' powers to `powers`.
 
-        None where the node is no such monomial, or the ordinary way would refuse it.
+        None if the node is no such monomial, or the ordinary way would refuse it.
         """
         match node:
             case ast.Constant():
@@ -119,7 +119,7 @@ class Monomials:
 
 
 @cache
-def _place() -> Callable[[sympy.Expr], Any]:
+def _sort_key() -> Callable[[sympy.Expr], Any]:
     """Return the key by which sympy orders the terms of a sum."""
     return cmp_to_key(sympy.Basic.compare)
 
@@ -177,7 +177,7 @@ class Monomial(NamedTuple):
 # The terms of a formula's expression are needed whenever something is computed from it.
 @lru_cache(maxsize=64)
 def monomials_of(x: sympy.Expr) -> tuple[Monomial, ...] | None:
-    """Return the terms of x in their order; None where one of them is no monomial."""
+    """Return the terms of x in their order; None if one of them is no monomial."""
     monomials = []
     for term in x.args if x.is_Add else (x,):
         number, powers = sympy.S.One, []

@@ -148,7 +148,7 @@ class Field:
         return places_in(unit.above)[0]
 
     def single(self, x: Poly) -> int | None:
-        """Return the place of the unit that x is, or None where x is not just a unit."""
+        """Return the place of the unit that x is, or None if x is not just a unit."""
         places = places_in(x)
         alone = len(x) == 1 and len(places) == 1 and x.total_degree() == 1
         return places[0] if alone and x.leading_coefficient() == 1 else None
@@ -226,7 +226,7 @@ class Quotient:
 
     @property
     def rational(self) -> flint.fmpq | None:
-        """The quotient as a rational number; None where it is none as it stands."""
+        """The quotient as a rational number; None if it is none as it stands."""
         if self.is_zero:
             return flint.fmpq(0)
         if self.above.is_constant() and self.below.is_constant():

@@ -67,8 +67,8 @@ def split_by_monomials(
     coefficients: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
     for monomial, c in terms_of(x):
         inside = tuple(n if place in places else 0 for place, n in enumerate(monomial))
-        rest = tuple(0 if place in places else n for place, n in enumerate(monomial))
-        coefficients.setdefault(inside, {})[rest] = c
+        outside = tuple(0 if place in places else n for place, n in enumerate(monomial))
+        coefficients.setdefault(inside, {})[outside] = c
     return coefficients
 
 
@@ -92,7 +92,7 @@ class Polynomials:
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
-        """Return a variable as an element; KeyError where the ring has none of that name."""
+        """Return a variable as an element; KeyError if the ring has none of that name."""
         return self.gens[self.places[name]]
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
@@ -109,8 +109,8 @@ class Polynomials:
     def relate(self, generator: Poly, power: int, relation: Poly) -> None:
         """Set relation = 0, with a power of its newest generator; it replaces an older relation."""
         place = self.gens.index(generator)
-        others = (each for each in self.relations if each[0] != place)
-        self.relations = sorted([*others, (place, power, relation)], key=lambda each: -each[0])
+        older = (each for each in self.relations if each[0] != place)
+        self.relations = sorted([*older, (place, power, relation)], key=lambda each: -each[0])
 
     def reduce(self, x: Poly) -> Poly:
         """Reduce x to its normal form modulo the relations, newest generator first."""

@@ -11,8 +11,8 @@ from math import lcm
 
 import flint
 
+from verify.algebra.identities.algebraic_numbers import bounds_of_root, number_sign
 from verify.algebra.identities.field import Field, Quotient, UndecidedError
-from verify.algebra.identities.numbers import bounds_of_root, number_sign
 from verify.algebra.identities.polynomials import Poly
 from verify.algebra.identities.signs import definite_sign
 
@@ -143,16 +143,16 @@ class Powers:
         if abs(e) > MAX_POWER:
             raise UndecidedError("too high a power")
         whole = e.numerator // e.denominator
-        rest = e - whole
+        fraction = e - whole
         total = field.polynomial(f)
         if whole % 2 and (self._may_be_negative(f) or field.is_number(f)):
             total = total**whole * self.sign(f)
         else:
             total = total**whole
-        if not rest:
+        if not fraction:
             return total
-        root, degree = self._root(f, rest)
-        return total * root ** int(rest * degree)
+        root, degree = self._root(f, fraction)
+        return total * root ** int(fraction * degree)
 
     def _root(self, f: Poly, r: Fraction) -> tuple[Quotient, int]:
         """Return ρ with ρ^n = |f|, and n; r is a multiple of 1/n."""

@@ -5,18 +5,26 @@ sum of even powers of one generator whose coefficients have one sign; a polynomi
 without a (positive) root; a quadratic a x² + b x + c where a and 4ac − b² have a sign that is
 shown; a number that exceeds the terms in sines and cosines added to it. None is returned where
 there is no sign, or it is too hard to show.
+
+By its sign |v|, to which sympy simplifies √(v²), is replaced by ±v in an expression.
 """
 
+from __future__ import annotations
+
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import flint
 
+from verify.algebra.expressions.function_nodes import function_of
 from verify.algebra.identities.polynomials import Poly, split, terms_of
+from verify.lazy_sympy import sympy
 
 _DEEPEST = 3
 _MOST_TERMS = 60
 _MOST_DEGREE = 40
 _MOST_BITS = 2000
+_MOST_OPERATIONS = 200  # of an expression
 
 
 class Facts(Protocol):
@@ -32,7 +40,7 @@ class Facts(Protocol):
 
 
 def definite_sign(x: Poly, facts: Facts, *, strict: bool = False) -> int | None:
-    """Return 1 if x ≥ 0 everywhere, −1 if x ≤ 0 everywhere, None where neither is shown.
+    """Return 1 if x ≥ 0 everywhere, −1 if x ≤ 0 everywhere, None if neither is shown.
 
     `strict`: that x vanishes nowhere is shown, too.
     """
@@ -65,8 +73,8 @@ def _definite_sign(x: Poly, facts: Facts, strict: bool, levels: int) -> int | No
     if not common.is_constant():
         # The common power product is a polynomial of one term.
         sign = _sign_by_terms(common, facts, strict)
-        rest = sign and _definite_sign(x / common, facts, strict, levels - 1)
-        return sign * rest if sign and rest else None
+        cofactor_sign = sign and _definite_sign(x / common, facts, strict, levels - 1)
+        return sign * cofactor_sign if sign and cofactor_sign else None
     degrees = x.degrees()
     places = [place for place, power in enumerate(degrees) if power > 0]
     if len(places) == 1:
@@ -138,3 +146,50 @@ def _sign_by_square(x: Poly, place: int, facts: Facts, strict: bool, levels: int
     if sign is None or _definite_sign(4 * a * c - b * b, facts, strict, levels) != 1:
         return None
     return sign
+
+
+# -- expressions of sympy -------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _SympyGenerators:
+    """The signs and bounds of the generators of a polynomial of sympy's."""
+
+    generators: tuple[sympy.Expr, ...]
+
+    def is_positive(self, place: int) -> bool:
+        return bool(self.generators[place].is_positive)
+
+    def is_bounded(self, place: int) -> bool:
+        function = function_of(self.generators[place])
+        return function is not None and function.bounded
+
+
+def without_absolute_values(expression: sympy.Expr) -> sympy.Expr:
+    """Replace |v| in the expression where the sign of v is shown."""
+    return expression.replace(sympy.Abs, _without_sign)
+
+
+def _without_sign(v: sympy.Expr) -> sympy.Expr:
+    sign = sign_of(v)
+    return sign * v if sign else sympy.Abs(v)
+
+
+def sign_of(v: sympy.Expr, *, strict: bool = False) -> int | None:
+    """Return 1 if v ≥ 0 everywhere, −1 if v ≤ 0, None if neither is shown.
+
+    `strict`: that v vanishes nowhere is shown, too.
+    """
+    # sympy's conversion to a polynomial takes long for large v; the sign is then left undecided.
+    if v.count_ops() > _MOST_OPERATIONS:
+        return None
+    try:
+        polynomial = sympy.Poly(v, domain=sympy.QQ)
+    except sympy.PolynomialError:
+        return None
+    if polynomial.total_degree() > _MOST_DEGREE:
+        return None
+    names = [f"_{k}" for k in range(len(polynomial.gens))]
+    context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)
+    terms = {m: flint.fmpq(int(c.p), int(c.q)) for m, c in polynomial.terms()}
+    return definite_sign(context.from_dict(terms), _SympyGenerators(polynomial.gens), strict=strict)

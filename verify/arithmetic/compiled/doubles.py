@@ -1,6 +1,6 @@
 """float64 kernels compiled by LLVM: on many points at once, in several vectors, and on one point.
 
-The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translate`; each
+The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translator`; each
 operation is rounded as there, and functions have the bits of the C library's. So a point has the
 bits that it has by itself.
 """
@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from verify.arithmetic.compiled.translation import Source
-from verify.arithmetic.processor import LANES
-from verify.arithmetic.wide.translate import Target
+from verify.arithmetic.lanes.vectors import LANES
+from verify.arithmetic.wide.translator import Target
 
 POINTS = 64  # a call's
 SETS = POINTS // LANES
@@ -30,7 +30,7 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     """Return `run(steps, inputs, points)`: the kernel's steps on an array, in place.
 
     `carried`: its last arguments, so many, are the rows of `points`, (carried, POINTS); `inputs`
-    are those between the steps and them. Raises NotImplementedError where the source has what is
+    are those between the steps and them. Raises NotImplementedError if the source has what is
     not in the language.
     """
     from verify.arithmetic.lanes import libm_circle
@@ -106,8 +106,8 @@ def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], o
 
 def _annotate(source: str) -> str:
     """Annotate all numbers as float64, except the steps."""
-    head, parenthesis, rest = source.partition("(")
-    arguments, end, body = rest.partition("):")
-    first, *others = (each.partition(":")[0].strip() for each in arguments.split(","))
-    annotated = ", ".join([f"{first}: 'int'", *(f"{name}: 'float'" for name in others)])
+    head, parenthesis, signature = source.partition("(")
+    arguments, end, body = signature.partition("):")
+    first, *names = (argument.partition(":")[0].strip() for argument in arguments.split(","))
+    annotated = ", ".join([f"{first}: 'int'", *(f"{name}: 'float'" for name in names)])
     return f"{head}{parenthesis}{annotated}{end}{body}"

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from verify.arithmetic.compiled import native, paths
 from verify.arithmetic.compiled.translation import Fixed as Fixed
 from verify.arithmetic.compiled.translation import Layout, Source, Word
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import LANES
 from verify.lockstep import Pending
 
 Words: TypeAlias = npt.NDArray[np.uint64]
@@ -77,7 +77,7 @@ class Orbit:
 
     @classmethod
     def from_walk(cls, layout: Layout, walk: Walk) -> "Orbit":
-        """Begin an orbit; OverflowError where a number is outside the format."""
+        """Begin an orbit; OverflowError if a number is outside the format."""
         head = layout.pack((walk.every, *walk.fixed))
         state = walk.state
         tail = state.words() if isinstance(state, State) else layout.pack_state(state)
@@ -93,13 +93,13 @@ class Orbit:
 
     @property
     def has_ended(self) -> bool:
-        """True at its last stop, or where it has left its range before: then there are fewer
+        """True at its last stop, or if it has left its range before: then there are fewer
         states."""
         return self.steps_to_stop == 0
 
     def take(self, result: Words, steps: int) -> None:
         """Take over the results of so many steps."""
-        # The first word is the number of steps done, the last one is 0 where a function had no
+        # The first word is the number of steps done, the last one is 0 if a function had no
         # value: in either case the orbit has left the range, and its last state is not one.
         if int(result[0]) < steps or not result[-1]:
             self.steps_to_stop = 0
@@ -113,7 +113,7 @@ class Orbit:
 def step_together(orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lanes: int) -> None:
     """Step orbits, as many as there are lanes or fewer, until one of them has ended.
 
-    Where the kernel is not called for a part of the way to a stop, all have the same way to each.
+    If the kernel is not called for a part of the way to a stop, all have the same way to each.
     """
     # Unused lanes repeat the first orbit: its words are valid, so that they cannot slow the loop
     # down by leaving the range.
@@ -141,11 +141,11 @@ _WORTH_COMPILING = 5_000_000  # steps in all: what lanes save then is about what
 
 
 def compile_source(source: str, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
-    """Return the function that the source defines (see `verify.arithmetic.wide.translate`).
+    """Return the function that the source defines (see `verify.arithmetic.wide.translator`).
 
     It is compiled once, and linked when it is first called, since not every kernel that is made is
-    run. It takes and gives `Fixed`, int and float. Raises OverflowError where an argument is
-    outside the format, and ValueError where a function had no value outside a loop.
+    run. It takes and gives `Fixed`, int and float. Raises OverflowError if an argument is
+    outside the format, and ValueError if a function had no value outside a loop.
     """
     return _cached_function(source, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
 
@@ -158,7 +158,7 @@ def _cached_function(source: str, fraction: int, names: Names) -> "NativeFunctio
 class NativeFunction:
     """A function of one orbit, and of several at once, with the same bits.
 
-    Where it is a kernel it is a work too (see `verify.lockstep`), of which a `Walk` is asked: its
+    If it is a kernel it is a work too (see `verify.lockstep`), of which a `Walk` is asked: its
     first argument is a number of steps, its results are the steps done and what its last arguments
     have become.
     """
@@ -166,30 +166,28 @@ class NativeFunction:
     def __init__(self, source: Source, *, anew: bool = False) -> None:
         """`anew`: not from what is kept on disk."""
         self.source = source
-        self.layout, self._one = source.compile(anew=anew)
+        self.layout, self._link = source.compile(anew=anew)
         self._expected = 0  # steps
 
     def __call__(self, *arguments: Word) -> object:
-        return self.layout.unpack(self._run_one(self.layout.pack(arguments)))
-
-    def _run_one(self, packed: bytes) -> bytes:
+        packed = self.layout.pack(arguments)
         result = ctypes.create_string_buffer(sum(self.layout.result_sizes) + 8)
-        self._one()(packed, result)
-        return result.raw
+        self._link()(packed, result)
+        return self.layout.unpack(result.raw)
 
     # -- several ------------------------------------------------------------------------------
 
     @cached_property
-    def lanes(self) -> "Callable[[Words], Words] | None":
-        """The same as `one`, for as many orbits as there are lanes; None where one by one is
+    def lane_kernel(self) -> "Callable[[Words], Words] | None":
+        """The same as `orbit_kernel`, for as many orbits as there are lanes; None if one by one is
         better."""
-        if self._in_lanes is None:
+        if self._lane_source is None:
             return None
-        _, linked = self._in_lanes.compile()
+        _, linked = self._lane_source.compile()
         return partial(_call, linked(), sum(self.layout.result_sizes) // 8 + 1)
 
     @cached_property
-    def _in_lanes(self) -> Source | None:
+    def _lane_source(self) -> Source | None:
         path = paths.choose_path()
         if path is None or self.source.fraction > _MOST_IN_LANES:
             return None
@@ -203,41 +201,41 @@ class NativeFunction:
     def _no_need_to_compile(self) -> bool:
         """Lanes that are kept from earlier, or asked for, are used for short work too."""
         return bool(paths.forced_path()) or (
-            self._in_lanes is not None and self._in_lanes.is_cached
+            self._lane_source is not None and self._lane_source.is_cached
         )
 
     @cached_property
-    def one(self) -> "Callable[[Words], Words]":
+    def orbit_kernel(self) -> "Callable[[Words], Words]":
         """The function from the arguments' words to the results' words; an orbit is a column."""
-        return partial(_call, self._one(), sum(self.layout.result_sizes) // 8 + 1)
+        return partial(_call, self._link(), sum(self.layout.result_sizes) // 8 + 1)
 
     def advance(self, pending: Sequence[Pending]) -> None:
         """Advance the walks that several orbits request, until one of them is at its end."""
-        for each in pending:
-            if each.state is None:
+        for work in pending:
+            if work.state is None:
                 try:
-                    each.state = Orbit.from_walk(self.layout, each.request)
+                    work.state = Orbit.from_walk(self.layout, work.request)
                 except OverflowError as error:
-                    each.end(None, error)
+                    work.end(None, error)
                     return
         # Who waits longest, so that nobody is left behind, and of the others those with the
         # longest way to go: then few are left to go alone at the end.
-        longest = sorted(pending[1:], key=lambda each: -each.state.steps_left)
+        longest = sorted(pending[1:], key=lambda work: -work.state.steps_left)
         chosen = [pending[0], *longest]
-        chosen = (chosen if self.in_parts else _as_far_as_the_first(chosen))[:LANES]
+        chosen = (chosen if self.in_parts else _equally_far(chosen))[:LANES]
         worth = self._expected >= _WORTH_COMPILING or self._no_need_to_compile
-        lanes = self.lanes if worth and len(chosen) >= _LEAST_IN_LANES else None
-        # Compilation for lanes takes seconds; it repays only where many steps are expected.
+        lanes = self.lane_kernel if worth and len(chosen) >= _LEAST_IN_LANES else None
+        # Compilation for lanes takes seconds; it repays only if many steps are expected.
         if lanes is None:
             chosen = chosen[:1]
-        kernel, orbits = lanes or self.one, [each.state for each in chosen]
+        kernel, orbits = lanes or self.orbit_kernel, [work.state for work in chosen]
         begin_time = time.perf_counter()  # it is compiled now
         step_together(orbits, kernel, LANES if lanes else 1)
         share = (time.perf_counter() - begin_time) / len(chosen)
-        for each in chosen:
-            each.seconds += share
-            if each.state.has_ended:
-                each.end(each.state.states)
+        for work in chosen:
+            work.seconds += share
+            if work.state.has_ended:
+                work.end(work.state.states)
 
     @cached_property
     def in_parts(self) -> bool:
@@ -245,11 +243,11 @@ class NativeFunction:
         return "k == 0" not in self.source.text
 
 
-def _as_far_as_the_first(pending: Sequence[Pending]) -> list[Pending]:
+def _equally_far(pending: Sequence[Pending]) -> list[Pending]:
     """Return those as far from their next stop as the first; all stand at a stop, and so they
     stay alike."""
     distance = pending[0].state.steps_to_stop
-    return [each for each in pending if each.state.steps_to_stop == distance]
+    return [work for work in pending if work.state.steps_to_stop == distance]
 
 
 def _call(linked: native.Native, size: int, arguments: Words) -> Words:

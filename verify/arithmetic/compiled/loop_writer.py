@@ -18,14 +18,12 @@ from typing import Any, TypeAlias
 
 from llvmlite import ir
 
-from verify.arithmetic.wide import memory
-from verify.arithmetic.wide.limbs import I64, constant
-from verify.arithmetic.wide.memory import DOUBLE
-from verify.arithmetic.wide.one_orbit import float_function
+from verify.arithmetic.wide.limbs import I64, Value, constant
+from verify.arithmetic.wide.newton import DOUBLE
+from verify.arithmetic.wide.one_orbit import float_function, read_number, write_number
 
 Function: TypeAlias = Callable[..., Any]
 Ours: TypeAlias = Any  # a node of a source that we wrote, whose parts are known
-Number: TypeAlias = Any  # LLVM's
 _TYPES = {"float": DOUBLE, "int": I64}
 _OPERATIONS = {
     ast.Add: ("add", "fadd"), ast.Sub: ("sub", "fsub"), ast.Mult: ("mul", "fmul"),
@@ -39,8 +37,8 @@ _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "=="
 class Array:
     """An array of rows with so many columns, or with none, of numbers."""
 
-    pointer: Number
-    length: Number
+    pointer: Value
+    length: Value
     columns: int = 0
 
 
@@ -51,7 +49,7 @@ class Frame:
     names: dict[str, Any]
     globals: dict[str, Any]  # its module's names
     end: ir.Block
-    results: list[Number] = field(default_factory=list)  # places
+    results: list[Value] = field(default_factory=list)  # places
     loops: list[tuple[ir.Block, ir.Block]] = field(default_factory=list)  # next, after
 
 
@@ -69,22 +67,22 @@ class LoopWriter:
     def write(self, function: Function, kinds: Sequence[str]) -> tuple[str, ...]:
         """Write the function for arguments of these kinds; return the kinds of its results."""
         arguments, offset = [], 0
-        for kind, _, columns in (each.partition(" ") for each in kinds):
+        for kind, _, columns in (result.partition(" ") for result in kinds):
             read = I64 if columns else _TYPES[kind]
-            value, offset = memory.read(self.b, self.main.args[0], offset, read)
+            value, offset = read_number(self.b, self.main.args[0], offset, read)
             if columns:
-                length, offset = memory.read(self.b, self.main.args[0], offset, I64)
+                length, offset = read_number(self.b, self.main.args[0], offset, I64)
                 pointer = self.b.inttoptr(value, _TYPES[kind].as_pointer())
                 value = Array(pointer, length, int(columns))
             arguments.append(value)
         results, offset = self._inline(function, arguments), 0
-        for each in results:
-            offset = memory.write(self.b, self.main.args[1], offset, each)
+        for result in results:
+            offset = write_number(self.b, self.main.args[1], offset, result)
         self.b.ret_void()
         self.places.branch(self.main.blocks[1])
         return tuple("float" if x.type == DOUBLE else "int" for x in results)
 
-    def _inline(self, function: Function, arguments: Sequence[Any]) -> list[Number]:
+    def _inline(self, function: Function, arguments: Sequence[Any]) -> list[Value]:
         """Write the function's text here, and return its results."""
         definition: Ours = ast.parse(inspect.getsource(function)).body[0]
         outer = self.frame
@@ -93,7 +91,7 @@ class LoopWriter:
             self._assign(argument.arg, value)
         self._block(definition.body)
         self.b.position_at_end(self.frame.end)
-        results = [self.b.load(place) for place in self.frame.results]
+        results = [self.b.load(address) for address in self.frame.results]
         self.frame = outer
         return results
 
@@ -120,8 +118,8 @@ class LoopWriter:
         (target,) = statement.targets
         if isinstance(target, ast.Tuple):
             values = self._several(statement.value, len(target.elts))
-            for each, value in zip(target.elts, values, strict=True):
-                self._store(each, value)
+            for element, value in zip(target.elts, values, strict=True):
+                self._store(element, value)
         else:
             self._store(target, self._expression(statement.value))
 
@@ -133,8 +131,8 @@ class LoopWriter:
         if isinstance(target, ast.Name):
             self._assign(target.id, value)
         else:
-            place = self._place(target)
-            self.b.store(self._as(value, place.type.pointee), place)
+            address = self._address(target)
+            self.b.store(self._as(value, address.type.pointee), address)
 
     def _assign(self, name: str, value: Any) -> None:
         names = self.frame.names
@@ -175,7 +173,7 @@ class LoopWriter:
         self._go(head)
         self.b.position_at_end(after)
 
-    def _loop(self, goes_on: Number, body: Sequence[ast.stmt], following: ir.Block) -> None:
+    def _loop(self, goes_on: Value, body: Sequence[ast.stmt], following: ir.Block) -> None:
         """Write a loop at its head; `following` is where it goes on behind the body."""
         inside, after = (self.b.append_basic_block(x) for x in ("loop", "done"))
         self.b.cbranch(goes_on, inside, after)
@@ -190,8 +188,8 @@ class LoopWriter:
         frame, values = self.frame, self._several(statement.value, 0)
         if not frame.results:
             frame.results = [self.places.alloca(x.type) for x in values]
-        for x, place in zip(values, frame.results, strict=True):
-            self.b.store(self._as(x, place.type.pointee), place)
+        for x, address in zip(values, frame.results, strict=True):
+            self.b.store(self._as(x, address.type.pointee), address)
         self._go(frame.end)
 
     # -- expressions --------------------------------------------------------------------------
@@ -200,7 +198,7 @@ class LoopWriter:
         """Return the elements of a tuple, the results of a call, or the first numbers of a row;
         else one number."""
         if isinstance(node, ast.Tuple):
-            return [self._expression(each) for each in node.elts]
+            return [self._expression(element) for element in node.elts]
         if isinstance(node, ast.Call):
             return self._call(node)
         value = self._expression(node)
@@ -226,21 +224,21 @@ class LoopWriter:
                 return self._item(node)
         raise NotImplementedError(ast.dump(node))
 
-    def _number(self, value: Any) -> Number:
+    def _number(self, value: Any) -> Value:
         return constant(value, 64) if isinstance(value, int) else ir.Constant(DOUBLE, value)
 
-    def _as(self, value: Number, kind: ir.Type) -> Number:
+    def _as(self, value: Value, kind: ir.Type) -> Value:
         if value.type == kind:
             return value
         if kind != DOUBLE:
             raise NotImplementedError("a float64 as an integer")
         return self.b.sitofp(value, DOUBLE)
 
-    def _alike(self, x: Number, y: Number) -> tuple[Number, Number]:
+    def _alike(self, x: Value, y: Value) -> tuple[Value, Value]:
         kind = x.type if x.type == y.type else DOUBLE
         return self._as(x, kind), self._as(y, kind)
 
-    def _operation(self, operator: ast.operator, x: Number, y: Number) -> Number:
+    def _operation(self, operator: ast.operator, x: Value, y: Value) -> Value:
         x, y = self._alike(x, y)
         name = _OPERATIONS[type(operator)][x.type == DOUBLE]
         if not name:
@@ -250,10 +248,10 @@ class LoopWriter:
     def _item(self, node: Ours) -> Any:
         array = self._expression(node.value)
         if array.columns and not isinstance(node.slice, ast.Tuple):
-            return Array(self._place(node), constant(array.columns, 64))
-        return self.b.load(self._place(node))
+            return Array(self._address(node), constant(array.columns, 64))
+        return self.b.load(self._address(node))
 
-    def _place(self, node: Ours) -> Number:
+    def _address(self, node: Ours) -> Value:
         """Return the address of a number, or of the beginning of a row."""
         array, indices = self._expression(node.value), [node.slice]
         if isinstance(node.slice, ast.Tuple):
@@ -263,8 +261,8 @@ class LoopWriter:
         index = self.b.add(index, column[0]) if column else index
         return self.b.gep(array.pointer, [index])
 
-    def _call(self, node: Ours) -> list[Number]:
-        name, values = node.func.id, [self._expression(each) for each in node.args]
+    def _call(self, node: Ours) -> list[Value]:
+        name, values = node.func.id, [self._expression(argument) for argument in node.args]
         if name in ("min", "max"):
             return [reduce(lambda x, y: self._least("<>"[name == "max"], x, y), values)]
         if name == "len":
@@ -274,12 +272,12 @@ class LoopWriter:
             return [self.b.call(float_function(self.module, name), values)]
         return self._inline(function, values)
 
-    def _least(self, order: str, x: Number, y: Number) -> Number:
+    def _least(self, order: str, x: Value, y: Value) -> Value:
         """Return the first of those that come first in this order."""
         x, y = self._alike(x, y)
         return self.b.select(self._compare(order, y, x), y, x)
 
-    def _condition(self, node: ast.expr) -> Number:
+    def _condition(self, node: ast.expr) -> Value:
         """Write a condition; all of it is evaluated, as nothing in it has side effects."""
         match node:
             case ast.BoolOp(op=operator, values=values):
@@ -290,7 +288,7 @@ class LoopWriter:
                 return self._compare(_COMPARE[type(operator)], *self._alike(x, y))
         raise NotImplementedError(ast.dump(node))
 
-    def _compare(self, order: str, x: Number, y: Number) -> Number:
+    def _compare(self, order: str, x: Value, y: Value) -> Value:
         if x.type != DOUBLE:
             return self.b.icmp_signed(order, x, y)
         compare = self.b.fcmp_unordered if order == "!=" else self.b.fcmp_ordered

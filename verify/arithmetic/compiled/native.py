@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import llvmlite
 from llvmlite import binding as llvm
 
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import LANES
 
 if TYPE_CHECKING:
     from llvmlite import ir

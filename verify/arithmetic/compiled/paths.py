@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.arithmetic.wide.translate import Target
+    from verify.arithmetic.wide.translator import Target
 
 VARIABLE, OFF = "VERIFY_LANES", "off"
 
@@ -38,9 +38,9 @@ class Path:
     @property
     def is_available(self) -> bool:
         """True if this processor has the required features."""
-        from verify.arithmetic import processor
+        from verify.arithmetic.lanes import vectors
 
-        return all(processor.features().get(name, False) for name in self.required)
+        return all(vectors.features().get(name, False) for name in self.required)
 
 
 _FASTEST_FIRST = (
@@ -51,7 +51,7 @@ PATHS = {path.name: path for path in (*_FASTEST_FIRST, Path("portable", "Portabl
 
 
 def forced_path() -> str:
-    """Return the way that VERIFY_LANES names, or empty. Raises InputError where that is unknown."""
+    """Return the way that VERIFY_LANES names, or empty. Raises InputError if that is unknown."""
     name = os.environ.get(VARIABLE, "")
     if name and name not in (*PATHS, OFF):
         raise InputError(VARIABLE, name, f"allowed: {', '.join([*PATHS, OFF])}")
@@ -61,7 +61,7 @@ def forced_path() -> str:
 def choose_path() -> Path | None:
     """Choose the way; None is one orbit after the other.
 
-    Raises InputError where VERIFY_LANES names a way that is unknown, or not available.
+    Raises InputError if VERIFY_LANES names a way that is unknown, or not available.
     """
     name = forced_path()
     if name == OFF:

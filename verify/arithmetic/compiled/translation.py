@@ -11,7 +11,7 @@ from typing import Any
 from verify import code_cache
 from verify.arithmetic.compiled import native
 from verify.arithmetic.wide.size import WORD, sizes_of, words_of
-from verify.arithmetic.wide.translate import Target, Translator
+from verify.arithmetic.wide.translator import Target, Translator
 
 
 class Fixed:
@@ -80,7 +80,7 @@ class Layout:
         return struct.Struct("<" + "".join("d" if k == "float" else f"{n}s" for k, n in kinds))
 
     def pack(self, arguments: Sequence[Word]) -> bytes:
-        """Pack the first arguments, or all; OverflowError where one is outside the format."""
+        """Pack the first arguments, or all; OverflowError if one is outside the format."""
         return b"".join(map(self._pack_word, arguments, self.arguments))
 
     def pack_state(self, state: Sequence[Word]) -> bytes:
@@ -97,7 +97,7 @@ class Layout:
         return raw.to_bytes(8 * words_of(bits), "little", signed=True)
 
     def unpack(self, raw: bytes) -> object:
-        """Return the results; ValueError where a function had no value outside a loop."""
+        """Return the results; ValueError if a function had no value outside a loop."""
         if not raw[self.result_at[-1]]:
             raise ValueError("a function has no value there")
         values = tuple(map(self.result, self.pieces.unpack_from(raw), count()))

@@ -18,8 +18,7 @@ from verify.arithmetic.lanes import libm_circle, vectors
 from verify.arithmetic.lanes.functions import apply_to_doubles
 from verify.arithmetic.lanes.libm_circle import LibmCircle
 from verify.arithmetic.lanes.schedule import reorder
-from verify.arithmetic.lanes.vectors import DOUBLES, WORDS
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import DOUBLES, LANES, WORDS
 from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.one_orbit import BOOL
 
@@ -28,9 +27,9 @@ _ALIGNED = 8  # bytes; numbers come from Python's memory
 
 
 class DoublesInLanes:
-    """See `verify.arithmetic.wide.translate.Target`.
+    """See `verify.arithmetic.wide.translator.Target`.
 
-    A number is a tuple of vectors, one for each of the `sets` of lanes; or a vector, where it is
+    A number is a tuple of vectors, one for each of the `sets` of lanes; or a vector, if it is
     the same for all of them. The steps and their counter are one word. The last arguments, so many
     as are `carried`, differ from point to point. `function_names`: the functions that the source
     calls.
@@ -41,8 +40,6 @@ class DoublesInLanes:
         circle_functions = [name for name in libm_circle.NAMES if name in function_names]
         self.circle = LibmCircle(self.module, sets, circle_functions)
         self._variables: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
-        # The last argument of the circle's functions, and their values for it.
-        self._circle_results: tuple[Any, dict[str, Any]] = None, {}
         self._loop_locals: set[str] = set()  # variables of loops that have ended
         self._where: Any = None  # the lanes for which an `if` holds
 
@@ -60,15 +57,15 @@ class DoublesInLanes:
             self._variables[name] = tuple(parts) if index >= first_carried else parts[0]
 
     def _read(self, memory: Value, index: int, lane_set: int, kind: str) -> Value:
-        place = self._place(self.b, memory, index, lane_set)
+        address = self._address(self.b, memory, index, lane_set)
         if kind == "int":
-            place = self.b.bitcast(place, I64.as_pointer())
-        return self.b.load(place, align=_ALIGNED)
+            address = self.b.bitcast(address, I64.as_pointer())
+        return self.b.load(address, align=_ALIGNED)
 
-    def _place(self, b: ir.IRBuilder, memory: Value, index: int, lane_set: int) -> Value:
+    def _address(self, b: ir.IRBuilder, memory: Value, index: int, lane_set: int) -> Value:
         """Return the address of a number's row for one set of lanes."""
-        place = b.gep(memory, [constant((index * self.sets + lane_set) * LANES, 64)])
-        return b.bitcast(place, DOUBLES.as_pointer())
+        address = b.gep(memory, [constant((index * self.sets + lane_set) * LANES, 64)])
+        return b.bitcast(address, DOUBLES.as_pointer())
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
@@ -80,7 +77,7 @@ class DoublesInLanes:
         for index, value in enumerate(results):
             for lane_set, x in enumerate(self._in_sets(value)):
                 word = b.bitcast(vectors.same(b, x, WORDS), DOUBLES) if x.type == I64 else x
-                b.store(word, self._place(b, b.function.args[1], index, lane_set), align=_ALIGNED)
+                b.store(word, self._address(b, b.function.args[1], index, lane_set), align=_ALIGNED)
         b.ret_void()
 
     def when(self, condition: Any, body: Callable[[], None]) -> None:
@@ -91,10 +88,10 @@ class DoublesInLanes:
 
     def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
         before = dict(self._variables)
-        loop_variables = [each for each in before if each in assigned]
-        if any(self.kind(before[each]) == "int" for each in loop_variables):
+        loop_variables = [variable for variable in before if variable in assigned]
+        if any(self.kind(before[variable]) == "int" for variable in loop_variables):
             _refuse("integers that a loop changes")
-        places = {each: self._room() for each in loop_variables}
+        places = {variable: self._room() for variable in loop_variables}
         self._keep(places)
         b, counter = self._close(), self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
@@ -115,7 +112,7 @@ class DoublesInLanes:
         # A variable that is first set in the loop has no value if the loop makes no pass; reading
         # it afterwards is refused.
         self._loop_locals |= {name, *assigned} - before.keys()
-        self._circle_results = None, {}
+        self.circle.forget()
 
     def leave(self) -> None:
         _refuse("a loop that some points leave before others")
@@ -138,11 +135,17 @@ class DoublesInLanes:
         return chain[-1]
 
     def _each(self, operation: Callable[..., Value], *values: Any) -> Any:
-        """Apply the operation, which takes a builder first, to each of the sets; once where all
+        """Apply the operation, which takes a builder first, to each of the sets; once if all
         is the same for them."""
         if not any(isinstance(x, tuple) for x in values):
             return operation(self.b, *values)
         return tuple(map(operation, self._of_sets, *map(self._in_sets, values)))
+
+    def _for_all(self, operation: Callable[[ir.IRBuilder], Any]) -> None:
+        """Apply an operation, which takes a builder, once for all sets."""
+        b = self._close()
+        operation(b)
+        self._open(b)
 
     def _in_sets(self, value: Any) -> Sequence[Value]:
         return value if isinstance(value, tuple) else (value,) * self.sets
@@ -214,19 +217,19 @@ class DoublesInLanes:
 
     def compare(self, order: str, x: Any, y: Any) -> Any:
         compare = _B.icmp_signed if self.kind(x) == "int" else _B.fcmp_ordered
-        return self._each(lambda b, *each: compare(b, order, *each), x, y)
+        return self._each(lambda b, *vectors_: compare(b, order, *vectors_), x, y)
 
     def inside(self, x: Any, limit: Any) -> Any:
         _refuse("limits of a number format")
 
-    def opposite(self, condition: Any) -> Any:
+    def negation(self, condition: Any) -> Any:
         return self._each(_B.not_, condition)
 
-    def both(self, x: Any, y: Any) -> Any:
-        return self._each(lambda b, *each: b.and_(*(vectors.in_lanes(b, c) for c in each)), x, y)
+    def conjunction(self, x: Any, y: Any) -> Any:
+        return self._each(lambda b, *terms: b.and_(*(vectors.in_lanes(b, c) for c in terms)), x, y)
 
-    def either(self, x: Any, y: Any) -> Any:
-        return self._each(lambda b, *each: b.or_(*(vectors.in_lanes(b, c) for c in each)), x, y)
+    def disjunction(self, x: Any, y: Any) -> Any:
+        return self._each(lambda b, *terms: b.or_(*(vectors.in_lanes(b, c) for c in terms)), x, y)
 
     # -- functions ----------------------------------------------------------------------------
 
@@ -237,32 +240,9 @@ class DoublesInLanes:
         if name == "abs":
             return [self._each(vectors.absolute, x)]
         if name in libm_circle.NAMES and libm_circle.is_available():
-            return [self._by_circle(name, x)]
-        return [self._each(lambda b, each: apply_to_doubles(b, name, each), x)]
-
-    def _by_circle(self, name: str, x: Any) -> Any:
-        """Return one of the functions that are computed for all sets, and all of them at once."""
-        if self._circle_results[0] is not x:
-            names = self.circle.names
-            sizes = self.sets, self.sets * len(names)
-            inputs, outputs = (self.allocations.alloca(DOUBLES, size=size) for size in sizes)
-            self._each(
-                lambda b, x, k: b.store(x, b.gep(inputs, [k])), self._in_sets(x), self._row(0)
-            )
-            b = self._close()
-            b.call(self.circle.function, [inputs, outputs])
-            self._open(b)
-            values = {
-                function: self._each(lambda b, k: b.load(b.gep(outputs, [k])), self._row(index))
-                for index, function in enumerate(names)
-            }
-            self._circle_results = x, values
-        return self._circle_results[1][name]
-
-    def _row(self, index: int) -> tuple[Value, ...]:
-        """Return the places of a number's sets, rows of them one after the other."""
-        return tuple(constant(index * self.sets + lane_set, 64) for lane_set in range(self.sets))
+            return [self.circle.apply(name, x, self.allocations, self._each, self._for_all)]
+        return [self._each(lambda b, vector: apply_to_doubles(b, name, vector), x)]
 
 
-def _refuse(what: str) -> NoReturn:
-    raise NotImplementedError(what)
+def _refuse(reason: str) -> NoReturn:
+    raise NotImplementedError(reason)

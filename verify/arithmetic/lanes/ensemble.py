@@ -1,7 +1,7 @@
 """Orbits in lockstep as LLVM IR: each of a kernel's numbers is one in each lane.
 
 Nothing branches but the loop. Under an `if` a variable keeps its value in the lanes where the
-condition is false. Lanes that return within the loop retire (`verify.arithmetic.lanes.passes`), so
+condition is false. Lanes that return within the loop retire (`verify.arithmetic.lanes.memory`), so
 that a lane that fails hurts no other.
 """
 
@@ -12,24 +12,22 @@ from typing import Any
 from llvmlite import ir
 
 from verify.arithmetic.lanes import libm_circle, vectors
-from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.functions import LaneFunctions, apply_to_doubles
 from verify.arithmetic.lanes.libm_circle import LibmCircle
-from verify.arithmetic.lanes.memory import Memory
+from verify.arithmetic.lanes.memory import Memory, Retirement, Variables
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.numbers import Numbers
-from verify.arithmetic.lanes.passes import Retirement, Variables
+from verify.arithmetic.lanes.products import LaneNumber
 from verify.arithmetic.lanes.schedule import reorder
-from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, LANES, WORDS
 from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of
 
 
 class Ensemble:
-    """See `verify.arithmetic.wide.translate.Target`.
+    """See `verify.arithmetic.wide.translator.Target`.
 
-    A wide number is a `Number`; a double or an integer is a vector, but for the steps and their
+    A wide number is a `LaneNumber`; a double or an integer is a vector, but for the steps and their
     counter, which are one for all lanes; a condition is a vector too, or one for all.
     """
 
@@ -40,8 +38,6 @@ class Ensemble:
         self.functions = LaneFunctions(self.module, self.numbers)
         self.memory = Memory(self.numbers, self.widths)
         self.circle = LibmCircle(self.module, 1, libm_circle.NAMES)
-        # The last argument of the circle's functions, and their values for it.
-        self._circle_results: tuple[Any, dict[str, Value]] = None, {}
         self._variables: dict[str, Any] = {}
         self._retirement: Retirement | None = None  # of the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
@@ -92,14 +88,14 @@ class Ensemble:
         b, before = self.b, dict(self._variables)
         changed_here = [n for n in before if n in assigned or n == "valid"]
         variables = Variables(self.numbers)
-        for each in changed_here:
-            variables.add(b, self.allocations, each, before[each])
+        for variable in changed_here:
+            variables.add(b, self.allocations, variable, before[variable])
         variables.keep(b, before)
         self._retirement = Retirement(b, self.allocations, limit)
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
         for value in (value for n, value in before.items() if n not in changed_here):
-            if isinstance(value, Number):  # it stays as it is: its factors are made once
+            if isinstance(value, LaneNumber):  # it stays as it is: its factors are made once
                 self.numbers.prepare(b, value)
         head, inside, self._finish = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
@@ -114,7 +110,7 @@ class Ensemble:
         b.branch(head)
         b.position_at_end(self._finish)
         self._variables = before | variables.fetch(b, before)
-        self._circle_results = None, {}
+        self.circle.forget()
 
     def leave(self) -> None:
         raise NotImplementedError("a loop that some lanes leave before others")
@@ -138,12 +134,12 @@ class Ensemble:
             value = self._select(self._where, value, before)
         self._variables[name] = value
 
-    def _select(self, where: Value, value: Any, other: Any) -> Any:
-        if isinstance(value, Number):
-            return self.numbers.choose(self.b, where, value, other)
-        if value.type == I64 or other.type == I64:
-            value, other = (self.memory.words(self.b, v)[0] for v in (value, other))
-        return self.b.select(where, value, other)
+    def _select(self, condition: Value, x: Any, y: Any) -> Any:
+        if isinstance(x, LaneNumber):
+            return self.numbers.choose(self.b, condition, x, y)
+        if x.type == I64 or y.type == I64:
+            x, y = (self.memory.words(self.b, v)[0] for v in (x, y))
+        return self.b.select(condition, x, y)
 
     def integer(self, value: int) -> Value:
         return constant(value, 64)
@@ -154,14 +150,14 @@ class Ensemble:
         return self.numbers.constant(value.raw, self.widths["wide"])
 
     def kind(self, value: Any) -> str:
-        if isinstance(value, Number):
+        if isinstance(value, LaneNumber):
             return "wide" if value.width == self.widths["wide"] else "sum"
         return "float" if value.type == DOUBLES else "int"
 
     def convert(self, value: Any, kind: str) -> Any:
-        if isinstance(value, Number) and kind == "sum":
+        if isinstance(value, LaneNumber) and kind == "sum":
             return self.numbers.extend(self.b, value, self.widths["sum"])
-        if isinstance(value, Number) or value.type == DOUBLES:
+        if isinstance(value, LaneNumber) or value.type == DOUBLES:
             raise TypeError(f"{self.kind(value)} is no {kind}; use wide(x) or approx(x)")
         if not isinstance(value, ir.Constant):
             raise TypeError(f"{value} is no {kind}")
@@ -172,13 +168,13 @@ class Ensemble:
     # -- operations ---------------------------------------------------------------------------
 
     def negative(self, x: Any) -> Any:
-        if isinstance(x, Number):
+        if isinstance(x, LaneNumber):
             return self.numbers.neg(self.b, x)
         return self.b.fneg(x) if x.type == DOUBLES else self.b.neg(x)
 
     def sum(self, sign: str, x: Any, y: Any) -> Any:
         b = self.b
-        if isinstance(x, Number):
+        if isinstance(x, LaneNumber):
             operation = self.numbers.add if sign == "+" else self.numbers.sub
             return operation(b, x, y)
         floating = x.type == DOUBLES
@@ -187,25 +183,25 @@ class Ensemble:
         return b.fsub(x, y) if floating else b.sub(x, y)
 
     def product(self, x: Any, y: Any) -> Any:
-        if isinstance(x, Number):
+        if isinstance(x, LaneNumber):
             return self.numbers.product(self.b, x, y)
         return self.b.fmul(x, y)
 
     def quotient(self, x: Value, y: Value) -> Value:
         return self.b.fdiv(x, y)
 
-    def opposite(self, condition: Value) -> Value:
+    def negation(self, condition: Value) -> Value:
         return self.b.not_(condition)
 
-    def both(self, x: Value, y: Value) -> Value:
-        return self.b.and_(*(vectors.in_lanes(self.b, each) for each in (x, y)))
+    def conjunction(self, x: Value, y: Value) -> Value:
+        return self.b.and_(*(vectors.in_lanes(self.b, condition) for condition in (x, y)))
 
-    def either(self, x: Value, y: Value) -> Value:
-        return self.b.or_(*(vectors.in_lanes(self.b, each) for each in (x, y)))
+    def disjunction(self, x: Value, y: Value) -> Value:
+        return self.b.or_(*(vectors.in_lanes(self.b, condition) for condition in (x, y)))
 
     def compare(self, order: str, x: Any, y: Any) -> Value:
         b = self.b
-        if not isinstance(x, Number):
+        if not isinstance(x, LaneNumber):
             compare = b.fcmp_ordered if x.type == DOUBLES else b.icmp_signed
             return compare(order, x, y)
         numbers = self.numbers
@@ -222,7 +218,7 @@ class Ensemble:
                 return numbers.equal(b, x, y)
         return b.not_(numbers.equal(b, x, y))
 
-    def inside(self, x: Number, limit: Number) -> Value:
+    def inside(self, x: LaneNumber, limit: LaneNumber) -> Value:
         return self.numbers.inside(self.b, x, limit)
 
     # -- functions ----------------------------------------------------------------------------
@@ -230,38 +226,31 @@ class Ensemble:
     def function(self, name: str, values: Sequence[Any]) -> list[Any]:
         b, x = self.b, values[0]
         if name == "abs":
-            if isinstance(x, Number):
+            if isinstance(x, LaneNumber):
                 return [self.numbers.absolute(b, x)]
             return [vectors.absolute(b, x)]
         if name == "approx":
             return [self.numbers.to_double(b, x)]
         if name == "shifted":
-            by = values[1]  # a literal is one word for all lanes
-            by = vectors.same(b, by, WORDS) if by.type == I64 else by
-            return [self.numbers.shift_down(b, x, by)]
+            shift = values[1]  # a literal is one word for all lanes
+            shift = vectors.same(b, shift, WORDS) if shift.type == I64 else shift
+            return [self.numbers.shift_down(b, x, shift)]
         if name == "wide":
             return [self._wide(x)]
-        if not isinstance(x, Number):
+        if not isinstance(x, LaneNumber):
             plain = name.removeprefix("f_")
             if plain in libm_circle.NAMES and libm_circle.is_available():
-                return [self._by_circle(plain, x)]
+                return [self.circle.apply(plain, x, self.allocations, self._here, self._here)]
             return [apply_to_doubles(b, name, x)]
-        valid, results = self.functions.call(b, name, x, self.allocations)
-        self._require(valid)
-        return list(results)
+        results = self.functions.call(b, name, x, self.allocations)
+        self._require(results.valid)
+        return list(results.values)
 
-    def _by_circle(self, name: str, x: Value) -> Value:
-        """Return sin or cos of float64; both are computed at once."""
-        if self._circle_results[0] is not x:
-            b = self.b
-            inputs, outputs = (self.allocations.alloca(DOUBLES, size=n) for n in (1, 2))
-            b.store(x, inputs)
-            b.call(self.circle.function, [inputs, outputs])
-            values = [b.load(b.gep(outputs, [constant(index, 64)])) for index in range(2)]
-            self._circle_results = x, dict(zip(self.circle.names, values, strict=True))
-        return self._circle_results[1][name]
+    def _here(self, operation: Callable[..., Any], *values: Any) -> Any:
+        """Apply an operation, which takes a builder first."""
+        return operation(self.b, *values)
 
-    def _wide(self, x: Value) -> Number:
+    def _wide(self, x: Value) -> LaneNumber:
         top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
         size = vectors.absolute(self.b, x)
         fits = self.b.fcmp_ordered("<", size, top)

@@ -1,25 +1,30 @@
 """Functions of numbers in lanes, with the bits of those of one orbit.
 
-Where a function is written in lanes it says in which of them it is unsure of its last bit. There,
-and where it is not written in lanes, the function of one orbit is called, lane by lane.
+If a function is written in lanes it says in which of them it is unsure of its last bit. There,
+and if it is not written in lanes, the function of one orbit is called, lane by lane.
 
-1/x and √x of numbers in lanes, by the steps of one orbit's functions.
-
-`verify.arithmetic.wide.newton` iterates with sums and rounded products of numbers, from a guess in
-float64. Each of these operations has the same bits in lanes, so that what is made of them has.
+1/x and √x are iterated from a guess in float64 by sums and rounded products of numbers, step by
+step as in `verify.arithmetic.wide.newton`. Each of these operations has the same bits in lanes, so
+that what is made of them has.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.circle import Circle
-from verify.arithmetic.lanes.exponential import Exponential
-from verify.arithmetic.lanes.numbers import Numbers
-from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, WORDS, splat, splat_double
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.numbers import FunctionValues, Numbers
+from verify.arithmetic.lanes.products import LaneNumber
+from verify.arithmetic.lanes.transcendentals import Circle, Exponential
+from verify.arithmetic.lanes.vectors import (
+    CONDITIONS,
+    DIGIT,
+    DOUBLES,
+    LANES,
+    WORDS,
+    splat,
+    splat_double,
+)
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, MoreFunctions, iterations
@@ -28,12 +33,12 @@ from verify.arithmetic.wide.size import words_of
 
 
 class Newton:
-    """1/x and √x for numbers of one format: (where there is a value, the number)."""
+    """1/x and √x for numbers of one format."""
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
         self.module, self.numbers, self.fraction = module, numbers, numbers.fraction
 
-    def inverse(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
+    def inverse(self, b: ir.IRBuilder, x: LaneNumber) -> FunctionValues:
         """Iterate y ← y + y (1 − x y)."""
         numbers, one = self.numbers, splat_double(1.0)
         size = numbers.from_settled(numbers.settle(b, numbers.absolute(b, x)), numbers.size)
@@ -44,9 +49,9 @@ class Newton:
         for _ in range(iterations(self.fraction, quadratic=True)):
             error = numbers.sub(b, unit, numbers.product(b, x, y))
             y = numbers.add(b, y, numbers.product(b, y, error))
-        return valid, y
+        return FunctionValues([y], valid)
 
-    def sqrt(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
+    def sqrt(self, b: ir.IRBuilder, x: LaneNumber) -> FunctionValues:
         """Iterate s ← s + (x − s²)/(2 s₀)."""
         numbers = self.numbers
         valid = self._at_least(b, x, LEAST_ROOT)
@@ -57,9 +62,9 @@ class Newton:
         for _ in range(iterations(self.fraction, quadratic=False)):
             rest = numbers.sub(b, x, numbers.product(b, s, s))
             s = numbers.add(b, s, numbers.product(b, rest, slope))
-        return valid, s
+        return FunctionValues([s], valid)
 
-    def _at_least(self, b: ir.IRBuilder, x: Number, places: int) -> Value:
+    def _at_least(self, b: ir.IRBuilder, x: LaneNumber, places: int) -> Value:
         """Return the condition x ≥ 2^−places."""
         least = self.numbers.constant(1 << self.fraction - places, self.numbers.size)
         return b.not_(self.numbers.less(b, x, least))
@@ -70,17 +75,16 @@ class LaneFunctions:
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
         self.module, self.numbers, self._words = module, numbers, words_of(numbers.size)
-        self.one = MoreFunctions(module, numbers.fraction)
+        self.of_one_orbit = MoreFunctions(module, numbers.fraction)
         self._loops: dict[str, ir.Function] = {}
-        # What is written in lanes: where it is unsure, and its values.
-        self._in_lanes: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
-        newton = Newton(module, numbers)
-        # What has the bits of one orbit at once: where it has a value, and that.
-        self._exact = {"inverse": newton.inverse, "sqrt": newton.sqrt}
-        circle = Circle(module, numbers)
+        newton, circle = Newton(module, numbers), Circle(module, numbers)
         exponential = Exponential(module, numbers)
+        self._in_lanes: dict[str, Callable[[ir.IRBuilder, LaneNumber], FunctionValues]] = {
+            "inverse": newton.inverse,
+            "sqrt": newton.sqrt,
+        }
         if circle.spare < DIGIT:
-            self._in_lanes = {
+            self._in_lanes |= {
                 "cos_sin": circle.cos_sin,
                 "cos": lambda b, x: _part(circle.cos_sin(b, x), 0),
                 "sin": lambda b, x: _part(circle.cos_sin(b, x), 1),
@@ -88,32 +92,31 @@ class LaneFunctions:
             }
 
     def call(
-        self, b: ir.IRBuilder, name: str, x: Number, allocations: ir.IRBuilder
-    ) -> tuple[Value, Sequence[Number]]:
-        """Return where the function has a value, and its values; memory is allocated by
+        self, b: ir.IRBuilder, name: str, x: LaneNumber, allocations: ir.IRBuilder
+    ) -> FunctionValues:
+        """Return the function's values, with no lane unsure; memory is allocated by
         `allocations`."""
-        if name in self._exact:
-            valid, value = self._exact[name](b, x)
-            return valid, [value]
         if name not in self._in_lanes:
             everywhere = ir.Constant(CONDITIONS, [1] * LANES)
             return self._one_by_one(b, name, x, everywhere, allocations)
-        unsure, values = self._in_lanes[name](b, x)
-        places = [[allocations.alloca(WORDS) for _ in value.limbs] for value in values]
-        for value, addresses in zip(values, places, strict=True):
-            for limb, place in zip(self.numbers.settle(b, value), addresses, strict=True):
-                b.store(limb, place)
+        near = self._in_lanes[name](b, x)
+        if near.unsure is None:
+            return near
+        places = [[allocations.alloca(WORDS) for _ in value.limbs] for value in near.values]
+        for value, addresses in zip(near.values, places, strict=True):
+            for limb, address in zip(self.numbers.settle(b, value), addresses, strict=True):
+                b.store(limb, address)
         # The results of all lanes are stored before the branch: the rare block overwrites only the
         # lanes in which rounding is in doubt.
         cold, after = b.append_basic_block("unsure"), b.append_basic_block("sure")
         before, everywhere = b.block, ir.Constant(CONDITIONS, [1] * LANES)
-        b.cbranch(vectors.any_of(b, unsure), cold, after)
+        b.cbranch(vectors.any_of(b, near.unsure), cold, after)
         b.position_at_end(cold)
-        has_value, exact = self._one_by_one(b, name, x, unsure, allocations)
-        has_value, end = b.or_(has_value, b.not_(unsure)), b.block
-        for value, addresses in zip(exact, places, strict=True):
-            for limb, place in zip(self.numbers.settle(b, value), addresses, strict=True):
-                b.store(b.select(unsure, limb, b.load(place)), place)
+        precise = self._one_by_one(b, name, x, near.unsure, allocations)
+        has_value, end = b.or_(precise.valid, b.not_(near.unsure)), b.block
+        for value, addresses in zip(precise.values, places, strict=True):
+            for limb, address in zip(self.numbers.settle(b, value), addresses, strict=True):
+                b.store(b.select(near.unsure, limb, b.load(address)), address)
         b.branch(after)
         b.position_at_end(after)
         valid = b.phi(CONDITIONS)
@@ -123,13 +126,13 @@ class LaneFunctions:
             self.numbers.from_settled([b.load(p) for p in addresses], self.numbers.size)
             for addresses in places
         ]
-        return valid, numbers
+        return FunctionValues(numbers, valid)
 
     # -- lane by lane -------------------------------------------------------------------------
 
     def _one_by_one(
-        self, b: ir.IRBuilder, name: str, x: Number, where: Value, allocations: ir.IRBuilder
-    ) -> tuple[Value, list[Number]]:
+        self, b: ir.IRBuilder, name: str, x: LaneNumber, chosen: Value, allocations: ir.IRBuilder
+    ) -> FunctionValues:
         """Apply the function of one orbit, in the lanes where the condition holds."""
         count = self._words
         function, results = self._loop_of(name)
@@ -137,23 +140,23 @@ class LaneFunctions:
         results_at = allocations.alloca(WORDS, size=results * count + 1)
         for i, word in enumerate(self.numbers.words(b, x)):
             b.store(word, b.gep(room, [constant(i, 64)]))
-        pointer, which = I64.as_pointer(), b.bitcast(where, ir.IntType(LANES))
-        b.call(function, [b.bitcast(room, pointer), b.bitcast(results_at, pointer), which])
+        pointer, lane_bits = I64.as_pointer(), b.bitcast(chosen, ir.IntType(LANES))
+        b.call(function, [b.bitcast(room, pointer), b.bitcast(results_at, pointer), lane_bits])
         words = [b.load(b.gep(results_at, [constant(i, 64)])) for i in range(results * count + 1)]
         values = [
             self.numbers.from_words(b, words[i * count : (i + 1) * count], self.numbers.size)
             for i in range(results)
         ]
-        return b.icmp_unsigned("!=", words[-1], splat(0)), values
+        return FunctionValues(values, b.icmp_unsigned("!=", words[-1], splat(0)))
 
     def _loop_of(self, name: str) -> tuple[ir.Function, int]:
         """Return the function that goes through lanes in memory, and how many values it writes."""
-        one = self.one.get(name)
-        results = len(one.function_type.return_type.elements) - 1
+        function_of_one = self.of_one_orbit.get(name)
+        results = len(function_of_one.function_type.return_type.elements) - 1
         if name in self._loops:
             return self._loops[name], results
-        pointer, which = I64.as_pointer(), ir.IntType(LANES)
-        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer, which])
+        pointer, lane_bits = I64.as_pointer(), ir.IntType(LANES)
+        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer, lane_bits])
         function = self._loops[name] = ir.Function(self.module, kind, f"lanes_{name}")
         function.linkage = "internal"
         function.attributes.add("noinline")
@@ -164,10 +167,10 @@ class LaneFunctions:
         b.position_at_end(head)
         lane = b.phi(I64)
         lane.add_incoming(constant(0, 64), entry)
-        bit = b.lshr(function.args[2], b.trunc(lane, which))
+        bit = b.lshr(function.args[2], b.trunc(lane, lane_bits))
         b.cbranch(b.trunc(bit, ir.IntType(1)), selected, following)
         b.position_at_end(selected)
-        packed = b.call(one, [self._gather(b, b.gep(function.args[0], [lane]))])
+        packed = b.call(function_of_one, [self._gather(b, b.gep(function.args[0], [lane]))])
         target, index = b.gep(function.args[1], [lane]), 0
         for i in range(results):
             index = self._scatter(b, target, index, b.extract_value(packed, i))
@@ -183,7 +186,7 @@ class LaneFunctions:
 
     def _gather(self, b: ir.IRBuilder, pointer: Value) -> Value:
         places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(self._words))
-        return limbs.join(b, [b.load(place) for place in places])
+        return limbs.join(b, [b.load(address) for address in places])
 
     def _scatter(self, b: ir.IRBuilder, pointer: Value, index: int, value: Value) -> int:
         count: int = value.type.width // 64
@@ -197,10 +200,10 @@ def apply_to_doubles(b: ir.IRBuilder, name: str, x: Value) -> Value:
     if name.removeprefix("f_") == "sqrt":
         return b.call(vectors.intrinsic(b.module, "sqrt"), [x])
     function, total = float_function(b.module, name), ir.Constant(DOUBLES, ir.Undefined)
-    for lane, each in enumerate(vectors.each(b, x)):
-        total = b.insert_element(total, b.call(function, [each]), constant(lane, 64))
+    for lane, word in enumerate(vectors.lanes_of(b, x)):
+        total = b.insert_element(total, b.call(function, [word]), constant(lane, 64))
     return total
 
 
-def _part(both: tuple[Value, list[Number]], index: int) -> tuple[Value, list[Number]]:
-    return both[0], [both[1][index]]
+def _part(results: FunctionValues, index: int) -> FunctionValues:
+    return results._replace(values=[results.values[index]])

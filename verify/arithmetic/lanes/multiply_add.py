@@ -6,20 +6,27 @@ multiply-add of float64, whose rounding splits a product of two whole numbers ex
     k = x y + 2^104 rounded to its 53 bits, which is 2^104 + 2^52 times a whole number;
     r = x y + (2^104 − k), which is whole, and at most 2^51 in size.
 
-So both halves come without a rounding mode's being changed, and a low half may be negative. Where
+So both halves come without a rounding mode's being changed, and a low half may be negative. If
 neither is there, products of 128 bits give the same sums, slowly, which is for tests.
+
+A long product is such sums by columns: xᵢ yⱼ stands in column i + j and the one above it.
 """
 
 import struct
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, LANES, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
+
+# x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.
+_UNIT, _ABOUT_0 = 2.0**52, 1.5 * 2.0**52
+_HIGH, _HIGH_ABOUT_0 = 2.0**104, 1.5 * 2.0**104
 
 
 @dataclass
@@ -56,15 +63,15 @@ class MultiplyAdd(ABC):
         """Return a sum to begin with."""
 
     @abstractmethod
-    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         """Add the product of two factors, neither negative, divided by 2^52 and rounded down."""
 
-    def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         """Add the product divided by 2^52, rounded down or to the nearest; neither is negative."""
-        self.high(b, total, x, y)
+        self.add_high(b, total, x, y)
 
     @abstractmethod
-    def both(
+    def add_product(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
         """Add the product in two parts, the second divided by 2^52: exact only together.
@@ -72,9 +79,9 @@ class MultiplyAdd(ABC):
         `signed`: a factor may be negative. Without `high` a multiple of 2^52 is left out.
         """
 
-    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
-        """Return low + the low 52 bits of x·2^by."""
-        return b.add(low, vectors.mask(b, vectors.up(b, x, by)))
+    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, shift: int) -> Value:
+        """Return low + the low 52 bits of x·2^shift."""
+        return b.add(low, vectors.mask(b, vectors.up(b, x, shift)))
 
 
 class _WordProducts(MultiplyAdd):
@@ -87,28 +94,28 @@ class _WordProducts(MultiplyAdd):
         return Sum(splat(start))
 
     @abstractmethod
-    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         """Add the low 52 bits of the product."""
 
-    def both(
+    def add_product(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
-        self.low(b, low, x, y)
+        self.add_low(b, low, x, y)
         if high is not None:
-            self.high(b, high, x, y)
+            self.add_high(b, high, x, y)
 
 
 class Avx512(_WordProducts):
     """Products by the instructions of AVX-512 IFMA."""
 
-    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         total.vector = self._instruction(b, "l", total.vector, x, y)
 
-    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         total.vector = self._instruction(b, "h", total.vector, x, y)
 
-    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
-        return self._instruction(b, "l", low, x, splat(1 << by))
+    def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, shift: int) -> Value:
+        return self._instruction(b, "l", low, x, splat(1 << shift))
 
     def _instruction(
         self, b: ir.IRBuilder, half: str, a: Value | None, x: Value, y: Value
@@ -122,10 +129,10 @@ class Avx512(_WordProducts):
 class Portable(_WordProducts):
     """Products of 128 bits."""
 
-    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         total.add(b, vectors.mask(b, b.mul(vectors.mask(b, x), vectors.mask(b, y))))
 
-    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         long = ir.VectorType(ir.IntType(128), LANES)
         product = b.mul(*(b.zext(vectors.mask(b, v), long) for v in (x, y)))
         total.add(b, b.trunc(b.lshr(product, ir.Constant(long, [DIGIT] * LANES)), WORDS))
@@ -146,18 +153,18 @@ class Fused(MultiplyAdd):
     def sum(self, start: int = 0) -> Sum:
         return Sum(None, start)
 
-    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         high, rest = self._split(b, x, y, _HIGH)
-        # The fused multiply-add rounds to the nearest: where the remainder is negative, the high
+        # The fused multiply-add rounds to the nearest: if the remainder is negative, the high
         # part was rounded up, and −1 (the sign-extended condition) corrects it.
         total.add(b, b.sext(b.fcmp_ordered("<", rest, splat_double(0.0)), WORDS))
         total.add(b, b.bitcast(high, WORDS), _bits(_HIGH))
 
-    def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+    def add_near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         above = vectors.multiply_add(b, x, y, splat_double(_HIGH))
         total.add(b, b.bitcast(above, WORDS), _bits(_HIGH))
 
-    def both(
+    def add_product(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
         about = _HIGH_ABOUT_0 if signed else _HIGH
@@ -177,10 +184,41 @@ class Fused(MultiplyAdd):
         return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
 
 
-# x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.
-_UNIT, _ABOUT_0 = 2.0**52, 1.5 * 2.0**52
-_HIGH, _HIGH_ABOUT_0 = 2.0**104, 1.5 * 2.0**104
-
-
 def _bits(x: float) -> int:
     return int(struct.unpack("<q", struct.pack("<d", x))[0])
+
+
+class Columns:
+    """Columns from `low` to `top`; their carries have not moved.
+
+    What lies above `top` is left out, and so is what lies below `low`: of a product in the column
+    beneath it the higher half is added, rounded down or to the nearest, of others nothing.
+    """
+
+    def __init__(
+        self,
+        multiply_add: MultiplyAdd,
+        low: int,
+        top: int,
+        start: Mapping[int, int] = MappingProxyType({}),
+        *,
+        exact: bool = False,
+    ) -> None:
+        """`start`: what is added to a column besides; `exact`: halves are rounded down, so that of
+        a single product less than a unit is left out."""
+        self.multiply_add, self.low, self.top = multiply_add, low, top
+        self.sums = {c: multiply_add.sum(start.get(c, 0)) for c in range(low, top + 1)}
+        self._add_half = multiply_add.add_high if exact else multiply_add.add_near
+
+    def add(self, b: ir.IRBuilder, x: Value, y: Value, c: int, *, signed: bool = False) -> None:
+        """Add the product of two factors, standing in a column; `signed`: one may be negative."""
+        # One column below the kept ones: its high half carries into the lowest kept column, and is
+        # added; everything further down is less than a unit for each product.
+        if c == self.low - 1:
+            self._add_half(b, self.sums[self.low], x, y)
+        elif self.low <= c <= self.top:
+            above = self.sums[c + 1] if c < self.top else None
+            self.multiply_add.add_product(b, self.sums[c], above, x, y, signed=signed)
+
+    def total(self, b: ir.IRBuilder) -> dict[int, Value]:
+        return {c: total.total(b) for c, total in self.sums.items()}

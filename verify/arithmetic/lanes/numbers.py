@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from functools import reduce
 from itertools import pairwise
+from typing import NamedTuple
 
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.carries import Number, count_of
-from verify.arithmetic.lanes.products import Products
+from verify.arithmetic.lanes.products import LaneNumber, Products, count_of
 from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import units_of_words
@@ -20,60 +20,62 @@ class Numbers(Products):
 
     # -- sums and signs -----------------------------------------------------------------------
 
-    def constant(self, raw: int, width: int) -> Number:
+    def constant(self, raw: int, width: int) -> LaneNumber:
         count = count_of(width)
         limbs = [splat((raw >> DIGIT * i) % (1 << DIGIT)) for i in range(count - 1)]
         return self.from_settled([*limbs, splat(raw >> DIGIT * (count - 1))], width)
 
-    def add(self, b: ir.IRBuilder, x: Number, y: Number) -> Number:
+    def add(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> LaneNumber:
         return self._by_limbs(b, b.add, x, y)
 
-    def sub(self, b: ir.IRBuilder, x: Number, y: Number) -> Number:
+    def sub(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> LaneNumber:
         return self._by_limbs(b, b.sub, x, y)
 
-    def _by_limbs(self, b: ir.IRBuilder, operation: object, x: Number, y: Number) -> Number:
+    def _by_limbs(
+        self, b: ir.IRBuilder, operation: object, x: LaneNumber, y: LaneNumber
+    ) -> LaneNumber:
         assert callable(operation)  # noqa: S101
         x, y = self.light(b, x), self.light(b, y)
         limbs = [operation(u, v) for u, v in zip(x.limbs, y.limbs, strict=True)]
-        return Number(limbs, x.width, x.weight + y.weight)
+        return LaneNumber(limbs, x.width, x.weight + y.weight)
 
-    def neg(self, b: ir.IRBuilder, x: Number) -> Number:
-        return Number([b.sub(splat(0), limb) for limb in x.limbs], x.width, x.weight)
+    def neg(self, b: ir.IRBuilder, x: LaneNumber) -> LaneNumber:
+        return LaneNumber([b.sub(splat(0), limb) for limb in x.limbs], x.width, x.weight)
 
-    def choose(self, b: ir.IRBuilder, condition: Value, x: Number, y: Number) -> Number:
+    def choose(self, b: ir.IRBuilder, condition: Value, x: LaneNumber, y: LaneNumber) -> LaneNumber:
         """Return x where the condition holds, else y."""
-        both = zip(self.settle(b, x), self.settle(b, y), strict=True)
-        return self.from_settled([b.select(condition, u, v) for u, v in both], x.width)
+        pairs = zip(self.settle(b, x), self.settle(b, y), strict=True)
+        return self.from_settled([b.select(condition, u, v) for u, v in pairs], x.width)
 
-    def absolute(self, b: ir.IRBuilder, x: Number) -> Number:
+    def absolute(self, b: ir.IRBuilder, x: LaneNumber) -> LaneNumber:
         negative = self.negative(b, x)
         limbs = self.settle(b, x)
-        return Number([b.select(negative, b.sub(splat(0), v), v) for v in limbs], x.width)
+        return LaneNumber([b.select(negative, b.sub(splat(0), v), v) for v in limbs], x.width)
 
-    def extend(self, b: ir.IRBuilder, x: Number, width: int) -> Number:
+    def extend(self, b: ir.IRBuilder, x: LaneNumber, width: int) -> LaneNumber:
         """Return the same number in more limbs."""
-        return Number(x.limbs + [splat(0)] * (count_of(width) - len(x.limbs)), width, x.weight)
+        return LaneNumber(x.limbs + [splat(0)] * (count_of(width) - len(x.limbs)), width, x.weight)
 
-    def less(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
+    def less(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> Value:
         """Return the condition x < y."""
         return self.negative(b, self.sub(b, x, y))
 
-    def equal(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
+    def equal(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> Value:
         """Return the condition x = y."""
         rest = self.settle(b, self.sub(b, x, y))
         return b.icmp_unsigned("==", reduce(b.or_, rest), splat(0))
 
     # -- 64-bit words and doubles -------------------------------------------------------------
 
-    def words(self, b: ir.IRBuilder, x: Number) -> list[Value]:
+    def words(self, b: ir.IRBuilder, x: LaneNumber) -> list[Value]:
         """Return the words of the number in two's complement, the lowest first."""
         return [self._word(b, x, WORD * index) for index in range(words_of(x.width))]
 
-    def _leading(self, b: ir.IRBuilder, x: Number, beneath: int = 0) -> Value:
+    def _leading(self, b: ir.IRBuilder, x: LaneNumber, beneath: int = 0) -> Value:
         """Return the leading word, as `verify.arithmetic.wide.limbs.leading` does."""
         return self._word(b, x, x.width - WORD * (beneath + 1))
 
-    def _word(self, b: ir.IRBuilder, x: Number, first: int) -> Value:
+    def _word(self, b: ir.IRBuilder, x: LaneNumber, first: int) -> Value:
         """Return 64 bits of the number in two's complement, from bit `first` on."""
         total = None
         limbs = self.settle(b, x)
@@ -88,28 +90,28 @@ class Numbers(Products):
         assert total is not None  # noqa: S101
         return total
 
-    def from_words(self, b: ir.IRBuilder, words: Sequence[Value], width: int) -> Number:
+    def from_words(self, b: ir.IRBuilder, words: Sequence[Value], width: int) -> LaneNumber:
         """Return the number of so many bits in 64-bit words, the lowest first."""
         count = count_of(width)
         limbs = []
         for i in range(count):
-            index, by = divmod(DIGIT * i, 64)
+            index, shift = divmod(DIGIT * i, 64)
             last = i == count - 1  # it has the sign, which may be in the word above
             highest = index == len(words) - 1
-            limb = (b.ashr if last and highest else b.lshr)(words[index], splat(by))
-            if not highest and (last or by > 64 - DIGIT):
-                limb = b.or_(limb, vectors.up(b, words[index + 1], 64 - by))
+            limb = (b.ashr if last and highest else b.lshr)(words[index], splat(shift))
+            if not highest and (last or shift > 64 - DIGIT):
+                limb = b.or_(limb, vectors.up(b, words[index + 1], 64 - shift))
             limbs.append(limb if last else vectors.mask(b, limb))
         return self.from_settled(limbs, width)
 
-    def to_double(self, b: ir.IRBuilder, x: Number) -> Value:
+    def to_double(self, b: ir.IRBuilder, x: LaneNumber) -> Value:
         """Convert as `verify.arithmetic.wide.newton.to_double` does, operation by operation."""
         high = b.sitofp(self._leading(b, x), DOUBLES)
         low = b.uitofp(self._leading(b, x, 1), DOUBLES)
         unit, below = map(splat_double, units_of_words(x.width - self.size))
         return b.fadd(b.fmul(high, unit), b.fmul(low, below))
 
-    def from_double(self, b: ir.IRBuilder, value: Value) -> Number:
+    def from_double(self, b: ir.IRBuilder, value: Value) -> LaneNumber:
         """Convert as `verify.arithmetic.wide.newton.from_double` does; |value| < 2^15."""
         floor, absolute = (vectors.intrinsic(b.module, name) for name in ("floor", "fabs"))
         count = count_of(self.size)
@@ -122,22 +124,22 @@ class Numbers(Products):
             rest = b.fmul(b.fsub(rest, whole), splat_double(2.0**DIGIT))
         negative = b.fcmp_ordered("<", value, splat_double(0.0))
         signed = [b.select(negative, b.sub(splat(0), limb), limb) for limb in limbs]
-        return Number(signed, self.size)
+        return LaneNumber(signed, self.size)
 
     # -- what the language has ----------------------------------------------------------------
 
-    def inside(self, b: ir.IRBuilder, x: Number, limit: Number) -> Value:
+    def inside(self, b: ir.IRBuilder, x: LaneNumber, limit: LaneNumber) -> Value:
         """Return |x| < limit, by the leading bits alone; see the translator of one orbit."""
         high, most = (self._leading(b, v) for v in (x, limit))
         biased = b.sub(b.add(high, most), splat(1))
         return b.icmp_unsigned("<", biased, b.sub(b.add(most, most), splat(1)))
 
-    def shift_down(self, b: ir.IRBuilder, x: Number, by: Value) -> Number:
-        """Return x / 2^by rounded down, 0 ≤ by < 64, `by` a word in each lane."""
+    def shift_down(self, b: ir.IRBuilder, x: LaneNumber, shift: Value) -> LaneNumber:
+        """Return x / 2^shift rounded down, 0 ≤ shift < 64, `shift` a word in each lane."""
         limbs = self.settle(b, x)
         sign = vectors.down(b, limbs[-1], 63)
-        far = b.icmp_unsigned(">=", by, splat(DIGIT))
-        rest = b.select(far, b.sub(by, splat(DIGIT)), by)
+        far = b.icmp_unsigned(">=", shift, splat(DIGIT))
+        rest = b.select(far, b.sub(shift, splat(DIGIT)), shift)
         # By whole limbs first. The highest, whose sign fills it, is a limb like the others then.
         *low, high = limbs
         above = [*low[1:], high, sign]
@@ -149,3 +151,15 @@ class Numbers(Products):
             for u, v in pairwise(filled[:-1])
         ]
         return self.from_settled([*shifted, b.ashr(near[-1], rest)], x.width)
+
+
+class FunctionValues(NamedTuple):
+    """The values of a function in lanes.
+
+    `valid`: the lanes in which it has them; None: in all. `unsure`: the lanes in which they may be
+    rounded otherwise than those of one orbit; None: in none.
+    """
+
+    values: Sequence[LaneNumber]
+    valid: Value | None = None
+    unsure: Value | None = None

@@ -19,8 +19,8 @@ def reorder(statements: Sequence[ast.stmt]) -> list[ast.stmt]:
     before = _dependencies(statements)
     after: list[list[int]] = [[] for _ in statements]
     for index, predecessors in enumerate(before):
-        for other in predecessors:
-            after[other].append(index)
+        for predecessor in predecessors:
+            after[predecessor].append(index)
     wait, busy = ([_cycles(s, table) for s in statements] for table in (_WAIT, _BUSY))
     way = [0] * len(statements)
     for index in reversed(range(len(statements))):
@@ -59,7 +59,7 @@ def _dependencies(statements: Sequence[ast.stmt]) -> list[set[int]]:
         names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
         names_written = {node.id for node in names if isinstance(node.ctx, ast.Store)}
         read = {node.id for node in names if isinstance(node.ctx, ast.Load)}
-        if isinstance(statement, ast.If):  # where it does not hold the old value is kept
+        if isinstance(statement, ast.If):  # if it does not hold the old value is kept
             read |= names_written
         required = {writer[name] for name in read | names_written if name in writer}
         required |= {k for name in names_written for k in readers.get(name, ())}

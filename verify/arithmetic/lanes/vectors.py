@@ -1,12 +1,21 @@
 """64-bit words side by side, as many as a register of this processor holds, as LLVM IR."""
 
 from collections.abc import Sequence
+from functools import cache
 
+from llvmlite import binding as llvm
 from llvmlite import ir
 
-from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value
 
+
+@cache
+def features() -> dict[str, bool]:
+    """Return the processor's features by LLVM's names, and whether each is present."""
+    return dict(llvm.get_host_cpu_features())
+
+
+LANES = 8 if features().get("avx512f") else 4
 DIGIT = 52  # bits of a limb
 WORDS = ir.VectorType(I64, LANES)
 DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
@@ -38,7 +47,7 @@ def in_lanes(b: ir.IRBuilder, condition: Value) -> Value:
     return condition if condition.type == CONDITIONS else same(b, condition, CONDITIONS)
 
 
-def each(b: ir.IRBuilder, x: Value) -> list[Value]:
+def lanes_of(b: ir.IRBuilder, x: Value) -> list[Value]:
     """Return the words of all lanes, as scalars."""
     return [b.extract_element(x, ir.Constant(I64, lane)) for lane in range(LANES)]
 
@@ -60,18 +69,18 @@ def settle(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
     return [*(mask(b, limb) for limb in low), high]
 
 
-def down(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    """Return x / 2^by rounded down, x with its sign."""
-    return b.ashr(x, splat(by)) if by else x
+def down(b: ir.IRBuilder, x: Value, shift: int) -> Value:
+    """Return x / 2^shift rounded down, x with its sign."""
+    return b.ashr(x, splat(shift)) if shift else x
 
 
-def up(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    return b.shl(x, splat(by)) if by else x
+def up(b: ir.IRBuilder, x: Value, shift: int) -> Value:
+    return b.shl(x, splat(shift)) if shift else x
 
 
-def down_positive(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    """Return x / 2^by rounded down, x not negative where `SHIFTS_SIGNS` is not true."""
-    return down(b, x, by) if SHIFTS_SIGNS else b.lshr(x, splat(by))
+def down_positive(b: ir.IRBuilder, x: Value, shift: int) -> Value:
+    """Return x / 2^shift rounded down, x not negative if `SHIFTS_SIGNS` is not true."""
+    return down(b, x, shift) if SHIFTS_SIGNS else b.lshr(x, splat(shift))
 
 
 def carry(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
@@ -101,7 +110,7 @@ def any_of(b: ir.IRBuilder, condition: Value) -> Value:
 def declare(
     module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type]
 ) -> ir.Function:
-    """Return LLVM's function of that name, declared where it is new."""
+    """Return LLVM's function of that name, declared if it is new."""
     if name not in module.globals:
         ir.Function(module, ir.FunctionType(result, arguments), name)
     return module.globals[name]

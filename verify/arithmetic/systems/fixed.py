@@ -95,7 +95,7 @@ def functions() -> tuple[str, ...]:
 def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
     """Return each operation's error in units of the last place, by the size of its result.
 
-    See `verify.arithmetic.wide.functions`.
+    See `verify.arithmetic.wide.table_series`.
     """
     from flint import arb
 
@@ -121,7 +121,7 @@ def _walk(
     state: Sequence[Any],
     later_steps: int,
 ) -> Course[Any]:
-    """Walk in one call, and in lanes where others walk in the same kernel."""
+    """Walk in one call, and in lanes if others walk in the same kernel."""
     from verify.arithmetic.compiled.engine import Walk
 
     try:

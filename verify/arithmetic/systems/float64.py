@@ -46,7 +46,7 @@ def make(digits: int) -> Arithmetic:
 def compiled_at_once(*, anew: bool = False) -> Arithmetic:
     """Return the same number system, each kernel compiled at its first call: for timing it.
 
-    `anew`: not from what is kept on disk, where LLVM compiles it.
+    `anew`: not from what is kept on disk, if LLVM compiles it.
     """
     return replace(make(17), compile=partial(_compile_now, anew=anew))
 
@@ -121,7 +121,7 @@ def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 def _compile_now(
     source: str, name: str, namespace: Mapping[str, Any], *, anew: bool = False
 ) -> Callable[..., Any]:
-    """Compile by LLVM where there is a loop over steps; otherwise a call takes longer than in
+    """Compile by LLVM if there is a loop over steps; otherwise a call takes longer than in
     Python."""
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point

@@ -92,7 +92,7 @@ def _check_flags(new_context: Callable[[], Any]) -> Iterator[None]:
 def _root(x: Any, n: int) -> Any:
     from gmpy2 import root
 
-    if x < 0:  # MPFR takes the real root where n is odd; here a root is of what is not negative
+    if x < 0:  # MPFR takes the real root if n is odd; here a root is of what is not negative
         raise ValueError("the root of a negative number")
     return root(x, n)
 

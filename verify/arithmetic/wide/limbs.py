@@ -3,14 +3,14 @@
 LLVM has integers of any width, and adds and shifts them well. Its product of two of them forms
 every partial product twice over (once for the sign), so products are written here.
 
-A product xᵢ yⱼ of limbs stands in column i + j. Where the low columns are not kept, the lowest kept
+A product xᵢ yⱼ of limbs stands in column i + j. If the low columns are not kept, the lowest kept
 column still needs the carry from below: of the column beneath it only the high halves are added.
 What is left out is less than 2·`count` units of the lowest kept column, where `count` is the number
 of limbs; each routine says what that means for its result.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from llvmlite import ir
 
@@ -44,12 +44,12 @@ def limb(b: ir.IRBuilder, x: Value, index: int) -> Value:
     return b.trunc(shifted_down(b, x, 64 * index), I64)
 
 
-def shifted_down(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    return b.lshr(x, ir.Constant(x.type, by)) if by else x
+def shifted_down(b: ir.IRBuilder, x: Value, shift: int) -> Value:
+    return b.lshr(x, ir.Constant(x.type, shift)) if shift else x
 
 
-def shifted_up(b: ir.IRBuilder, x: Value, by: int) -> Value:
-    return b.shl(x, ir.Constant(x.type, by)) if by else x
+def shifted_up(b: ir.IRBuilder, x: Value, shift: int) -> Value:
+    return b.shl(x, ir.Constant(x.type, shift)) if shift else x
 
 
 def resize(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> Value:
@@ -144,7 +144,7 @@ def _with_row(
     width = WORD * (highest - lowest + 1)
     total = resize(b, total, width)
     if row:
-        first, second = (_place_words(b, each, lowest, width) for each in (low, high))
+        first, second = (_place_words(b, halves, lowest, width) for halves in (low, high))
         total = b.add(total, b.add(first, second))
     return b.add(total, constant(start, width)) if start else total
 
@@ -160,7 +160,7 @@ def _place_words(b: ir.IRBuilder, words: Mapping[int, Value], lowest: int, width
 def _subtract_sign(
     b: ir.IRBuilder, total: Value, sign: Value, ys: Sequence[Value], lowest: int
 ) -> Value:
-    """Return total − Y 2^(64 (count − lowest)) where the highest limb `sign` of x is negative:
+    """Return total − Y 2^(64 (count − lowest)) if the highest limb `sign` of x is negative:
     its word without a sign is too large by 2^64, and Y is multiplied by it."""
     negative = b.ashr(sign, constant(WORD - 1, WORD))
     words = {len(ys) + i: b.and_(y, negative) for i, y in enumerate(ys)}
@@ -171,13 +171,20 @@ def join(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
     return _place_words(b, dict(enumerate(words)), 0, WORD * len(words))
 
 
-def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> tuple[Value, Value | None]:
-    """Return x y / 2^fraction rounded to the nearest, halves upwards, and where that is not sure.
+class NearProduct(NamedTuple):
+    """A product without its lowest columns, and whether it may be rounded otherwise than the whole
+    one; None: nothing is left out."""
+
+    value: Value
+    unsure: Value | None
+
+
+def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> NearProduct:
+    """Return x y / 2^fraction rounded to the nearest, halves upwards.
 
     Signed, `fraction` in the second highest limb's column or above. The columns below it are left
-    out, which is less than 2·count units of the lowest that is kept: it matters where these units
-    carry into the result, in one of 2^44 products, or of 700 where few bits lie below. None:
-    nothing is left out.
+    out, which is less than 2·count units of the lowest that is kept: it matters if these units
+    carry into the result, in one of 2^44 products, or of 700 if few bits lie below.
     """
     width = x.type.width
     count, lowest = width // 64, fraction // 64
@@ -189,9 +196,10 @@ def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> tuple[Value, 
         total = _columns(b, x, y, lowest, signed=True, start=half)
     rounded = resize(b, shifted_down(b, total, drop), width)
     if count < 3:  # of the column below, a single product's low half is left out
-        return rounded, None
+        return NearProduct(rounded, None)
     dropped = b.and_(limb(b, total, 0), constant((1 << drop) - 1, 64))
-    return rounded, b.icmp_unsigned(">=", dropped, constant((1 << drop) - 2 * count, 64))
+    unsure = b.icmp_unsigned(">=", dropped, constant((1 << drop) - 2 * count, 64))
+    return NearProduct(rounded, unsure)
 
 
 def whole_product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> Value:
@@ -216,5 +224,5 @@ def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -
 
 def times_word(b: ir.IRBuilder, x: Value, word: Value) -> Value:
     """Return x·word / 2^64 rounded down, neither with a sign."""
-    row = {i: (each, word) for i, each in enumerate(_limbs(b, x))}
+    row = {i: (limb_, word) for i, limb_ in enumerate(_limbs(b, x))}
     return _with_row(b, constant(0, WORD), row, 1, len(row))

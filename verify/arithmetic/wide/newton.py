@@ -1,6 +1,13 @@
-"""log, sqrt and 1/x of fixed-point numbers, as LLVM functions: by iteration from float64."""
+"""log, sqrt and 1/x of fixed-point numbers as LLVM functions, and functions made of others.
+
+log: from float64's logarithm ℓ, as ℓ + log(1 + δ) with δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x:
+Newton's iteration from float64. A function that is made of others is computed in finer numbers,
+with 64 bits more after the point: what is lost in those is far below the last place of the result,
+which is rounded once.
+"""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import flint
@@ -8,12 +15,12 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
-from verify.arithmetic.wide.composed import MORE, FinerNumbers, Number
-from verify.arithmetic.wide.functions import Functions, arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant, resize
-from verify.arithmetic.wide.size import INTEGER_BITS, size_of, width_of
+from verify.arithmetic.wide.size import INTEGER_BITS, WORD, size_of, width_of
+from verify.arithmetic.wide.table_series import Functions, arb_integer
 from verify.functions import by_name
 
+MORE = WORD  # bits after the point that the finer numbers have
 DOUBLE = ir.DoubleType()
 LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
 LEAST_DIVISOR = 14
@@ -65,6 +72,62 @@ def iterations(fraction: int, *, quadratic: bool) -> int:
     return steps
 
 
+@dataclass
+class FinerNumber:
+    """A finer number, with + and * rounded as in its format."""
+
+    numbers: "FinerNumbers"
+    value: Value
+
+    def __add__(self, other: "FinerNumber") -> "FinerNumber":
+        return FinerNumber(self.numbers, self.numbers.b.add(self.value, other.value))
+
+    def __mul__(self, other: "FinerNumber") -> "FinerNumber":
+        product = self.numbers.functions.products.product
+        return FinerNumber(self.numbers, product(self.numbers.b, self.value, other.value))
+
+
+class FinerNumbers:
+    """Finer numbers in which a function is composed: see `verify.functions.function.FixedPoint`.
+
+    `valid`: whether every function that was applied has a value.
+    """
+
+    def __init__(self, b: ir.IRBuilder, functions: Functions) -> None:
+        self.b, self.functions = b, functions
+        self.valid = ir.Constant(ir.IntType(1), 1)
+
+    @property
+    def one(self) -> FinerNumber:
+        return FinerNumber(self, constant(1 << self.functions.fraction, self.functions.width))
+
+    def apply(self, name: str, x: FinerNumber) -> FinerNumber:
+        """Apply the function of that name."""
+        packed = self.b.call(self.functions.get(name), [x.value])
+        self.valid = self.b.and_(self.valid, self.b.extract_value(packed, 1))
+        return FinerNumber(self, self.b.extract_value(packed, 0))
+
+    def absolute(self, x: FinerNumber) -> FinerNumber:
+        """Return |x|; the least number has no absolute value."""
+        size, functions = self.signed(x, x), self.functions
+        top = constant(1 << functions.fraction + INTEGER_BITS - 1, functions.width)
+        self.valid = self.b.and_(self.valid, self.b.icmp_unsigned("<", size.value, top))
+        return size
+
+    def signed(self, size: FinerNumber, like: FinerNumber) -> FinerNumber:
+        """Return the number with its sign changed if `like` is negative."""
+        negative = self.b.icmp_signed("<", like.value, constant(0, self.functions.width))
+        return self.choose(negative, FinerNumber(self, self.b.neg(size.value)), size)
+
+    def at_least(self, x: FinerNumber, least: FinerNumber) -> Value:
+        """Return the condition x ≥ least."""
+        return self.b.icmp_signed(">=", x.value, least.value)
+
+    def choose(self, condition: Value, x: FinerNumber, y: FinerNumber) -> FinerNumber:
+        """Return x if the condition holds, else y."""
+        return FinerNumber(self, self.b.select(condition, x.value, y.value))
+
+
 class MoreFunctions(Functions):
     """The functions of `Functions`, those computed by iteration, and those composed of others."""
 
@@ -79,12 +142,16 @@ class MoreFunctions(Functions):
     def _finer(self) -> "MoreFunctions":
         return MoreFunctions(self.module, self.fraction + MORE, "finer")
 
-    def _compose(self, name: str, rule: Callable[[FinerNumbers, Number], Number]) -> ir.Function:
+    def _compose(
+        self, name: str, rule: Callable[[FinerNumbers, FinerNumber], FinerNumber]
+    ) -> ir.Function:
         """Return a function by its rule in finer numbers, rounded to the nearest."""
         b, x = self._define(name, 1)
         finer, width = FinerNumbers(b, self._finer), self._finer.width
         widened = limbs.shifted_up(b, resize(b, x, width, signed=True), MORE)
-        total = b.add(rule(finer, Number(finer, widened)).value, constant(1 << MORE - 1, width))
+        total = b.add(
+            rule(finer, FinerNumber(finer, widened)).value, constant(1 << MORE - 1, width)
+        )
         value = resize(b, b.ashr(total, constant(MORE, width)), self.width)
         return self._result(b, finer.valid, value)
 
@@ -93,7 +160,7 @@ class MoreFunctions(Functions):
         size = self._copy_sign(b, x, x)
         valid = b.icmp_unsigned(">=", size, self._power(-LEAST_DIVISOR))
         one = ir.Constant(DOUBLE, 1.0)
-        # Where x is out of range 1 is divided by, so that no infinity is turned into an integer.
+        # If x is out of range 1 is divided by, so that no infinity is turned into an integer.
         guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
         y = from_double(b, guess, self.fraction)
         product = self.products.product
@@ -146,8 +213,8 @@ class MoreFunctions(Functions):
         exponent = b.sub(constant(self.spare, wide), resize(b, lead, wide))
         octaves = b.ashr(b.mul(exponent, two), constant(32, wide))
         total = b.add(resize(b, total, wide, signed=True), octaves)
-        by = self.spare - 2
-        total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
+        shift = self.spare - 2
+        total = b.ashr(b.add(total, constant(1 << (shift - 1), wide)), constant(shift, wide))
         return self._result(b, valid, resize(b, total, width))
 
     def _log1p(self, b: ir.IRBuilder, delta: Value) -> Value:

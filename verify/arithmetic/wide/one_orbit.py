@@ -1,4 +1,4 @@
-"""One orbit's numbers as LLVM IR: integers of any width, and variables in registers."""
+"""One orbit's numbers as LLVM IR: integers of any width, variables in registers, and memory."""
 
 import ast
 import math
@@ -7,7 +7,7 @@ from typing import Any
 
 from llvmlite import ir
 
-from verify.arithmetic.wide import limbs, memory
+from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, width_of
@@ -21,7 +21,7 @@ _INTRINSICS = ("exp", "log", "sqrt")
 
 
 class OneOrbit:
-    """See `verify.arithmetic.wide.translate.Target`; a value is LLVM's, its type tells its kind."""
+    """See `verify.arithmetic.wide.translator.Target`; a value is LLVM's, and so is its kind."""
 
     def __init__(self, fraction: int) -> None:
         self.fraction, self.module, width = fraction, ir.Module(), width_of(fraction)
@@ -43,7 +43,7 @@ class OneOrbit:
         self.assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in arguments:
-            value, offset = memory.read(self.b, main.args[0], offset, self.types[kind])
+            value, offset = read_number(self.b, main.args[0], offset, self.types[kind])
             self.assign(name, value)
 
     def end(self) -> None:
@@ -55,7 +55,7 @@ class OneOrbit:
     def give(self, values: Callable[[], Sequence[Value]]) -> None:
         offset = 0
         for v in (*values(), resize(self.b, self.load("valid"), 64)):
-            offset = memory.write(self.b, self.b.function.args[1], offset, v)
+            offset = write_number(self.b, self.b.function.args[1], offset, v)
         self.b.ret_void()
 
     def when(self, condition: Value, body: Callable[[], None]) -> None:
@@ -148,13 +148,13 @@ class OneOrbit:
     def quotient(self, x: Value, y: Value) -> Value:
         return self.b.fdiv(x, y)
 
-    def opposite(self, condition: Value) -> Value:
+    def negation(self, condition: Value) -> Value:
         return self.b.not_(condition)
 
-    def both(self, x: Value, y: Value) -> Value:
+    def conjunction(self, x: Value, y: Value) -> Value:
         return self.b.and_(x, y)
 
-    def either(self, x: Value, y: Value) -> Value:
+    def disjunction(self, x: Value, y: Value) -> Value:
         return self.b.or_(x, y)
 
     def compare(self, order: str, x: Value, y: Value) -> Value:
@@ -162,7 +162,7 @@ class OneOrbit:
         return compare(order, x, y)
 
     def inside(self, x: Value, limit: Value) -> Value:
-        """Return |x| < limit, by the leading 64 bits alone: true only where it holds; limit > 0."""
+        """Return |x| < limit, by the leading 64 bits alone: true only if it holds; limit > 0."""
         b = self.b
         x, limit = (limbs.leading(b, v, self.fraction) for v in (x, limit))
         # −limit < x < limit for integers is 0 < x + limit < 2·limit.
@@ -189,7 +189,7 @@ class OneOrbit:
         if name == "root" and x.type == DOUBLE:
             return [self._float_root(x, values[1])]
         if x.type == DOUBLE:
-            return [self._float_function(name, x)]
+            return [b.call(float_function(self.module, name), [x])]
         packed = b.call(self.functions.get(name), [x])
         count = len(packed.type.elements) - 1
         self._require(b.extract_value(packed, count))
@@ -202,20 +202,17 @@ class OneOrbit:
     def _absolute(self, x: Value) -> Value:
         return self.b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
 
-    def _shift_down(self, x: Value, by: Value) -> Value:
-        """Return x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not find by
-        itself."""
+    def _shift_down(self, x: Value, shift: Value) -> Value:
+        """Return x / 2^shift rounded down, 0 ≤ shift < 64: limb by limb, as LLVM would not."""
         b, count = self.b, x.type.width // 64
         kind = ir.FunctionType(I64, [I64] * 3)
         funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
         words = [limbs.limb(b, x, i) for i in range(count)]
         # The word above the highest is its sign, repeated in all bits.
         above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
-        shifted = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        pairs = zip(above, words, strict=True)
+        shifted = [b.call(funnel, [high, low, shift]) for high, low in pairs]
         return limbs.join(b, shifted)
-
-    def _float_function(self, name: str, x: Value) -> Value:
-        return self.b.call(float_function(self.module, name), [x])
 
     def _float_root(self, x: Value, n: Value) -> Value:
         """Return the root as `verify.arithmetic.systems.float64` computes it, operation by
@@ -247,3 +244,21 @@ def _libm_function(module: ir.Module, name: str, count: int) -> ir.Function:
     if name not in module.globals:
         ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * count), name)
     return module.globals[name]
+
+
+def read_number(b: ir.IRBuilder, memory: Value, offset: int, kind: ir.Type) -> tuple[Value, int]:
+    """Return the number of that type at a word offset, and the offset behind it."""
+    count = 1 if kind == DOUBLE else kind.width // 64
+    words = [b.load(b.gep(memory, [constant(offset + i, 64)]), typ=I64) for i in range(count)]
+    value = b.bitcast(words[0], DOUBLE) if kind == DOUBLE else limbs.join(b, words)
+    return value, offset + count
+
+
+def write_number(b: ir.IRBuilder, memory: Value, offset: int, value: Value) -> int:
+    """Write a number at a word offset; return the offset behind it."""
+    if value.type == DOUBLE:
+        value = b.bitcast(value, I64)
+    count: int = value.type.width // 64
+    for i in range(count):
+        b.store(limbs.limb(b, value, i), b.gep(memory, [constant(offset + i, 64)]))
+    return offset + count

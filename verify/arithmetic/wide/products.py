@@ -3,7 +3,7 @@
 They are rounded to the nearest, so that other ways to form them, in lanes, give the same bits.
 
 Written out they run fastest. But LLVM's time grows like the square of a function's length, and
-where products are long or many a call costs little beside: it makes a long kernel a tenth slower,
+if products are long or many a call costs little beside: it makes a long kernel a tenth slower,
 or a third at most, and compiles it many times sooner.
 """
 
@@ -21,7 +21,7 @@ _MOST_IN_KERNEL = 3500
 _LEAST_CALLED = 8
 
 
-class Products:
+class ProductWriter:
     """`limbs.product` and `limbs.high_product` for the numbers of one format."""
 
     def __init__(self, module: ir.Module, fraction: int) -> None:
@@ -39,18 +39,18 @@ class Products:
         return self._call(b, "product", self._product, x, y) if called else self._product(b, x, y)
 
     def _product(self, b: ir.IRBuilder, x: Value, y: Value) -> Value:
-        near, unsure = limbs.product(b, x, y, self.fraction)
-        if unsure is None:
-            return near
+        near = limbs.product(b, x, y, self.fraction)
+        if near.unsure is None:
+            return near.value
         before, cold = b.block, b.append_basic_block("unsure")
         after = b.append_basic_block("sure")
-        b.cbranch(unsure, cold, after).set_weights([1, 1 << 20])
+        b.cbranch(near.unsure, cold, after).set_weights([1, 1 << 20])
         b.position_at_end(cold)
         whole = b.call(self._whole(), [x, y])
         b.branch(after)
         b.position_at_end(after)
         result = b.phi(x.type)
-        result.add_incoming(near, before)
+        result.add_incoming(near.value, before)
         result.add_incoming(whole, cold)
         return result
 
@@ -69,6 +69,8 @@ class Products:
         return self._functions[name]
 
     def high(self, b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
+        """Return the high half of x y: of fractions their product."""
+
         def write(b: ir.IRBuilder, x: Value, y: Value) -> Value:
             return limbs.high_product(b, x, y, signed=signed)
 

@@ -7,8 +7,8 @@ of exact drifts. V is that of a quadrupole and a sextupole.
 from collections.abc import Iterator
 from fractions import Fraction
 
+from verify.audits.methods.driver import USUAL_LADDER, integrator_from_script
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import USUAL, by_script
 
 TITLE = "pyAT"
 LIBRARY = "at"
@@ -37,7 +37,7 @@ _FIELD = "q**2/3 + q**3/6"
 _FIELDS = "q1**2/3 - q2**2/3 + q1**3/6 - q1*q2**2/2"
 _BENT = ", BendingAngle=h / 2, EntranceAngle=0.0, ExitAngle=0.0"
 _DRIVEN = "one element of length h with NumIntSteps = 1, a quadrupole and a sextupole"
-_SAID = "its name, and the documentation of its pass methods: a symplectic integrator of order 4"
+_CLAIM = "its name, and the documentation of its pass methods: a symplectic integrator of order 4"
 _SYSTEMS = {
     "StrMPoleSymplectic4Pass": ("p**2/2", "p1**2/2 + p2**2/2", ""),
     "BndMPoleSymplectic4Pass": ("p**2/2 + q**2/8", "p1**2/2 + p2**2/2 + q1**2/8", _BENT),
@@ -54,4 +54,6 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         ):
             text = _SCRIPT.format(method=method, more=more, **ends)
             points = _SLOW if ends is _PLANE else ()
-            yield by_script(f"{method}{tag}", _DRIVEN, _SAID, formula, text, 4, True, points, USUAL)
+            yield integrator_from_script(
+                f"{method}{tag}", _DRIVEN, _CLAIM, formula, text, 4, True, points, USUAL_LADDER
+            )

@@ -3,8 +3,8 @@ it says nothing."""
 
 from collections.abc import Iterator
 
+from verify.audits.methods.driver import HENON_HEILES, TWO_WAVES, Driver, drive_problems
 from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
 
 TITLE = "blackjax"
 LIBRARY = "blackjax"

@@ -4,9 +4,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
-from verify.audits.methods.tabled import table_integrator
+from verify.audits.methods.driver import HENON_HEILES, TWO_WAVES, Driver, drive_problems
+from verify.audits.methods.integrator import ReleasedIntegrator, table_integrator
 
 TITLE = "desolver"
 LIBRARY = "desolver"
@@ -53,9 +52,9 @@ def _methods() -> Iterator[Any]:
     from desolver.integrators.integrator_types import TableauIntegrator
 
     for name in dir(library):
-        each: Any = getattr(library, name)
-        if isinstance(each, type) and issubclass(each, TableauIntegrator):
-            yield from [each] if getattr(each, "__order__", None) else []
+        member: Any = getattr(library, name)
+        if isinstance(member, type) and issubclass(member, TableauIntegrator):
+            yield from [member] if getattr(member, "__order__", None) else []
 
 
 def _splitting(method: Any, name: str, order: int, source: str) -> ReleasedIntegrator:

@@ -4,9 +4,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import EACH, Driver, drive_problems
-from verify.audits.methods.tabled import full, table_integrator
+from verify.audits.methods.driver import PROBLEMS, Driver, drive_problems
+from verify.audits.methods.integrator import ReleasedIntegrator, full, table_integrator
 
 TITLE = "diffrax"
 LIBRARY = "diffrax"
@@ -48,7 +47,9 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for name in _NAMES:
         yield _table(name, getattr(diffrax, name))
     claim = "its documentation, “Symplectic method”, and order(terms) = 1"
-    yield from drive_problems("SemiImplicitEuler", _STEP, "SemiImplicitEuler", claim, 1, True, EACH)
+    yield from drive_problems(
+        "SemiImplicitEuler", _STEP, "SemiImplicitEuler", claim, 1, True, PROBLEMS
+    )
 
 
 def _table(name: str, solver: Any) -> ReleasedIntegrator:

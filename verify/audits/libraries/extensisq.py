@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import DRIVEN, HENON_HEILES, Driver, drive_problems
-from verify.audits.methods.tabled import full, table_integrator
+from verify.audits.methods.driver import DRIVEN, HENON_HEILES, Driver, drive_problems
+from verify.audits.methods.integrator import ReleasedIntegrator, full, table_integrator
 
 TITLE = "extensisq"
 LIBRARY = "extensisq"

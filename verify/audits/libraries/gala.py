@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
-from verify.audits.methods.integrator import Comparison, ReleasedIntegrator
-from verify.audits.methods.scripted import Driver, drive_problems
-from verify.audits.methods.tabled import text
+from verify.audits.methods.driver import Driver, drive_problems
+from verify.audits.methods.integrator import LibraryComparison, ReleasedIntegrator, text
 from verify.verdict import Verdict
 
 TITLE = "gala"
@@ -42,7 +41,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         "RK5Integrator's coefficients",
         "A and C of gala.integrate.pyintegrators.rk5",
         "its documentation: “using the Dormand-Prince coefficients”",
-        Comparison("its nodes are those of Dormand and Prince", _nodes, "documentation"),
+        LibraryComparison("its nodes are those of Dormand and Prince", _nodes, "documentation"),
         reproduction=_NODES,
     )
 

@@ -10,8 +10,8 @@ freedom, as long as it does not pass the centre: H = v²/2 + A(t) log(x² + 1/4)
 from collections.abc import Iterator
 from fractions import Fraction
 
+from verify.audits.methods.driver import LONG_LADDER, USUAL_LADDER, integrator_from_script
 from verify.audits.methods.integrator import FINE, Point, ReleasedIntegrator
-from verify.audits.methods.scripted import LONG, USUAL, by_script
 
 TITLE = "galpy"
 LIBRARY = "galpy"
@@ -28,8 +28,8 @@ _POINTS: tuple[Point, ...] = ((Fraction(1, 3), Fraction(3, 5)),)
 _DRIVEN = "p**2/2 + exp(-(t - 1/2)**2/2)*log(q**2 + 1/4)"
 _AHEAD: tuple[Point, ...] = ((Fraction(1, 3), Fraction(3, 2)), (Fraction(1, 2), Fraction(7, 4)))
 _STEPS = {
-    2: USUAL[:16],
-    4: USUAL[:14],
+    2: USUAL_LADDER[:16],
+    4: USUAL_LADDER[:14],
     6: tuple(Fraction(x, 64) for x in (64, 56, 48, 40, 32, 28, 24, 20, 16, 14, 12, 10, 8, 7, 6)),
 }
 _HALO = "p1**2/2 + p2**2/2 + log(q1**2 + q2**2/(4/5)**2 + 1/4)"
@@ -80,29 +80,29 @@ def step(p, q, t, h):
     return float(o.vx(t + h)), float(o.x(t + h))
 """
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
-_WHERE = {2: ((), ()), 4: ((), ()), 6: (_POINTS, FINE)}  # points, and steps, by the order
-_WHERE_IN_THE_PLANE = {2: ((), USUAL), 4: ((), USUAL), 6: ((), LONG)}
-_WHERE_IN_TIME = {order: (_AHEAD, sizes) for order, sizes in _STEPS.items()}
-_EACH = (
+_SAMPLES = {2: ((), ()), 4: ((), ()), 6: (_POINTS, FINE)}  # points, and steps, by the order
+_SAMPLES_IN_THE_PLANE = {2: ((), USUAL_LADDER), 4: ((), USUAL_LADDER), 6: ((), LONG_LADDER)}
+_SAMPLES_IN_TIME = {order: (_AHEAD, sizes) for order, sizes in _STEPS.items()}
+_PROBLEMS = (
     ("", "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step", _SOURCE, _HAMILTONIAN,
-     _ON_A_LINE, _WHERE),
+     _ON_A_LINE, _SAMPLES),
     (", two degrees",
      "Orbit in the plane, its R, v_R, v_T, φ from x and y, integrate([0, h], …, dt=h)", _SOURCE,
-     _HALO, _IN_THE_PLANE, _WHERE_IN_THE_PLANE),
+     _HALO, _IN_THE_PLANE, _SAMPLES_IN_THE_PLANE),
     (", driven",
      "Orbit([q, p, 0, 0]).integrate([t, t + h], …, dt=h), one step in the plane, along its axis, "
      "with the amplitude exp(−(t − 1/2)²/2)",
-     f"{_SOURCE}, and of GaussianAmplitudeWrapperPotential", _DRIVEN, _IN_TIME, _WHERE_IN_TIME),
+     f"{_SOURCE}, and of GaussianAmplitudeWrapperPotential", _DRIVEN, _IN_TIME, _SAMPLES_IN_TIME),
 )  # fmt: skip
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for tag, driven, source, formula, lines, where in _EACH:
+    for tag, driven, source, formula, lines, samples in _PROBLEMS:
         for name, order in _ORDERS.items():
             text = lines.replace("{method}", name)
             # Only the integrators whose names say so are claimed to be symplectic, and of driven
             # ones det J is not looked at again.
             symplectic = None if name.startswith("rk") or tag == ", driven" else True
-            yield by_script(
-                f"{name}{tag}", driven, source, formula, text, order, symplectic, *where[order]
+            yield integrator_from_script(
+                f"{name}{tag}", driven, source, formula, text, order, symplectic, *samples[order]
             )

@@ -12,8 +12,8 @@ from typing import Any
 
 from verify.algebra.enclosure import enclose_defined
 from verify.arithmetic.arb import midpoint_and_radius
-from verify.audits.methods.integrator import Comparison, ReleasedIntegrator
-from verify.audits.methods.scripted import by_script
+from verify.audits.methods.driver import integrator_from_script
+from verify.audits.methods.integrator import LibraryComparison, ReleasedIntegrator
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.verdict import Verdict
 
@@ -95,12 +95,12 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     ):  # fmt: skip
         for eta in _ORDERS:
             name, driven = f"Taylor, order {eta}{tag}", f"{_DRIVEN}{more}"
-            yield by_script(name, driven, source, formula, text.format(eta=eta), eta)
+            yield integrator_from_script(name, driven, source, formula, text.format(eta=eta), eta)
     yield ReleasedIntegrator(
         "Taylor and lieη",
         f"{_DRIVEN}, with the variational equations",
         "both are the Taylor series of the flow, cut off after h^η",
-        Comparison("One step and its Jacobian are those of lieη, to rounding", _agreement),
+        LibraryComparison("One step and its Jacobian are those of lieη, to rounding", _agreement),
     )
 
 
@@ -158,8 +158,8 @@ def _distance(formula: str, eta: int) -> tuple[float, float]:
             taylor.state[k] = float(x)
         taylor.step(max_delta_t=float(_STEP))
         # The state first, then the Jacobian by rows, as heyoka's variational state has them.
-        exact = (*step_map.elements, *(x for row in step_map.jacobian for x in row))
-        for k, element in enumerate(exact):
+        elements = (*step_map.elements, *(x for row in step_map.jacobian for x in row))
+        for k, element in enumerate(elements):
             ball = enclose_defined(step_map.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
             middle, _ = midpoint_and_radius(ball)
             gap = abs(Fraction(float(taylor.state[k])) - middle)

@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import HENON_HEILES, TWO_WAVES, Driver, drive_problems
-from verify.audits.methods.tabled import table_integrator
+from verify.audits.methods.driver import HENON_HEILES, TWO_WAVES, Driver, drive_problems
+from verify.audits.methods.integrator import ReleasedIntegrator, table_integrator
 
 TITLE = "jax-md"
 LIBRARY = "jax_md"

@@ -9,7 +9,7 @@ from typing import Any
 
 from verify.audits.methods.integrator import ReleasedIntegrator
 from verify.content import content
-from verify.integrators.tables.splittings.claims import alternating, mirror
+from verify.integrators.tables.splitting_claims import alternating, mirror
 from verify.scenes.toml_file import read_toml
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable

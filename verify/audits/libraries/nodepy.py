@@ -15,9 +15,9 @@ from typing import Any
 
 import sympy
 
-from verify.audits.methods.integrator import Comparison, ExactTableau, ReleasedIntegrator
-from verify.audits.methods.scripted import by_script
-from verify.audits.methods.tableau import order_of
+from verify.audits.methods.driver import integrator_from_script
+from verify.audits.methods.integrator import ExactTableau, LibraryComparison, ReleasedIntegrator
+from verify.audits.methods.tableau_proofs import order_of
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
@@ -52,12 +52,12 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         "nodes",
         "c and A of each of these methods",
         "its documentation: it solves u' = f(t, u)",
-        Comparison(
+        LibraryComparison(
             "The nodes c are the row sums of A, so that the order holds for f(t, u), too", _nodes
         ),
         reproduction=_NODES_SCRIPT,
     )
-    yield by_script(
+    yield integrator_from_script(
         "RK44 as a step, driven",
         "rk.loadRKM('RK44') called with an IVP from t to t + h and dt = h",
         "its documentation: it solves u' = f(t, u)",
@@ -69,7 +69,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         "order()",
         "what it returns for each of these methods, by default",
         "its documentation: conditions are checked to within its tolerance, by default 1e-14",
-        Comparison(
+        LibraryComparison(
             "order() returns the order of each method that loadRKM loads", _check_order_method
         ),
         reproduction=_ORDER_SCRIPT,
@@ -125,10 +125,10 @@ def tableau_of(a: Any, b: Any) -> ExactTableau:
     rows = [[_number(a[i, j]) for j in range(count)] for i in range(count)]
     weights = [_number(x) for x in b]
     rounded = any(was for row in (*rows, weights) for _, was in row)
-    exact = ImplicitTableau.from_numbers(
+    tableau = ImplicitTableau.from_numbers(
         [[x for x, _ in row] for row in rows], [x for x, _ in weights]
     )
-    return ExactTableau(exact, rounded)
+    return ExactTableau(tableau, rounded)
 
 
 def _number(x: Any) -> tuple[sympy.Expr, bool]:
@@ -148,8 +148,8 @@ def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
         count = len(method.b)
         gaps = [_number(method.c[i])[0] - sum(_number(method.A[i, j])[0] for j in range(count))
                for i in range(count)]  # fmt: skip
-        exact = [sympy.radsimp(sympy.expand(x)) == 0 for x in gaps]
-        if not all(exact):
+        agreements = [sympy.radsimp(sympy.expand(x)) == 0 for x in gaps]
+        if not all(agreements):
             close = all(abs(float(x)) <= _LOOSE for x in gaps)
             rounded += close
             wrong += [] if close else [key]

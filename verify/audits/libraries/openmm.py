@@ -6,14 +6,14 @@ symplectic, and its order is not that of its positions.
 
 from collections.abc import Iterator
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import (
+from verify.audits.methods.driver import (
     HENON_HEILES,
     TWO_WAVES,
     Driver,
-    Problem,
+    ScriptedProblem,
     drive_problems,
 )
+from verify.audits.methods.integrator import ReleasedIntegrator
 
 TITLE = "OpenMM"
 LIBRARY = "openmm"
@@ -23,7 +23,7 @@ LEFT_OUT = (
     ("VariableVerletIntegrator", "chooses its steps by itself; it is said not to be symplectic"),
     ("Langevin and Nosé–Hoover integrators", "are of other equations than H's"),
 )
-_POTENTIALS: dict[Problem, str] = {
+_POTENTIALS: dict[ScriptedProblem, str] = {
     TWO_WAVES: "-2*cos(x)-sin(2*x)/2",
     HENON_HEILES: "(x^2+y^2)/2+x^2*y-y^3/3",
 }
@@ -49,7 +49,7 @@ state = context.getState(getPositions=True, getVelocities=True)
 q = state.getPositions(asNumpy=True)._value[0, :n]
 p = state.getVelocities(asNumpy=True)._value[0, :n]
 """
-_EACH = (
+_METHODS = (
     ("VerletIntegrator", "openmm.VerletIntegrator(0.1)", None,
      "OpenMM's documentation, of VariableVerletIntegrator: “Unlike a fixed step size Verlet "
      "integrator, variable step size Verlet is not symplectic”"),
@@ -59,7 +59,7 @@ _EACH = (
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for name, method, order, claim in _EACH:
+    for name, method, order, claim in _METHODS:
         for problem, potential in _POTENTIALS.items():
             driven = Driver(
                 _HEAD.replace("{potential}", potential), _BODY, "one step on the reference platform"

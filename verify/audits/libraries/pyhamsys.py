@@ -8,15 +8,14 @@ orders ask for. All others are for either.
 import itertools
 from collections.abc import Iterator
 
-from verify.audits.methods.integrator import ReleasedIntegrator
-from verify.audits.methods.scripted import (
-    EACH,
+from verify.audits.methods.driver import (
     HENON_HEILES,
+    PROBLEMS,
     TWO_WAVES,
     Driver,
     drive_problems,
 )
-from verify.audits.methods.tabled import table_integrator, text
+from verify.audits.methods.integrator import ReleasedIntegrator, table_integrator, text
 
 TITLE = "pyhamsys"
 LIBRARY = "pyhamsys"
@@ -67,7 +66,7 @@ def _driven(first: str, second: str) -> Driver:
 
 def integrators() -> Iterator[ReleasedIntegrator]:
     for orders, first, second, problems in (
-        (_EITHER, "drift", "kick", EACH),
+        (_EITHER, "drift", "kick", PROBLEMS),
         (_OF_KICKS, "drift", "kick", (TWO_WAVES, HENON_HEILES)),
         (_OF_DRIFTS, "kick", "drift", (TWO_WAVES, HENON_HEILES)),
     ):

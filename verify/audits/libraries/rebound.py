@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from verify.audits.methods.driver import USUAL_LADDER, integrator_from_script
 from verify.audits.methods.integrator import FINE, Point, ReleasedIntegrator
-from verify.audits.methods.scripted import USUAL, by_script
 
 TITLE = "rebound"
 LIBRARY = "rebound"
@@ -27,7 +27,7 @@ LEFT_OUT = (
         "are for the planets' pull on one another, which one particle does not have",
     ),
 )
-_AWAY: tuple[Point, ...] = tuple(
+_FAR_POINTS: tuple[Point, ...] = tuple(
     (Fraction(a), Fraction(b))
     for a, b in (("1/3", "2"), ("-1/4", "5/2"), ("1/5", "3"), ("0", "9/4"))
 )
@@ -37,13 +37,13 @@ _TIMES = (
     "step(0.0, 2.0, 1.0, 0.5)",
     'print("in the step from 1.0 to 1.5 the force is read at", times)',
 )
-_ONE: tuple[Point, ...] = ((Fraction(1, 3), Fraction(1, 2)),)
+_ONE_POINT: tuple[Point, ...] = ((Fraction(1, 3), Fraction(1, 2)),)
 _SOURCE = "the integrator's own documentation, Simulation.integrator.__doc__"
 
 
 @dataclass(frozen=True)
 class _Problem:
-    """`mass` of the star, `softening`, and whether the additional force −q/4 acts."""
+    """A problem: `mass` of the star, `softening`, and whether the additional force −q/4 acts."""
 
     hamiltonian: str
     mass: float
@@ -64,8 +64,8 @@ class _Problem:
 
 # A star of mass 8 at (−3, 0), in whose frame the particle is; the softened one is at 0.
 _SOFT_IN_SPACE = "p1**2/2 + p2**2/2 - 8/sqrt(q1**2 + q2**2 + 4)"
-_NEAR = "p1**2/2 + p2**2/2 - 8/sqrt((q1 + 3)**2 + q2**2)"
-_PUSHED = f"{_NEAR} + q1**2/8"
+_UNSOFTENED = "p1**2/2 + p2**2/2 - 8/sqrt((q1 + 3)**2 + q2**2)"
+_PUSHED = f"{_UNSOFTENED} + q1**2/8"
 _IN_SPACE = """\
 import numpy as np
 import rebound
@@ -132,12 +132,12 @@ def _in_space() -> Iterator[ReleasedIntegrator]:
         if name == "eos":
             push = ""
         text = text.replace("{settings}", setting + softening + push)
-        formula = _SOFT_IN_SPACE if softened else _NEAR if name == "eos" else _PUSHED
+        formula = _SOFT_IN_SPACE if softened else _UNSOFTENED if name == "eos" else _PUSHED
         title = f"{name.upper()}{', ' if settings else ''}{settings.replace(' = ', ' ')}"
-        yield by_script(
+        yield integrator_from_script(
             f"{title}, two degrees",
             "one step of dt = h: a massless particle before a star of mass 8, in the plane",
-            _SOURCE, formula, text, order, True, (), USUAL,
+            _SOURCE, formula, text, order, True, (), USUAL_LADDER,
         )  # fmt: skip
 
 
@@ -175,19 +175,21 @@ def _driven(problem: _Problem, *arguments: Any) -> ReleasedIntegrator:
 def _integrator(
     problem: _Problem, integrator: str, name: str, order: int, *settings: str
 ) -> ReleasedIntegrator:
-    points: tuple[Point, ...] = () if problem.softening else _AWAY
+    points: tuple[Point, ...] = () if problem.softening else _FAR_POINTS
     ladder: tuple[Fraction, ...] = ()
     if order >= 8:
         # A high order shows between steps that are too large for it and rounding: at one place,
         # with a fine ladder.
-        points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
+        points, ladder = (_ONE_POINT if problem.softening else _FAR_POINTS[:1]), FINE
     elif order == 6 and problem is _FREE:
-        points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
+        points, ladder = _FAR_POINTS[3:], tuple(h for h in FINE if h < Fraction(7, 8))
     text, driven = (
         _script(problem, integrator, settings),
         f"one step of dt = h: {problem.description}",
     )
-    return by_script(name, driven, _SOURCE, problem.hamiltonian, text, order, True, points, ladder)
+    return integrator_from_script(
+        name, driven, _SOURCE, problem.hamiltonian, text, order, True, points, ladder
+    )
 
 
 def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> str:

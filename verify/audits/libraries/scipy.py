@@ -11,6 +11,12 @@ from typing import Any
 
 import sympy
 
+from verify.audits.methods.driver import (
+    HENON_HEILES,
+    Driver,
+    drive_problems,
+    integrator_from_script,
+)
 from verify.audits.methods.integrator import (
     FINE,
     ExactTableau,
@@ -18,9 +24,9 @@ from verify.audits.methods.integrator import (
     Map,
     Point,
     ReleasedIntegrator,
+    full,
+    quotient,
 )
-from verify.audits.methods.scripted import HENON_HEILES, Driver, by_script, drive_problems
-from verify.audits.methods.tabled import full, quotient
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 
 TITLE = "scipy"
@@ -89,10 +95,10 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     ):  # fmt: skip
         for name, order in (("RK23", 3), ("RK45", 5)):
             source, text = f"{_SOURCE.format(name)}{more}", lines.replace("{method}", name)
-            where = (_POINTS, FINE) if order > 4 else ()
-            yield by_script(
+            samples = (_POINTS, FINE) if order > 4 else ()
+            yield integrator_from_script(
                 f"{name}, as a step{tag}", _LOOSE.format(name), source, formula, text, order, None,
-                *where,
+                *samples,
             )  # fmt: skip
     for name, order in (("RK23", 3), ("RK45", 5)):
         source_text, title = _SOURCE.format(name), f"{name}, as a step"
@@ -177,15 +183,15 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegra
 
 
 def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:
-    exact = _quotient if quotients else _binary
+    convert = _quotient if quotients else _binary
     return ImplicitTableau.from_numbers(
-        [[exact(x) for x in row] for row in rows], [exact(x) for x in weights]
+        [[convert(x) for x in row] for row in rows], [convert(x) for x in weights]
     )
 
 
 def _quotient(x: float) -> sympy.Rational:
-    near = quotient(x, digits=6)
-    return _binary(x) if near is None else sympy.Rational(near.numerator, near.denominator)
+    short = quotient(x, digits=6)
+    return _binary(x) if short is None else sympy.Rational(short.numerator, short.denominator)
 
 
 def _binary(x: float) -> sympy.Rational:

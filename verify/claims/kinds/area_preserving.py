@@ -1,13 +1,13 @@
-"""det J ≡ 1; or, where `area_preserving` is false, not so."""
+"""det J ≡ 1; or, if `area_preserving` is false, not so."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.orders import judge_vanishing, order_of, vanishing_verdict
-from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim
-from verify.proof.every_proof import EveryProof
+from verify.claims.quantified_claims import OF_DELTA_J, QuantifiedClaim
+from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -23,11 +23,11 @@ class AreaClaim(QuantifiedClaim):
     def judge_one(self, findings: Findings) -> ClaimResult:
         return judge_vanishing(self, order_of(self, findings, "ΔJ"), self.area_preserving)
 
-    def judge_every(self, proof: EveryProof) -> ClaimResult:
+    def judge_every(self, proof: ProofForEveryH) -> ClaimResult:
         verdict = vanishing_verdict(proof.area_preserving, self.area_preserving)
         return self.result(verdict, proof.reason, domain=proof.domain)
 
-    def why_only_here(self) -> str:
+    def why_not_transferable(self) -> str:
         if self.every and not self.area_preserving:
             return "that not every Hamiltonian has det J ≡ 1 says nothing of a single one"
         return ""

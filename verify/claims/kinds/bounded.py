@@ -6,13 +6,13 @@ from pydantic import Field
 
 from verify.arithmetic.arb import Ball, format_ball, rational_ball
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, all_hold, sign, start_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, all_hold, sign, start_of
+from verify.claims.run_claims import RunClaim
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
-from verify.scenes.values import Number as ExactNumber
+from verify.scenes.values import ExactNumber
 
 _MOST_DIGITS = 200  # of runs that are made again
 
@@ -21,8 +21,8 @@ class BoundedClaim(RunClaim):
     """A bound of |Λ| along whole runs."""
 
     compares = ("lambda_max",)
-    always_own = True
-    only_here = ""
+    separate_runs = True
+    obstacle = ""
     kind: Literal["bounded"]
     bound: Annotated[ExactNumber, Field(ge=0)]
     """The bound of |Λ|."""
@@ -58,7 +58,7 @@ class BoundedClaim(RunClaim):
 def _format_beside(x: Ball, bound: Ball) -> str:
     """Format x with six digits, or with as many as show that it differs from the bound."""
     texts = ((format_ball(x, n), format_ball(bound, n)) for n in (6, 12, 25, 50, 100, _MOST_DIGITS))
-    return next((x for x, other in texts if x != other), format_ball(x))
+    return next((x for x, bound_text in texts if x != bound_text), format_ball(x))
 
 
 CLAIM = BoundedClaim

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.quantified import OF_DELTA_J, OF_LAMBDA, marks_for_scene
+from verify.claims.base_claim import Findings
+from verify.claims.quantified_claims import OF_DELTA_J, OF_LAMBDA, marks_for_scene
+from verify.claims.run_claims import RunClaim
 from verify.execution.task import Task
 from verify.prose import Prose, join_prose, prose
 from verify.scenes.observables import CLOSED_FORM
@@ -24,7 +24,7 @@ _BY_PROOF_ALONE = {1, 2}
 class CriteriaClaim(RunClaim):
     """Criteria of area preservation, by their numbers."""
 
-    only_here = ""
+    obstacle = ""
     kind: Literal["criteria"]
     numbers: Annotated[
         tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)

@@ -6,7 +6,7 @@ In the plane S is ΔJ·Ω, and this is the order of ΔJ.
 from typing import Literal
 
 from verify.claims.orders import Order, OrderedClaim
-from verify.claims.quantified import OF_S
+from verify.claims.quantified_claims import OF_S
 
 
 class DefectOrderClaim(OrderedClaim):

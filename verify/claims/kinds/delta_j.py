@@ -11,22 +11,22 @@ from typing import Literal, Self
 
 import sympy
 
-from verify.algebra.domain import Domain
+from verify.algebra.domain import FormulaDomain
 from verify.algebra.embedding import embed
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import read, symbol
 from verify.algebra.symbols import H_STEP
-from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, condition_text, gaps
+from verify.claims.base_claim import Findings
+from verify.claims.formula_claims import FormulaClaim, condition_text, gaps
 from verify.claims.orders import Order
-from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim, marks_for_hamiltonian
+from verify.claims.quantified_claims import OF_DELTA_J, QuantifiedClaim, marks_for_hamiltonian
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every_proof import EveryProof
-from verify.proof.order import leading_of
+from verify.proof.order_for_one_h import leading_of
+from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.maps.step_map import group_by_powers
+from verify.schemes.maps.closed_form import group_by_powers
 from verify.verdict import Verdict
 
 _NAME = re.compile(r"[A-Za-z]\w*")
@@ -47,7 +47,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     formula: str
     """ΔJ in p, q, h and parameters; for every H in `H_p`, `H_pq`, … and h."""
     up_to: Order | None = None
-    """Up to which power of h, + O(h^up_to); exactly, where it is left out."""
+    """Up to which power of h, + O(h^up_to); exactly, if it is left out."""
 
     def formulas(self) -> dict[str, str]:
         return {"formula": self.formula}
@@ -113,7 +113,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
             )
         _read_every(self.formula, self.id)
 
-    def judge_every(self, proof: EveryProof) -> ClaimResult:
+    def judge_every(self, proof: ProofForEveryH) -> ClaimResult:
         """Judge up to the leading term, beyond which ΔJ is not known for every H."""
         if proof.area_preserving is not True and (proof.order is None or not proof.leading):
             return self.result(Verdict.UNDECIDED, proof.reason)
@@ -141,7 +141,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         )
         return self.result(Verdict.PROVED, holds, domain=domain)
 
-    def _every(self, formula: str) -> tuple[sympy.Expr, Domain]:
+    def _every(self, formula: str) -> tuple[sympy.Expr, FormulaDomain]:
         return _normal(*_read_every(formula, self.id), separable=self.of_separable)
 
     def for_hamiltonian(self, hamiltonian: Hamiltonian) -> Self:
@@ -155,7 +155,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
 # -- formulas made of every H: in h, p, q and its derivatives, such as H_pq or H_11 ----------------
 
 
-def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
+def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, FormulaDomain]:
     """Parse the claim's formula for every H; return it with the domain where it is defined.
 
     Raises InputError if it names anything but h, p, q and derivatives of H.
@@ -164,7 +164,7 @@ def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
     key = f"claim {claim}: formula"
     try:
         expression, requirements = read(formula, ("p", "q", "h", *derivatives), source=key)
-        return expression, Domain.from_requirements(requirements)
+        return expression, FormulaDomain.from_requirements(requirements)
     except InputError as error:
         if "unknown name" not in error.problem:
             raise
@@ -172,7 +172,9 @@ def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
         raise InputError(key, formula, problem) from None
 
 
-def _normal(formula: sympy.Expr, domain: Domain, *, separable: bool) -> tuple[sympy.Expr, Domain]:
+def _normal(
+    formula: sympy.Expr, domain: FormulaDomain, *, separable: bool
+) -> tuple[sympy.Expr, FormulaDomain]:
     """Give each derivative of H a single name; of a separable H the mixed ones are zero."""
     # ∂²H/∂p∂q has several names; with one name for each, equal formulas have equal normal forms.
     substitution = {}
@@ -197,9 +199,9 @@ def _derivatives(formula: sympy.Expr) -> dict[sympy.Symbol, tuple[int, int]]:
     derivatives = {}
     for s in formula.free_symbols:
         if match := _DERIVATIVE.fullmatch(s.name):
-            by = match[1]
-            digits = (int(by[0]), int(by[1])) if by.isdecimal() else None
-            derivatives[s] = digits or (by.count("p"), by.count("q"))
+            suffix = match[1]
+            digits = (int(suffix[0]), int(suffix[1])) if suffix.isdecimal() else None
+            derivatives[s] = digits or (suffix.count("p"), suffix.count("q"))
     return derivatives
 
 

@@ -8,14 +8,14 @@ from pydantic import Field
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.regions import HEAD, FlowClaim, Image, judge_sizes
+from verify.claims.base_claim import Findings
+from verify.claims.region_claims import HEAD, FlowClaim, Image, judge_sizes
 from verify.effort import answer_unless_long
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Formula, Number, Prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
-from verify.scenes.values import Number as ExactNumber
+from verify.scenes.values import ExactNumber
 from verify.verdict import Verdict
 
 _LIOUVILLE = Formula("∂(−H_q)/∂p + ∂H_p/∂q = 0")
@@ -26,7 +26,7 @@ class FlowAreaClaim(FlowClaim):
 
     kind: Literal["flow_area"]
     within: Annotated[ExactNumber, Field(gt=0)] | None = None
-    """The largest part of the area that the change may be; exactly 0, where it is left out."""
+    """The largest part of the area that the change may be; exactly 0, if it is left out."""
 
     def judge(self, findings: Findings) -> ClaimResult:
         images = self.images(findings)
@@ -40,7 +40,7 @@ class FlowAreaClaim(FlowClaim):
             return self.result(Verdict.PROVED, evidence, details)
         if images and all(image.result.area_preserving for image in images):
             return self.result(Verdict.PROVED, "det J ≡ 1; " + _largest(measured_images), details)
-        # The two measures of area are independent; where they disagree, neither is trusted.
+        # The two measures of area are independent; if they disagree, neither is trusted.
         doubtful = [i for i in images if i.result.problem or i.result.agree is False]
         certain = [image for image in measured_images if image not in doubtful]
         ends = [image.change for image in certain]
@@ -81,7 +81,7 @@ def _mean(image: FlowImage) -> str:
 def _largest(images: Sequence[Image]) -> Prose:
     if not images:
         return prose("nothing was measured")
-    image = max(images, key=lambda each: each.change.high)
+    image = max(images, key=lambda x: x.change.high)
     return prose(
         "the area of the region changes by ", Number(image.result.area_change or ""), " ± ",
         Number(image.result.probe_error or ""), " of it (", image.place, ")",

@@ -7,12 +7,12 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.regions import HEAD, FlowClaim, Image, judge_sizes, size_bounds
+from verify.claims.base_claim import Findings
+from verify.claims.region_claims import HEAD, FlowClaim, Image, judge_sizes, size_bounds
 from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Number, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.values import Number as ExactNumber
+from verify.scenes.values import ExactNumber
 from verify.verdict import Verdict
 
 
@@ -48,7 +48,7 @@ class FlowDistanceClaim(FlowClaim):
             reasons = (image.result.problem for image in images if image.result.problem)
             reason = next(reasons, "a distance is not known")
             return self.result(Verdict.UNDECIDED, reason, details)
-        worst = max(measured_images, key=lambda each: Fraction(each.result.distance or 0))
+        worst = max(measured_images, key=lambda image: Fraction(image.result.distance or 0))
         evidence = prose(
             f"the largest of {len(measured_images)} Hausdorff distances from the exact flow’s ",
             "outlines is ",

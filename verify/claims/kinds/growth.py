@@ -1,8 +1,8 @@
 """The growth of the greatest |Λ| of [0, t] up to the end of the run.
 
 It is read from runs to T/8, T/4, T/2 and T: the greatest |Λ| of [0, t] does not decrease in t, and
-each doubling of t multiplies it by some 2^e. The growth is `linear` where every e is within 1/8 of
-1, and `bounded` where every e is within 1/8 of 0; otherwise the claim is UNDECIDED. The verdict is
+each doubling of t multiplies it by some 2^e. The growth is `linear` if every e is within 1/8 of
+1, and `bounded` if every e is within 1/8 of 0; otherwise the claim is UNDECIDED. The verdict is
 about [0, T], and MEASURED at best: only a proof can cover all times.
 """
 
@@ -15,9 +15,9 @@ import flint
 
 from verify.arithmetic.arb import Ball, format_ball, format_fixed, is_representable, rational_ball
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, NoValueError
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, NoValueError
+from verify.claims.run_claims import RunClaim
 from verify.errors import InputError
 from verify.prose import Formula, Number, join_prose, number, prose
 from verify.runs.task import RunTask
@@ -38,8 +38,8 @@ class GrowthClaim(RunClaim):
 
     compares = ("lambda_max",)
     one_run = True
-    always_own = True
-    only_here = ""
+    separate_runs = True
+    obstacle = ""
     kind: Literal["growth"]
     growth: Literal["bounded", "linear"]
     """The growth of max |Λ| over [0, t], t = T/8 … T."""
@@ -81,12 +81,12 @@ class GrowthClaim(RunClaim):
             prose(number(format_ball(value, 4)), " to t = ", Number(_end(run)))
             for value, run in zip(values, runs, strict=True)
         )
-        by = (
+        exponent_texts = (
             "unknown" if not is_representable(e) else number(format_fixed(e, 2)) for e in exponents
         )
         evidence = prose(
             "max |Λ| is ", join_prose(", ", maxima), ": it grows like ", Formula("t^e"), ", e = ",
-            join_prose(", ", by),
+            join_prose(", ", exponent_texts),
         )  # fmt: skip
         return self.result(_judge(self.growth, exponents), evidence)
 
@@ -107,14 +107,16 @@ def _end(run: RunResult) -> str:
     return text(Fraction(run.step_size) * run.steps)
 
 
-def _exponent(first: Ball, last: Ball) -> Ball:
+def _exponent(value: Ball, value_at_double_time: Ball) -> Ball:
     """Return e in last = first · 2^e; not finite if one of them may be 0."""
-    return (last / first).log() / flint.arb(2).log()
+    return (value_at_double_time / value).log() / flint.arb(2).log()
 
 
 def _judge(claimed: str, exponents: Sequence[Ball]) -> Verdict:
-    near = rational_ball(_NEAR)
-    fitting = [name for name, e in _EXPONENTS.items() if all(abs(x - e) < near for x in exponents)]
+    tolerance = rational_ball(_NEAR)
+    fitting = [
+        name for name, e in _EXPONENTS.items() if all(abs(x - e) < tolerance for x in exponents)
+    ]
     if not fitting:
         return Verdict.UNDECIDED
     return Verdict.MEASURED if claimed in fitting else Verdict.REFUTED

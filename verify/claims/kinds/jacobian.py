@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, condition_text, gaps
+from verify.claims.base_claim import Findings
+from verify.claims.formula_claims import FormulaClaim, condition_text, gaps
 from verify.scenes.results.claim import ClaimResult
 
 _NAMES = (("∂p′/∂p", "∂p′/∂q"), ("∂q′/∂p", "∂q′/∂q"))

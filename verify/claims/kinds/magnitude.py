@@ -11,9 +11,9 @@ from pydantic import Field
 
 from verify.arithmetic.arb import format_ball, lg, rational_ball
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, some_hold, start_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, Quantity, all_hold, sign, some_hold, start_of
+from verify.claims.run_claims import RunClaim
 from verify.errors import InputError
 from verify.prose import Formula, Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -52,23 +52,25 @@ class MagnitudeClaim(RunClaim):
         for row in rows:
             run = self.run_at(row, self.step_size)
             values = {name: QUANTITIES[name](run) for name in names}
-            off = [abs(lg(values[n]) - self.exponents[n]) for n in names]
+            distances = [abs(lg(values[n]) - self.exponents[n]) for n in names]
             # "About 10^e" is read as: nearer to 10^e than to any other power of ten.
-            near = [sign(rational_ball(Fraction(1, 2)) - x) for x in off]
-            holds.append(_every(near))
-            wrong = [n for n, answer in zip(names, near, strict=True) if answer is False]
+            are_near = [sign(rational_ball(Fraction(1, 2)) - x) for x in distances]
+            holds.append(_every(are_near))
+            wrong = [n for n, answer in zip(names, are_near, strict=True) if answer is False]
             parts = [
                 prose(f"{QUANTITIES[n].label} = ", number(format_ball(values[n], 2))) for n in wrong
             ]
             failing.append(prose(start_of(row[0]), ": ", join_prose(", ", parts)))
             details.append([start_of(row[0]), *(format_ball(values[n], 4) for n in names)])
-        yes = [start_of(row[0]) for row, answer in zip(rows, holds, strict=True) if answer is True]
-        no = [
+        holding = [
+            start_of(row[0]) for row, answer in zip(rows, holds, strict=True) if answer is True
+        ]
+        not_holding = [
             description
             for description, answer in zip(failing, holds, strict=True)
             if answer is False
         ]
-        evidence = prose("holds for ", _list(yes), "; does not hold for ", _list(no))
+        evidence = prose("holds for ", _list(holding), "; does not hold for ", _list(not_holding))
         decide = some_hold if self.quantifier == "some" else all_hold
         return self.result(decide(holds), evidence, details)
 

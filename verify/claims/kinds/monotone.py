@@ -5,9 +5,9 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from verify.arithmetic.arb import format_ball
-from verify.claims.findings import Findings
-from verify.claims.on_runs import QuantityClaim
-from verify.claims.runs import QUANTITIES, all_hold, sign, start_of, table_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, all_hold, sign, start_of, table_of
+from verify.claims.run_claims import QuantityClaim
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -16,27 +16,27 @@ from verify.verdict import Verdict
 class MonotoneClaim(QuantityClaim):
     """A quantity that increases, or decreases, with the step size."""
 
-    only_here = ""
+    obstacle = ""
     kind: Literal["monotone"]
     direction: Literal["increases", "decreases"]
     """The direction of the quantity as the step size increases."""
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
-        quantity, way = QUANTITIES[self.quantity], 1 if self.direction == "increases" else -1
+        quantity, direction = QUANTITIES[self.quantity], 1 if self.direction == "increases" else -1
         label = QUANTITIES[self.quantity].label
         verdicts: list[bool | None] = []
         counterexamples = []
-        for one, two in (pair for row in rows for pair in pairwise(row)):
-            gap = way * (quantity(two) - quantity(one))
+        for finer, coarser in (pair for row in rows for pair in pairwise(row)):
+            gap = direction * (quantity(coarser) - quantity(finer))
             verdicts.append(sign(gap))
             # Only a certain decrease is shown as a counterexample; overlapping balls are not.
             if gap < 0:
                 counterexamples.append(prose(
-                    start_of(one), ": from h = ", Number(one.step_size), " to ",
-                    Number(two.step_size), f", {label} goes from ",
-                    number(format_ball(quantity(one), 4)), " to ",
-                    number(format_ball(quantity(two), 4)),
+                    start_of(finer), ": from h = ", Number(finer.step_size), " to ",
+                    Number(coarser.step_size), f", {label} goes from ",
+                    number(format_ball(quantity(finer), 4)), " to ",
+                    number(format_ball(quantity(coarser), 4)),
                 ))  # fmt: skip
         total = f"{len(verdicts)} neighbouring pairs"
         evidence = prose(f"{label} {self.direction} between all {total} of step sizes")

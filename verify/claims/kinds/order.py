@@ -6,7 +6,7 @@ In n degrees of freedom it is the order of det J − 1, and not of S.
 from typing import Literal
 
 from verify.claims.orders import Order, OrderedClaim, ProvedOrder
-from verify.claims.quantified import OF_DELTA_J
+from verify.claims.quantified_claims import OF_DELTA_J
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 

@@ -7,18 +7,18 @@ from pydantic import Field
 
 from verify.arithmetic.arb import bounds, format_ball, is_representable
 from verify.arithmetic.exact import decimal, text
-from verify.claims.findings import Findings
-from verify.claims.on_runs import QuantityClaim
-from verify.claims.runs import QUANTITIES, all_hold, middle
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, all_hold, middle
+from verify.claims.run_claims import QuantityClaim
 from verify.prose import Number, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.values import Number as ExactNumber
+from verify.scenes.values import ExactNumber
 
 
 class SpreadClaim(QuantityClaim):
     """The range of a quantity over the initial values."""
 
-    only_here = "a spread is over the initial values of its own scene"
+    obstacle = "a spread is over the initial values of its own scene"
     kind: Literal["spread"]
     factor: Annotated[ExactNumber, Field(ge=1)]
     """The largest quotient of two of its values at one step size."""

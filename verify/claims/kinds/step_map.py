@@ -3,10 +3,10 @@
 from typing import Literal
 
 from verify.algebra.formula import symbol
-from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, condition_text, gaps
+from verify.claims.base_claim import Findings
+from verify.claims.formula_claims import FormulaClaim, condition_text, gaps
 from verify.effort import limit_effort
-from verify.proof.order import convergence_of
+from verify.proof.order_for_one_h import convergence_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 

@@ -1,14 +1,13 @@
-"""S = JᵀΩJ − Ω ≡ 0; or, where `symplectic` is false, not so. In the plane that is det J ≡ 1."""
+"""S = JᵀΩJ − Ω ≡ 0; or, if `symplectic` is false, not so. In the plane that is det J ≡ 1."""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.claims.claim import Claim
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Claim, Findings
 from verify.claims.orders import judge_vanishing, order_of
-from verify.claims.quantified import OF_S, marks_for_scene
+from verify.claims.quantified_claims import OF_S, marks_for_scene
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 

@@ -9,10 +9,20 @@ from pydantic import Field, model_validator
 
 from verify.arithmetic.arb import Ball, is_representable, lg, rational_ball
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.printed import Row, cell, holds, places, rounds_to, short
-from verify.claims.runs import QUANTITIES, all_hold, middle, start_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import (
+    QUANTITIES,
+    PrintedRow,
+    all_hold,
+    cell,
+    holds,
+    middle,
+    places,
+    rounds_to,
+    short,
+    start_of,
+)
+from verify.claims.run_claims import RunClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Formula, Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -30,7 +40,7 @@ class Entries(NamedTuple):
     details: list[list[str]]
 
 
-class TableClaim(RunClaim):
+class PrintedTableClaim(RunClaim):
     """`printed` is one row that every initial value has, `rows` one row for each initial value."""
 
     kind: Literal["table"]
@@ -38,9 +48,9 @@ class TableClaim(RunClaim):
     """The printed quantity."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
     """The step sizes, in the order of the values."""
-    printed: Row | None = None
+    printed: PrintedRow | None = None
     """One row that every initial value has; or `rows`."""
-    rows: Annotated[tuple[Row, ...], Field(min_length=1, max_length=1000)] | None = None
+    rows: Annotated[tuple[PrintedRow, ...], Field(min_length=1, max_length=1000)] | None = None
     """A row for each initial value; or `printed`."""
 
     @model_validator(mode="after")
@@ -72,10 +82,10 @@ class TableClaim(RunClaim):
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
         verdicts, values, details = self.entries(rows)
-        every = [verdict for row in verdicts for verdict in row]
-        if False not in every:
+        entries = [verdict for row in verdicts for verdict in row]
+        if False not in entries:
             evidence = self.describe_range(values) + ", as printed"
-            return self.result(all_hold(every), evidence, details)
+            return self.result(all_hold(entries), evidence, details)
         grid = findings.scene(self.scene).grid
         evidence = prose(
             self._describe_wrong(verdicts), ": ", self.describe_range(values),
@@ -106,8 +116,8 @@ class TableClaim(RunClaim):
     def _describe_wrong(self, verdicts: Sequence[Sequence[bool | None]]) -> str:
         """Describe how many of the printed entries are wrong."""
         if self.printed is None:
-            every = [verdict for row in verdicts for verdict in row]
-            return f"{every.count(False)} of {len(every)} entries are wrong"
+            entries = [verdict for row in verdicts for verdict in row]
+            return f"{entries.count(False)} of {len(entries)} entries are wrong"
         columns, label = list(zip(*verdicts, strict=True)), QUANTITIES[self.quantity].label
         several = f" from any of the {len(verdicts)} initial values" if len(verdicts) > 1 else ""
         if all(verdict is False for column in columns for verdict in column):
@@ -125,7 +135,7 @@ class TableClaim(RunClaim):
         return prose(f"computed {label} lies between ", low, " and ", high)
 
     def _describe_identities(self, row: Sequence[RunResult], time: Fraction | None) -> Prose:
-        """Identify a wrong row as the logarithm of a product, where it is one."""
+        """Identify a wrong row as the logarithm of a product, if it is one."""
         if self.quantity != "lg_mse" or self.printed is None:
             return prose("")
         runs = [self.run_at(row, h) for h in self.step_sizes]
@@ -148,11 +158,11 @@ def _identities(
         if 0 not in exponents or not any(exponents):
             continue
         if all(
-            rounds_to(lg(_power(run, time, exponents)), each) is True
-            for run, each in zip(runs, printed, strict=True)
+            rounds_to(lg(_power(run, time, exponents)), cell) is True
+            for run, cell in zip(runs, printed, strict=True)
         ):
             products.append(exponents)
-    return sorted(products, key=lambda each: (sum(map(abs, each)), each))
+    return sorted(products, key=lambda exponents: (sum(map(abs, exponents)), exponents))
 
 
 def _power(run: RunResult, time: Fraction | None, exponents: tuple[int, int, int]) -> Ball:
@@ -173,4 +183,4 @@ def _factor(name: str, exponent: int) -> str:
     return name if exponent == 1 else f"{name}^{exponent}"
 
 
-CLAIM = TableClaim
+CLAIM = PrintedTableClaim

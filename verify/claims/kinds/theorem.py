@@ -5,8 +5,7 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from verify.claims.claim import Claim
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Claim, Findings
 from verify.errors import unknown_name
 from verify.execution.task import Task
 from verify.papers import check_theorem, names
@@ -20,7 +19,7 @@ class TheoremClaim(Claim):
     """A claim in words, which has neither scene nor scheme."""
 
     on_scene = False
-    only_here = "a theorem says nothing of drawn Hamiltonians"
+    obstacle = "a theorem says nothing of drawn Hamiltonians"
     kind: Literal["theorem"]
     name: str
     """The name of its function in `verify.papers`."""

@@ -4,27 +4,30 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.printed import Printed, holds, shown_to
-from verify.claims.runs import QUANTITIES, all_hold
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, PrintedDecimal, all_hold, format_value, holds
+from verify.claims.run_claims import RunClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 
-_ALSO_SHOWN = 3  # digits beyond those that are printed
-_SAYS = {True: "which rounds to", False: "which does not round to", None: "not known to round to"}
+_MORE_DIGITS = 3  # digits beyond those that are printed
+_RESULTS = {
+    True: "which rounds to",
+    False: "which does not round to",
+    None: "not known to round to",
+}
 
 
 class ValueClaim(RunClaim):
     """One printed number of one run."""
 
     one_run = True
-    always_own = True
+    separate_runs = True
     kind: Literal["mse", "lambda"]
-    printed: Printed | None = None
+    printed: PrintedDecimal | None = None
     """The number as printed; or `lg_printed`."""
-    lg_printed: Printed | None = None
+    lg_printed: PrintedDecimal | None = None
     """Its logarithm to the base 10 as printed; or `printed`."""
 
     @model_validator(mode="after")
@@ -43,15 +46,15 @@ class ValueClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         (quantity,), (printed,) = self.quantities(), self.printed_texts()
-        (run, *other_runs), *others = self.run_rows(findings)
-        if other_runs or others:
+        (run, *other_runs), *other_rows = self.run_rows(findings)
+        if other_runs or other_rows:
             raise InputError(
                 f"claim {self.id}", NOT_GIVEN, "speaks of one run; give step_size, q and p"
             )
         rounds = holds(run, quantity, printed)
-        digits = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
+        digits = format_value(run, quantity, len(printed.partition("e")[0]) + _MORE_DIGITS)
         evidence = prose(
-            f"{QUANTITIES[quantity].label} = ", number(digits), f", {_SAYS[rounds]} ",
+            f"{QUANTITIES[quantity].label} = ", number(digits), f", {_RESULTS[rounds]} ",
             Number(printed), f", in {run.steps} steps",
         )  # fmt: skip
         return self.result(all_hold([rounds]), evidence)

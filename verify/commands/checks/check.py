@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, is_failure, print_tally
-from verify.commands.shared.answer import Answer, pick
+from verify.commands.checks.check_options import allow_undecided_option, is_failure, print_tally
+from verify.commands.shared.execution_options import kept_tasks, with_tasks
 from verify.commands.shared.input import CLAIMS, paper_folder
-from verify.commands.shared.tasks import kept_tasks, with_tasks
+from verify.commands.shared.output import CommandAnswer, pick
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.scenes.results.claim import ClaimResult
-    from verify.scenes.results.statement import StatementResult
+    from verify.scenes.results.claim import ClaimResult, StatementResult
 
 _KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "checked_by", "domain")
 _OF_READINGS = ("statement_id", "reading", "standing")
@@ -29,8 +28,12 @@ _OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 @allow_undecided_option
 @with_tasks
 def check(
-    claims: str, only: tuple[str, ...], allow_undecided: bool, keep: Path | None, where: "Placement"
-) -> Answer:
+    claims: str,
+    only: tuple[str, ...],
+    allow_undecided: bool,
+    keep: Path | None,
+    placement: "Placement",
+) -> CommandAnswer:
     """Check the claims in CLAIMS (a TOML file, or `paper`).
 
     Exit status 1 where one is REFUTED, or UNDECIDED without --allow-undecided.
@@ -65,20 +68,20 @@ def check(
     p = 0
     printed = "-2.666e-06"            # or lg_printed
     """
-    from verify.claims.file import load_claims
-    from verify.claims.judging import prepare
+    from verify.claims.claims_file import load_claims
+    from verify.claims.verdicts import prepare
 
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
     for warning in prepared.file.warnings(prepared.claims):
         click.echo(f"verify: {warning}", err=True)
     with kept_tasks(prepared.plan.tasks, keep) as (store, on_result):
-        results = prepared.run(store, where=where, done=on_result)
+        results = prepared.run(store, where=placement, done=on_result)
     statements = prepared.statements(results)
-    return Answer(
+    return CommandAnswer(
         lambda: {
             "claims": [pick(claim, *_KEYS, *_OF_READINGS) for claim in results],
-            "statements": [pick(each, *_OF_STATEMENTS) for each in statements],
+            "statements": [pick(statement, *_OF_STATEMENTS) for statement in statements],
         },
         lambda: _print(results, statements),
         failed=is_failure((claim.verdict for claim in results), allow_undecided=allow_undecided),
@@ -86,7 +89,7 @@ def check(
 
 
 def _print(results: "list[ClaimResult]", statements: "Sequence[StatementResult]") -> None:
-    from verify.scenes.results.statement import describe_counts
+    from verify.scenes.results.claim import describe_counts
 
     width = max(len(claim.id) for claim in results)
     for claim in results:
@@ -99,4 +102,6 @@ def _print(results: "list[ClaimResult]", statements: "Sequence[StatementResult]"
 
 def _is_counted(claim: "ClaimResult", statements: "Sequence[StatementResult]") -> bool:
     """Return True for a claim of ours, and for a reading of one of these statements."""
-    return not claim.statement_id or claim.statement_id in {each.id for each in statements}
+    return not claim.statement_id or claim.statement_id in {
+        statement.id for statement in statements
+    }

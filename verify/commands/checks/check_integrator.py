@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, is_failure
-from verify.commands.checks.looking import (
+from verify.commands.checks.check_options import (
+    allow_undecided_option,
+    is_failure,
     looking_options,
     places_json,
     print_measured,
@@ -14,18 +15,17 @@ from verify.commands.checks.looking import (
     request_from,
     step_size_option,
 )
-from verify.commands.shared import proofs as show
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared import proof_output as show
+from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, with_hamiltonian
-from verify.commands.shared.output import cut
-from verify.commands.shared.progress import clock
+from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
     from verify.integrators.user_code.loading import Callee
-    from verify.proof.proof import Proof
+    from verify.proof.proof_for_one_h import Proof
 
 _CLAIMED = click.IntRange(1, 12)
 
@@ -63,7 +63,7 @@ _CLAIMED = click.IntRange(1, 12)
 @answering
 def check_integrator(
     target: str | None,
-    exact: "Hamiltonian",
+    hamiltonian: "Hamiltonian",
     command: str | None,
     number_type: str,
     arguments: str | None,
@@ -74,7 +74,7 @@ def check_integrator(
     time_limit: float,
     allow_undecided: bool,
     **looking: str | None,
-) -> Answer:
+) -> CommandAnswer:
     """Check a step of your own, in Python or any language: its order and that of ΔJ.
 
     In Python a function step(p, q, h) → (p', q').
@@ -99,22 +99,24 @@ def check_integrator(
     verify check-integrator ./libstep.so:step --system pendulum --order 2 --symplectic
     verify check-integrator --command './step' --system pendulum --type long-double
     """
-    from verify.integrators.check import check_integrator as check
     from verify.integrators.results import Claims
+    from verify.integrators.step_check import check_integrator as check
 
-    begun = time.perf_counter()
-    request = request_from(exact.coordinates, **looking)
-    if exact.symbols:
-        raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
+    start_time = time.perf_counter()
+    request = request_from(hamiltonian.coordinates, **looking)
+    if hamiltonian.symbols:
+        raise InputError(
+            "--param", hamiltonian.symbols[0], "has no value; a step of one's own needs it"
+        )
     target_name = command or target or ""
-    callee = _callee(target, command, number_type, arguments, exact, time_limit)
+    callee = _callee(target, command, number_type, arguments, hamiltonian, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
     with clock(target_name):
-        finding = check(callee, exact, claims, request)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    return Answer(
-        lambda: _json(exact, target_name, finding, seconds),
-        lambda: _print(exact, target_name, finding),
+        finding = check(callee, hamiltonian, claims, request)
+    seconds = f"{time.perf_counter() - start_time:.6f}"
+    return CommandAnswer(
+        lambda: _json(hamiltonian, target_name, finding, seconds),
+        lambda: _print(hamiltonian, target_name, finding),
         # Without a claim there is nothing to leave undecided: only a refutation fails.
         failed=is_failure([finding.verdict], allow_undecided=allow_undecided or claims == Claims()),
     )
@@ -125,13 +127,17 @@ def _callee(
     command: str | None,
     number_type: str,
     arguments: str | None,
-    exact: "Hamiltonian",
+    hamiltonian: "Hamiltonian",
     time_limit: float,
 ) -> "Callee":
     """Return the step as a callee; nothing of it is called yet."""
-    from verify.integrators.foreign.called import is_library, step_of_command, step_of_library
+    from verify.integrators.foreign.foreign_function import (
+        is_library,
+        step_of_command,
+        step_of_library,
+    )
     from verify.integrators.user_code.loading import callee_from, foreign_callee, load
-    from verify.integrators.user_code.number_type import DOUBLE, type_of
+    from verify.integrators.user_code.user_map import DOUBLE, type_of
 
     if (target is None) == (command is None):
         problem = "give MODULE:FUNCTION, LIB.so:SYMBOL, or --command 'PROGRAM'; one of them"
@@ -141,18 +147,20 @@ def _callee(
     if foreign and arguments is not None:
         raise InputError("--arguments", arguments, "goes with a Python function")
     if command is not None:
-        return foreign_callee(step_of_command(command, kind, time_limit, exact.degrees))
+        return foreign_callee(step_of_command(command, kind, time_limit, hamiltonian.degrees))
     if foreign:
-        return foreign_callee(step_of_library(target or "", exact.degrees, kind, time_limit))
+        return foreign_callee(step_of_library(target or "", hamiltonian.degrees, kind, time_limit))
     if kind is not DOUBLE:
         raise InputError("--type", number_type, "goes with LIB.so:SYMBOL or --command")
     return callee_from(
-        load(target or ""), exact.coordinates, arguments=arguments,
-        parameters=dict(exact.values), time_limit=time_limit,
+        load(target or ""), hamiltonian.coordinates, arguments=arguments,
+        parameters=dict(hamiltonian.values), time_limit=time_limit,
     )  # fmt: skip
 
 
-def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -> dict[str, Any]:
+def _json(
+    hamiltonian: "Hamiltonian", target: str, finding: "Finding", seconds: str
+) -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
@@ -165,7 +173,7 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
     against = finding.against
     return {
         **pick(finding, "verdict", "reason"),
-        **exact.texts,
+        **hamiltonian.texts,
         "degrees": finding.degrees,
         "integrator": target,
         **show.order_json(finding.order),
@@ -187,7 +195,7 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
             **({} if example.t is None else {"t": text(example.t)}),
             **pick(example, "quantity", "found", "expected"),
         },
-        "places": places_json(exact.coordinates, finding.places),
+        "places": places_json(hamiltonian.coordinates, finding.places),
         **pick(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
@@ -198,7 +206,7 @@ def _proof_of_form(finding: "Finding") -> "Proof | None":
     return finding.proof if finding.proof and not finding.proof.planar else None
 
 
-def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
+def _print(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> None:
     from dataclasses import replace
 
     from verify.integrators.results import potential_of_finding
@@ -206,11 +214,11 @@ def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
     proof, form_proof, degrees = finding.proof, _proof_of_form(finding), finding.degrees
     if form_proof is not None:
         proof_view = replace(form_proof, verdict=finding.verdict, reason=finding.reason)
-        show.print_symplectic(exact.texts, target, proof_view)
+        show.print_symplectic(hamiltonian.texts, target, proof_view)
     elif proof is not None and finding.verdict is proof.verdict:
-        show.print_proof(exact, target, proof, potential_of_finding(finding))
+        show.print_proof(hamiltonian, target, proof, potential_of_finding(finding))
     else:
-        show.print_head(exact, target, finding)
+        show.print_head(hamiltonian, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:
             click.echo(f"  ΔJ       ({cut(finding.leading)})·h^{finding.order} + …")
         print_measured(finding)

@@ -5,18 +5,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, is_failure
-from verify.commands.checks.looking import (
+from verify.commands.checks.check_options import (
+    allow_undecided_option,
+    is_failure,
     looking_options,
     places_json,
     print_measured,
     print_notes,
     request_from,
 )
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, values_of
-from verify.commands.shared.progress import clock
-from verify.commands.shared.proofs import point_json
+from verify.commands.shared.output import CommandAnswer, answering, pick
+from verify.commands.shared.proof_output import point_json
 
 if TYPE_CHECKING:
     from verify.integrators.results import Finding
@@ -50,7 +51,7 @@ def check_map(
     time_limit: float,
     allow_undecided: bool,
     **looking: str | None,
-) -> Answer:
+) -> CommandAnswer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
 
     p and q are numbers, or arrays of N numbers; or it is map(z) → z' of one array of 2 N numbers.
@@ -68,10 +69,10 @@ def check_map(
     """
     from verify.arithmetic.exact import rational
     from verify.hamiltonians.coordinates import check_degrees, coordinates_in
-    from verify.integrators.check import check_map as check
+    from verify.integrators.step_check import check_map as check
     from verify.integrators.user_code.loading import callee_from, load
 
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
     request = request_from(names, **looking)
@@ -82,8 +83,8 @@ def check_map(
     )  # fmt: skip
     with clock(target):
         finding = check(callee, request)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    return Answer(
+    seconds = f"{time.perf_counter() - start_time:.6f}"
+    return CommandAnswer(
         lambda: _json(target, names, finding, seconds),
         lambda: _print(target, finding),
         failed=is_failure([finding.verdict], allow_undecided=allow_undecided),

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, is_failure, print_tally
-from verify.commands.shared.answer import Answer, answering, pick
+from verify.commands.checks.check_options import allow_undecided_option, is_failure, print_tally
+from verify.commands.shared.output import CommandAnswer, answering, pick
 
 if TYPE_CHECKING:
-    from verify.integrators.tables.check import TableJudgement
     from verify.integrators.tables.cost import Cost
+    from verify.integrators.tables.table_file import TableJudgement
 
 
 @click.command("check-table")
 @click.argument("tables", type=click.Path(path_type=Path), metavar="FILE.toml")
 @allow_undecided_option
 @answering
-def check_table(tables: Path, allow_undecided: bool) -> Answer:
+def check_table(tables: Path, allow_undecided: bool) -> CommandAnswer:
     """Judge printed tables of coefficients by what they claim.
 
     Exit status 1 where a claim is REFUTED, or UNDECIDED without --allow-undecided.
@@ -44,16 +44,16 @@ def check_table(tables: Path, allow_undecided: bool) -> Answer:
       | 1/2 1/2
     \"\"\"
     """
-    from verify.integrators.tables.check import check_table as check
+    from verify.integrators.tables.table_file import check_table as check
 
     start = time.perf_counter()
     judgements = check(tables)
     seconds = f"{time.perf_counter() - start:.6f}"
-    return Answer(
-        lambda: {"claims": [_json(each) for each in judgements], "seconds": seconds},
+    return CommandAnswer(
+        lambda: {"claims": [_json(judgement) for judgement in judgements], "seconds": seconds},
         lambda: _print(judgements),
         failed=is_failure(
-            (each.claim.verdict for each in judgements), allow_undecided=allow_undecided
+            (judgement.claim.verdict for judgement in judgements), allow_undecided=allow_undecided
         ),
     )
 
@@ -78,16 +78,15 @@ def _cost_json(cost: "Cost") -> dict[str, Any]:
 
 
 def _print(judgements: "list[TableJudgement]") -> None:
-    width = max(len(each.id) for each in judgements)
-    for each in judgements:
-        claim = each.claim
-        click.echo(f"{claim.verdict:9}  {each.id:{width}}  {claim.evidence}")
+    width = max(len(judgement.id) for judgement in judgements)
+    for judgement in judgements:
+        claim = judgement.claim
+        click.echo(f"{claim.verdict:9}  {judgement.id:{width}}  {claim.evidence}")
         if claim.severity is not None:
             cost = f"; {claim.cost.sentence}" if claim.cost and claim.cost.sentence else ""
             click.echo(f"{'':9}  {'':{width}}  {claim.severity}{cost}")
         for row in claim.details[1:]:
-            name, printed_value, exact, off = row
-            click.echo(
-                f"{'':9}  {'':{width}}  {name}: {printed_value}, exact {exact}, off by {off} units"
-            )
-    print_tally(each.claim.verdict for each in judgements)
+            name, printed_value, exact_value, distance = row
+            values = f"{printed_value}, exact {exact_value}, off by {distance} units"
+            click.echo(f"{'':9}  {'':{width}}  {name}: {values}")
+    print_tally(judgement.claim.verdict for judgement in judgements)

@@ -56,7 +56,7 @@ def _check_above(path: Path, option: str = "--output") -> None:
 
 
 def ensure_writable(folder: Path, option: str = "--output") -> None:
-    """Make the folder, and check that a file can be made in it; InputError where it cannot."""
+    """Make the folder, and check that a file can be made in it; InputError if it cannot."""
     from tempfile import TemporaryFile
 
     _check_above(folder, option)
@@ -74,7 +74,7 @@ def ensure_writable(folder: Path, option: str = "--output") -> None:
 
 
 def check_ours(folder: Path, pattern: re.Pattern[str] | None = None, *, advice: str = "") -> None:
-    """Raise InputError where a folder holds files that are not of an earlier report of ours.
+    """Raise InputError if a folder holds files that are not of an earlier report of ours.
 
     A folder of ours has a report's data, of whatever version; or nothing but the kept results of an
     interrupted report, and files whose names match `pattern`.
@@ -97,7 +97,7 @@ def check_ours(folder: Path, pattern: re.Pattern[str] | None = None, *, advice: 
 def ensure_keepable(folder: Path, option: str = "--keep") -> None:
     """Make a folder where results are kept, as `ensure_writable` does.
 
-    InputError also where it lies in what is shipped: the name of a kept result is a digest of all
+    InputError also if it lies in what is shipped: the name of a kept result is a digest of all
     files there, so that keeping one would change the names of all.
     """
     from verify.content import is_shipped

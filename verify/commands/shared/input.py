@@ -14,7 +14,7 @@ from verify.errors import NOT_GIVEN, InputError, plain_name, unknown_name
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from verify.claims.file import ClaimsFile
+    from verify.claims.claims_file import ClaimsFile
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.scene import Scene
 
@@ -47,11 +47,11 @@ class CatalogueName(click.ParamType[str]):
     def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
         from click.shell_completion import CompletionItem
 
-        catalogue, begun = self.catalogue(), plain_name(incomplete)
-        matches = [name for name in catalogue.names() if name.startswith(begun)]
+        catalogue, beginning = self.catalogue(), plain_name(incomplete)
+        matches = [name for name in catalogue.names() if name.startswith(beginning)]
         if not matches:
             aliases: Iterable[str] = getattr(catalogue, "aliases", tuple)()
-            matches = [name for name in aliases if name.startswith(begun)]
+            matches = [name for name in aliases if name.startswith(beginning)]
         return [CompletionItem(name) for name in matches]
 
 
@@ -158,7 +158,7 @@ time_limit_option = click.option(
 
 
 def with_hamiltonian(command: Callable[..., Any], *, use_cache: bool = False) -> Callable[..., Any]:
-    """Add the options of a Hamiltonian to a command, which gets it as the argument `exact`.
+    """Add the options of a Hamiltonian to a command, which gets it as the argument `hamiltonian`.
 
     `use_cache`: it may come from the cache, for a command with --no-cache that needs no sympy.
     """
@@ -171,8 +171,8 @@ def with_hamiltonian(command: Callable[..., Any], *, use_cache: bool = False) ->
         params: tuple[str, ...],
         **options: Any,
     ) -> Any:
-        exact = hamiltonian_of(system, hamiltonian, params, use_cache=use_cache)
-        return command(*args, exact=exact, **options)
+        parsed = hamiltonian_of(system, hamiltonian, params, use_cache=use_cache)
+        return command(*args, hamiltonian=parsed, **options)
 
     return hamiltonian_options(wrapper)
 
@@ -214,36 +214,36 @@ def hamiltonian_of(
         source, reader = f"formula {hamiltonian}", partial(Hamiltonian.parse, hamiltonian or "")
     if not use_cache:
         return reader(values)
-    from verify.hamiltonians.kept import load_or_read
+    from verify.hamiltonians.hamiltonian_store import load_or_read
 
     return load_or_read(source, values, reader)
 
 
 def one_or_every(
-    every: bool, named_options: Mapping[str, Any], **only: Any
+    every: bool, named_options: Mapping[str, Any], **options_of_every: Any
 ) -> "Hamiltonian | None":
-    """Return the H that the options name; None where the command is for every H.
+    """Return the H that the options name; None if the command is for every H.
 
-    Raises InputError where options name an H and `every` is set, and where an option of `only`,
-    which goes with `every`, is used for a single H.
+    Raises InputError if options name an H and `every` is set, and if one of `options_of_every`,
+    which go with `every`, is used for a single H.
     """
     if every:
         if any(value not in (None, ()) for value in named_options.values()):
             problem = "goes without --system, --hamiltonian, --param"
             raise InputError("every_hamiltonian", NOT_GIVEN, problem)
         return None
-    for option, value in only.items():
+    for option, value in options_of_every.items():
         if value:
             raise InputError(option, NOT_GIVEN, "goes with --every-hamiltonian")
     return hamiltonian_of(**named_options)
 
 
-def parse_coordinates(text: str, exact: "Hamiltonian") -> str | list[str]:
+def parse_coordinates(text: str, hamiltonian: "Hamiltonian") -> str | list[str]:
     """Return the number; for an H of p1 … qn a list of numbers that commas separate.
 
     Their count is checked by the caller.
     """
-    if exact.planar:
+    if hamiltonian.planar:
         return text
     return [part.strip() for part in text.split(",")]
 
@@ -253,10 +253,10 @@ def paper_folder() -> Path:
     return content("reports", "paper")
 
 
-def load_target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
+def load_target(scene: str, *further_names: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     """Load the title, scenes and claims of `paper`, of a suite, or of a scene's file.
 
-    `others`: further names that the command takes, which the error for an unknown one lists.
+    `further_names`: further names that the command takes, which the error for an unknown one lists.
     """
     from verify.scenes.scene import load_scene
 
@@ -268,11 +268,11 @@ def load_target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile
         # A bare word without a file is a mistyped name rather than a missing file.
         if not Path(scene).suffix and not Path(scene).exists():
             here = {path.stem: path.name for path in sorted(Path.cwd().glob("*.toml"))}
-            names = ("paper", *suites(), *others)
+            names = ("paper", *suites(), *further_names)
             raise unknown_name("SCENE", scene, names, ", or a TOML file", here)
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
-    from verify.claims.file import load_claims
+    from verify.claims.claims_file import load_claims
 
     folder = paper_folder()
     scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]

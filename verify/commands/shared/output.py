@@ -1,27 +1,78 @@
-"""Output of commands: JSON objects with decimal strings, short texts for people."""
+"""The answer of a command: JSON objects with decimal strings, or short texts for people.
 
+An answer sets the exit status too.
+"""
+
+import json
+import sys
 import textwrap
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify import observables
-from verify.commands.shared.answer import pick
+from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
+FAILED = 1  # exit status
+
+
+@dataclass(frozen=True)
+class CommandAnswer:
+    """An answer: `data` returns it as JSON, `show` prints it for people; only one is called.
+
+    `failed`: a check failed. `problem`: another error, which is raised after the output.
+    """
+
+    data: Callable[[], dict[str, Any]]
+    show: Callable[[], None]
+    failed: bool = False
+    problem: InputError | None = None
+
+
+def answering(command: Callable[..., CommandAnswer]) -> Callable[..., None]:
+    """Add --json to a command, print its answer, and exit with the answer's status."""
+
+    @wraps(command)
+    def wrapper(*args: Any, as_json: bool, **options: Any) -> None:
+        answer = command(*args, **options)
+        if as_json:
+            encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+            # A terminal of another encoding gets escapes, which mean the same in JSON.
+            ascii_only = encoding.lower().replace("-", "") != "utf8"
+            click.echo(json.dumps(answer.data(), ensure_ascii=ascii_only))
+        else:
+            answer.show()
+        if answer.problem is not None:
+            raise answer.problem
+        if answer.failed:
+            raise SystemExit(FAILED)
+
+    return click.option(
+        "--json", "as_json", is_flag=True, help="One JSON object on standard output."
+    )(wrapper)
+
+
+def pick(source: object, *names: str) -> dict[str, Any]:
+    """Return the attributes of `source` with these names, by the same names."""
+    return {name: getattr(source, name) for name in names}
+
+
+# -- as JSON and as text ---------------------------------------------------------------------------
 
 _WIDTH, _NAMES = 88, 10  # of a line, and of the name that it begins with
 _LONGEST = 400  # characters of a formula on the terminal
 
 
 def cut(formula: str) -> str:
-    """Return the formula, or its beginning where it is long: the JSON has all of it."""
+    """Return the formula, or its beginning if it is long: the JSON has all of it."""
     if len(formula) <= _LONGEST:
         return formula
     terms = formula.count(" + ") + formula.count(" - ") + 1
@@ -30,15 +81,15 @@ def cut(formula: str) -> str:
 
 def print_line(name: str, text: str) -> None:
     """Print a name and its text, wrapped."""
-    first, rest = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
-    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
+    first, indent = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
+    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:
     from verify.scenes.observables import REPORTED, names
 
-    # Programs can rely on a key for each usual observable, null where it was not computed; the
-    # other observables have a key only where they were computed.
+    # Programs can rely on a key for each usual observable, null if it was not computed; the
+    # other observables have a key only if they were computed.
     every, planar = observables.by_name(), isinstance(result.q, str)
     keys = dict.fromkeys((*names(planar=planar), *REPORTED))
     selected = (n for n in keys if every[n].usual or n in REPORTED or n in result.values)
@@ -67,7 +118,7 @@ def _value_json(result: "RunResult", name: str) -> tuple[Any, Any]:
 
 
 def explain_unfinished(result: "RunResult") -> str:
-    """Return the reason why a run has no numbers; empty where it has."""
+    """Return the reason why a run has no numbers; empty if it has."""
     if result.status == "finished":
         return ""
     if result.status == "unresolved":
@@ -78,7 +129,7 @@ def explain_unfinished(result: "RunResult") -> str:
     )
 
 
-def print_once(notes: "Iterable[str]") -> None:
+def print_once(notes: Iterable[str]) -> None:
     """Print each of the notes on a line, once; empty ones are skipped."""
     for note in filter(None, dict.fromkeys(notes)):
         click.echo(note)
@@ -88,7 +139,10 @@ def print_run(result: "RunResult") -> None:
     if result.status != "finished":
         click.echo(explain_unfinished(result))
         return
-    labels = {name: each.short or each.label for name, each in observables.by_name().items()}
+    labels = {
+        name: observable.short or observable.label
+        for name, observable in observables.by_name().items()
+    }
     coordinates = {name: name for name in result.values if name[1:].isdigit()}
     for name, label in {**labels, "q": "q", "p": "p", **coordinates}.items():
         if name in result.values:
@@ -114,7 +168,7 @@ def plain_json(model: "Frozen") -> dict[str, Any]:
 
 
 def print_report(report: "Report", *pages: Path) -> None:
-    from verify.scenes.results.statement import describe_counts
+    from verify.scenes.results.claim import describe_counts
 
     for line in report.preface:
         click.echo(line)

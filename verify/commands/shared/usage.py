@@ -2,12 +2,11 @@
 
 import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import click
 
 from verify.arithmetic.exact import as_whole
-from verify.commands import Commands
 from verify.commands.shared.input import CatalogueName
 from verify.errors import plain_name, unknown_name
 
@@ -73,8 +72,8 @@ def _explain_unknown_option(name: str, context: click.Context, command_line: Seq
         name = next((x for x in command_line if x.startswith(name)), name).partition("=")[0]
     options = _option_names(context.command)
     plain = "hamiltonian" if capital else plain_name(name.lstrip("-"))
-    aliases = {other: ours for ours, others in _OPTIONS.items() if ours in options
-               for other in others}  # fmt: skip
+    aliases = {foreign_name: ours for ours, foreign_names in _OPTIONS.items() if ours in options
+               for foreign_name in foreign_names}  # fmt: skip
     spellings = {**aliases, **{option.lstrip("-"): option for option in options}}
     if plain in spellings:
         return f"{name}: no such option; write {spellings[plain]}"
@@ -90,24 +89,39 @@ def _explain_unknown_option(name: str, context: click.Context, command_line: Seq
 
 
 def _option_names(command: click.Command) -> list[str]:
-    return [option for each in command.params for option in each.opts if option.startswith("-")]
+    return [
+        option
+        for parameter in command.params
+        for option in parameter.opts
+        if option.startswith("-")
+    ]
 
 
 def _find_elsewhere(plain: str, context: click.Context) -> str:
     """Return the other commands that have the option, under this name or a usual other one."""
-    ours = {f"--{plain}", *(name for name, others in _OPTIONS.items() if plain in others)}
-    return "" if context.parent is None else commands_with(ours)
+    ours = {
+        f"--{plain}",
+        *(name for name, foreign_names in _OPTIONS.items() if plain in foreign_names),
+    }
+    return "" if context.parent is None else commands_with(ours, context)
 
 
-def commands_with(names: set[str], *, several: bool = False) -> str:
+def commands_with(names: set[str], context: click.Context, *, several: bool = False) -> str:
     """Return the commands with an option of these names; `several`: with a repeatable one."""
     having = [
         f"verify {command.name}"
-        for command in Commands().values()
-        for each in command.params
-        if names & set(each.opts) and (getattr(each, "multiple", False) or not several)
+        for command in _all_commands(context).values()
+        for parameter in command.params
+        if names & set(parameter.opts) and (getattr(parameter, "multiple", False) or not several)
     ]
     return ", ".join(dict.fromkeys(having))
+
+
+def _all_commands(context: click.Context) -> Mapping[str, click.Command]:
+    """Return the commands of the whole command line."""
+    root = context.find_root().command
+    assert isinstance(root, click.Group)  # noqa: S101 - no command is called without it
+    return root.commands
 
 
 def _explain_missing(
@@ -142,8 +156,8 @@ def _explain_bad_value(parameter: click.Parameter, message: str) -> str:
 
 def _explain_bare_words(context: click.Context, command_line: Sequence[str]) -> str:
     """Return the message for words without their options, which it adds; else empty."""
-    command, rest = context.command, command_line[len(context.command_path.split()) - 1 :]
-    _, words, order = command.make_parser(context).parse_args(list(rest))
+    command, typed_words = context.command, command_line[len(context.command_path.split()) - 1 :]
+    _, words, order = command.make_parser(context).parse_args(list(typed_words))
     suggestion = _add_options(words, command, order)
     return f"{' '.join(words)}: not allowed here; write {suggestion}" if suggestion else ""
 
@@ -151,7 +165,7 @@ def _explain_bare_words(context: click.Context, command_line: Sequence[str]) -> 
 def _add_options(
     words: Sequence[str], command: click.Command, order: Sequence[click.Parameter] = ()
 ) -> str:
-    """Return each word after the option that takes it; empty where one fits none.
+    """Return each word after the option that takes it; empty if one fits none.
 
     `order`: the options that the command line already has.
     """
@@ -175,20 +189,22 @@ def _explain_extra_words(extra: str, context: click.Context, command_line: Seque
         if option.opts[0] == "--param":
             assignment = extra if "=" in extra else f"{value}={extra}"
             return f"{extra}: not allowed here; write --param {assignment}"
-        again = f", and {option.opts[0]} again for another" if option.multiple else ""
-        write = f"write a value with spaces in quotation marks{again}"
+        repetition = f", and {option.opts[0]} again for another" if option.multiple else ""
+        write = f"write a value with spaces in quotation marks{repetition}"
         return f"{extra}: not allowed here; {write}, and nothing without its option"
     arguments = [
-        _shown_name(each) for each in context.command.params if isinstance(each, click.Argument)
+        _shown_name(parameter)
+        for parameter in context.command.params
+        if isinstance(parameter, click.Argument)
     ]
     takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
-    about = "" if arguments else _add_options([extra], Commands()["prove"])
+    about = "" if arguments else _add_options([extra], _all_commands(context)["prove"])
     takes += about and f" for all of them, or verify prove {about} … for this one"
     return f"{extra}: not allowed here; write {takes}"
 
 
 def _find_option(name: str, context: click.Context) -> click.Parameter | None:
-    return next((each for each in context.command.params if name in each.opts), None)
+    return next((parameter for parameter in context.command.params if name in parameter.opts), None)
 
 
 def _shown_name(parameter: click.Parameter) -> str:

@@ -14,13 +14,13 @@ def _asinh(numbers: Any, x: Any) -> Any:
     u, and the sum of logarithms, whose slopes are at most 1, by 2062 u. That is 2^−52 units of the
     result's numbers, to which it is rounded.
     """
-    size, one, where = numbers.absolute(x), numbers.one, numbers.where
+    size, one, choose = numbers.absolute(x), numbers.one, numbers.choose
     large = numbers.at_least(size, one)
-    above = where(large, size, one)
-    small = where(large, numbers.apply("inverse", above), size)
+    above = choose(large, size, one)
+    small = choose(large, numbers.apply("inverse", above), size)
     root = numbers.apply("sqrt", one + small * small)
-    least = numbers.apply("log", where(large, one, small) + root)
-    return numbers.signed(where(large, least + numbers.apply("log", above), least), x)
+    least = numbers.apply("log", choose(large, one, small) + root)
+    return numbers.signed(choose(large, least + numbers.apply("log", above), least), x)
 
 
 FUNCTION = Function(

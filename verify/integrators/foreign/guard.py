@@ -1,4 +1,4 @@
-"""Runs a program so that nothing that it starts outlives it: a program of its own, without us.
+"""A guard that lets nothing outlive the program that it runs: a program of its own, without us.
 
     python guard.py SOCKET SECONDS PROGRAM ARGUMENTS …
 

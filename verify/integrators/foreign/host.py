@@ -1,4 +1,4 @@
-"""Calls a step of a shared library for lines of numbers: run as a program of its own, without us.
+"""A host that calls a shared library's step for lines of numbers: a program of its own, without us.
 
     python host.py LIBRARY SYMBOL TYPE N
 

@@ -13,15 +13,15 @@ from collections.abc import Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 
-from verify.integrators.user_code.number_type import DOUBLE, LONG_DOUBLE, NumberType, two_doubles
 from verify.integrators.user_code.step import StepError
+from verify.integrators.user_code.user_map import DOUBLE, LONG_DOUBLE, NumberType, two_doubles
 from verify.prose import count
 
 _DECIMAL = re.compile(r"([+-]?)(\d*)\.?(\d*)(?:[eEdDqQ]([+-]?\d+))?", re.ASCII)
 _HEXADECIMAL = re.compile(r"([+-]?)0x([0-9a-f]*)\.?([0-9a-f]*)(?:p([+-]?\d+))?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)(?:\(\w*\))?", re.ASCII)
 _LARGEST_EXPONENT = 20_000
-_SHOWN = 40  # characters of what a program says
+_SHOWN_CHARACTERS = 40  # characters of what a program says
 _SIZE = 16  # bytes of a long double, and of a __float128
 _BIAS, _TOP = 16383, 0x7FFF  # of the exponent: of 1, and the largest, of what is no number
 
@@ -104,14 +104,14 @@ def quote(output: str | bytes) -> str:
     """Quote what a program prints, in a sentence: cut, and without what a terminal acts on."""
     text = output.decode("utf-8", "replace") if isinstance(output, bytes) else output
     text = "".join(x if x.isprintable() else " " for x in text.strip())
-    short = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+    short = text if len(text) <= _SHOWN_CHARACTERS else text[:_SHOWN_CHARACTERS] + "…"
     return f"“{short}”" if short else "an empty line"
 
 
 def short_line(line: str) -> str:
     """Shorten the line that is sent to a program, for a sentence."""
     text = " ".join(f"{float(x):g}" for x in line.split())
-    return text if len(text) <= 2 * _SHOWN else text[: 2 * _SHOWN] + "…"
+    return text if len(text) <= 2 * _SHOWN_CHARACTERS else text[: 2 * _SHOWN_CHARACTERS] + "…"
 
 
 # -- as they lie in memory ------------------------------------------------------------------------
@@ -122,10 +122,10 @@ def digits_of(numbers: Sequence[float | Fraction], kind: NumberType) -> str:
     program."""
     if kind is DOUBLE:
         return array("d", map(float, numbers)).tobytes().hex()
-    exact = [Fraction(x) for x in numbers]
+    fractions = [Fraction(x) for x in numbers]
     if kind.parts > 1:
-        return array("d", (y for x in exact for y in two_doubles(x))).tobytes().hex()
-    return b"".join(_pack(x, kind) for x in exact).hex()
+        return array("d", (y for x in fractions for y in two_doubles(x))).tobytes().hex()
+    return b"".join(_pack(x, kind) for x in fractions).hex()
 
 
 def read_digits(line: str, length: int, kind: NumberType) -> Sequence[float | Fraction]:
@@ -150,8 +150,8 @@ def _stored_bits(kind: NumberType) -> int:
 
 def _pack(x: Fraction, kind: NumberType) -> bytes:
     """Return the bytes of x, rounded to the type; of 0 where it is too small."""
-    exact, stored = kind.round_number(x), _stored_bits(kind)
-    size, sign = abs(exact), int(exact < 0)
+    rounded, stored = kind.round_number(x), _stored_bits(kind)
+    size, sign = abs(rounded), int(rounded < 0)
     # After rounding x is a whole number over a power of 2, so that this is ⌊log₂|x|⌋ exactly.
     power = size.numerator.bit_length() - size.denominator.bit_length()  # a power of 2
     whole = int(size / Fraction(2) ** (power - kind.bits + 1))

@@ -45,7 +45,7 @@ _FLUSH = "fflush(stdout) in C, std::endl in C++, flush(6) in Fortran, flush=True
 
 
 @dataclass
-class Program:
+class ForeignProgram:
     """A program that answers lines. `words`: the program and its arguments; `called`: the user's
     name for it. `seconds`: of processor time, at most. `greeting`: a line that it begins with, once
     it is ready. `advice`: a hint that is added where it crashes. `show_line`: formats a line for
@@ -128,17 +128,17 @@ class Program:
             self.answered = True
 
     def _start(self) -> None:
-        ours, its = socket.socketpair()
+        ours, guards = socket.socketpair()
         script, seconds = str(Path(guard.__file__).resolve()), str(int(self.seconds) + 30)
-        with its:
+        with guards:
             process = subprocess.Popen(  # noqa: S603 - it is what the user asks for
-                [sys.executable, "-I", "-S", script, str(its.fileno()), seconds, *self.words],
+                [sys.executable, "-I", "-S", script, str(guards.fileno()), seconds, *self.words],
                 bufsize=0,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 start_new_session=True,
-                pass_fds=[its.fileno()],
+                pass_fds=[guards.fileno()],
             )
         self._running, self._control, self._waiting, self.answered = process, ours, b"", False
         threading.Thread(target=self._listen, args=(process,), daemon=True).start()
@@ -179,18 +179,18 @@ class Program:
         unsaid, heard, number = memoryview(text.encode()), b"", 0
         since, slept, whole = time.monotonic(), 0.0, list[bytes]()
         while number < len(lines):
-            into, out = self._pipes
-            ready, takes, _ = select.select([out], [into] if unsaid else [], [], _WATCHED)
+            stdin, stdout = self._pipes
+            ready, takes, _ = select.select([stdout], [stdin] if unsaid else [], [], _WATCHED)
             if takes:
                 try:
                     # Only what the pipe takes at once is written, and answers are read in between:
                     # else a program that answers before it has read all lines would wait for us,
                     # and we for it.
-                    unsaid = unsaid[into.write(unsaid[: select.PIPE_BUF]) :]
+                    unsaid = unsaid[stdin.write(unsaid[: select.PIPE_BUF]) :]
                 except OSError:  # it has ended, as its output will tell
                     unsaid = unsaid[:0]
             if ready:
-                chunk = out.read(_LONGEST)
+                chunk = stdout.read(_LONGEST)
                 if not chunk:
                     raise self._describe_end(lines[number])
                 *whole, heard = (heard + chunk).split(b"\n")
@@ -211,9 +211,9 @@ class Program:
 
     def _must_be_silent(self, seconds: float) -> None:
         """Raise StepError where the program prints something without being asked."""
-        out = self._pipes[1]
-        if not self._waiting and select.select([out], [], [], seconds)[0]:
-            self._waiting = out.read(_LONGEST)
+        stdout = self._pipes[1]
+        if not self._waiting and select.select([stdout], [], [], seconds)[0]:
+            self._waiting = stdout.read(_LONGEST)
         if output := self._waiting:
             self.close()
             raise StepError(f"it prints {quote(output)}, which it was not asked for: {_ANSWER}")
@@ -241,22 +241,24 @@ class Program:
         when its input ends."""
         if self.answered:
             return f"a call of it does not end within {seconds:g} s, asked “{self.show_line(line)}”"
-        into, out = self._pipes
-        unread = any(fcntl.ioctl(into, termios.FIONREAD, bytes(4)))
-        into.close()
-        while asleep and select.select([out], [], [], _LAST_SECONDS)[0] and len(heard) < _LONGEST:
-            if not (chunk := out.read(_LONGEST)):
+        stdin, stdout = self._pipes
+        unread = any(fcntl.ioctl(stdin, termios.FIONREAD, bytes(4)))
+        stdin.close()
+        while (
+            asleep and select.select([stdout], [], [], _LAST_SECONDS)[0] and len(heard) < _LONGEST
+        ):
+            if not (chunk := stdout.read(_LONGEST)):
                 break
             heard += chunk
-        how = f": {_ANSWER}; flush after it, as by {_FLUSH}"
+        hint = f": {_ANSWER}; flush after it, as by {_FLUSH}"
         if b"\n" in heard:
-            how = f", but {quote(heard)} when its input ends: it does not flush; write {_FLUSH}"
+            hint = f", but {quote(heard)} when its input ends: it does not flush; write {_FLUSH}"
         elif heard:
-            how = f": it prints {quote(heard)} without an end of line"
+            hint = f": it prints {quote(heard)} without an end of line"
         elif unread:
-            how = ": it does not read it"
+            hint = ": it does not read it"
         first_line = self.show_line(line)
-        return f"it gives no answer to its first line, “{first_line}”, within {seconds:g} s{how}"
+        return f"it gives no answer to its first line, “{first_line}”, within {seconds:g} s{hint}"
 
     def _describe_end(self, line: str) -> StepError:
         """Return the error of a program that has ended instead of answering."""

@@ -1,1 +1,1 @@
-"""Measurements of a user's map: its structure, and its distance from the exact flow."""
+"""Measurements of a user's map: readings at a place, its structure, its distance from the flow."""

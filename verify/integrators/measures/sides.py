@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
-from verify.integrators.places.place import SIDE, Place
-from verify.integrators.probes.duals import DualProbe
+from verify.integrators.measures.probes import DualProbe
+from verify.integrators.places.trial_places import SIDE, TrialPlace
 from verify.integrators.tracing.dual import Comparison
 from verify.integrators.user_code.step import unless_it_fails
 
@@ -30,25 +30,26 @@ class Branch:
     gap: float
     slopes: tuple[float, ...]
     limit: float | None
-    place: Place
+    place: TrialPlace
     h: Fraction
 
 
 class Sides:
-    """The comparisons that were made at each place. `far`: sides that are named and not visited."""
+    """The comparisons that were made at each place. `far_conditions`: sides that are
+    named and not visited, as conditions."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = names
-        self.at: dict[Place, dict[Line, int]] = {}
+        self.signs_at: dict[TrialPlace, dict[Line, int]] = {}
         self.branches: dict[Line, list[Branch]] = {}
-        self.far: dict[str, None] = {}
+        self.far_conditions: dict[str, None] = {}
 
-    def note(self, place: Place, h: Fraction, comparisons: Sequence[Comparison]) -> None:
+    def note(self, place: TrialPlace, h: Fraction, comparisons: Sequence[Comparison]) -> None:
         """Record the comparisons of a call that belong to no loop."""
         by_line: dict[Line, list[Comparison]] = {}
         for comparison in comparisons:
             by_line.setdefault(comparison.line, []).append(comparison)
-        signs = self.at.setdefault(place, {})
+        signs = self.signs_at.setdefault(place, {})
         for line, several in by_line.items():
             # A line that compares many times in one call, or with both signs, belongs to a loop,
             # whose end is no branch of the map.
@@ -65,12 +66,14 @@ class Sides:
             if len({x.sign for x in branches}) == 1 and branches[0].sign:
                 yield line, sorted(branches, key=_distance)[:3]
 
-    def separating(self, one: Sequence[Place], two: Sequence[Place]) -> Branch | None:
+    def separating(
+        self, places: Sequence[TrialPlace], other_places: Sequence[TrialPlace]
+    ) -> Branch | None:
         """Find a comparison that has one sign at all of the first places, and another at the
         second."""
         for line, branches in self.branches.items():
-            first = {self.at.get(x, {}).get(line, 0) for x in one}
-            second = {self.at.get(x, {}).get(line, 0) for x in two}
+            first = {self.signs_at.get(x, {}).get(line, 0) for x in places}
+            second = {self.signs_at.get(x, {}).get(line, 0) for x in other_places}
             if len(first) == len(second) == 1 and first != second and 0 not in first | second:
                 return next(x for x in branches if x.sign in first)
         return None
@@ -90,7 +93,7 @@ class Sides:
         return f"{side} side of the comparison in line {line} of {name}"
 
 
-def _branch(x: Comparison, place: Place, h: Fraction) -> Branch:
+def _branch(x: Comparison, place: TrialPlace, h: Fraction) -> Branch:
     slopes = tuple(map(float, x.gap.slopes)) or (0.0,) * len(place.z)
     limit = None if x.limit is None else float(x.limit)
     return Branch(x.line, x.sign, float(x.gap.value), slopes, limit, place, h)
@@ -105,7 +108,7 @@ def _distance(branch: Branch) -> float:
     return abs(branch.gap) / norm if norm else float("inf")
 
 
-def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -> list[Place]:
+def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -> list[TrialPlace]:
     """Find a place on each side that was not seen, where one can be solved for.
 
     `farthest`: of each coordinate, up to where it is followed.
@@ -122,7 +125,7 @@ def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -
 
 def _solve_for_other_side(
     probe: DualProbe, sides: Sides, branch: Branch, line: Line, farthest: Mapping[str, float]
-) -> Place | None:
+) -> TrialPlace | None:
     """Solve for a place on the other side by Newton's method along the gap's gradient, in units of
     the place."""
     current = branch
@@ -140,7 +143,7 @@ def _solve_for_other_side(
         ]
         if not all(abs(x) < farthest[name] for name, x in zip(sides.names, new_state, strict=True)):
             opposite = replace(branch, sign=-branch.sign)
-            sides.far[sides.condition(opposite)] = None
+            sides.far_conditions[sides.condition(opposite)] = None
             return None
         z = tuple(
             Fraction(x).limit_denominator(10**6) if abs(x) > 1e-3 else Fraction(x)

@@ -1,4 +1,4 @@
-"""The units of a Hamiltonian's coordinates, and how fast its motion is at a place.
+"""The units of a Hamiltonian's coordinates and of time, one set for each scale that it has.
 
 A field has sizes of its own: where its forces turn from one power of the coordinates to another
 (σ of a molecule, the length of a pendulum), and momenta whose kinetic energy is that of moving
@@ -13,10 +13,10 @@ from typing import Any
 
 import gmpy2
 
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.places.place import simple
+from verify.integrators.places.trial_places import round_to_simple
 
 _DIGITS, _TIME = 20, 0.25
 # Of lengths that are looked at: the far ones, as of atoms in SI units, at every fourth.
@@ -24,19 +24,18 @@ _OCTAVES = *range(-140, -44, 4), *range(-44, 45), *range(48, 141, 4)
 _DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
 _ASIDE = (1.0, 0.61, 1.43)  # parts of a state, for others beside it
 _APART = 30  # times another coordinate's length, or another scale, one counts for itself
-_RIPPLE = 8  # times the slope over a length that at its middle is none of the same bend
 _LONG, _MOST_SCALES = 6, 3  # slopes of a power that is seen beyond the first; and scales in all
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
 
 
-class Field:
+class FloatField:
     """f(z, t) of an H whose parameters have values, as floats; None where it is not defined."""
 
     def __init__(self, hamiltonian: Hamiltonian) -> None:
         self.degrees, self.names = hamiltonian.degrees, hamiltonian.coordinates
         self.timed = hamiltonian.time_dependent
-        self._flow = Flow(canonical_field(hamiltonian)[0], _DIGITS)
+        self._flow = NumericalFlow(canonical_field(hamiltonian)[0], _DIGITS)
 
     def _slopes(self, z: Vector, t: float) -> list[Any] | None:
         try:
@@ -57,14 +56,14 @@ class Field:
         """Return the binary logarithm of the size of f(z, t), or of its distance from f(base,
         then), in the half that is counted, or in both; no float overflows, or cancels."""
         slopes = self._slopes(z, t)
-        less = [0] * len(z) if base is None else self._slopes(base, then)
-        if slopes is None or less is None:
+        subtracted = [0] * len(z) if base is None else self._slopes(base, then)
+        if slopes is None or subtracted is None:
             return None
         n = self.degrees
         part = slice(None) if half < 0 else slice(half * n, half * n + n)
         try:
             with self._flow.arithmetic.context():
-                total = sum((x - y) ** 2 for x, y in [*zip(slopes, less, strict=True)][part])
+                total = sum((x - y) ** 2 for x, y in [*zip(slopes, subtracted, strict=True)][part])
                 return float(gmpy2.log2(total)) / 2 if total else -math.inf
         except ArithmeticError:
             return None
@@ -88,7 +87,7 @@ class Field:
         return columns
 
 
-def units_of(field: Field, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
+def units_of(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
     """Find units of the coordinates, p1 … qn, for each scale that H has, and one of t.
 
     `usual`: a length, where H has none.
@@ -100,10 +99,12 @@ def units_of(field: Field, usual: float = 1.0) -> tuple[list[list[Fraction]], Fr
         scales.append([*momenta, *_find_partners(field, momenta, 0)])
     lengths = [usual] * n
     scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
-    return [[simple(x) for x in scale] for scale in scales], simple(_duration(field, scales[0]))
+    return [[round_to_simple(x) for x in scale] for scale in scales], round_to_simple(
+        _duration(field, scales[0])
+    )
 
 
-def _sizes(field: Field, first: int, usual: float = 1.0) -> list[list[float]]:
+def _sizes(field: FloatField, first: int, usual: float = 1.0) -> list[list[float]]:
     """Find the sizes of each q, or p, from the `first` coordinate on, at which its forces turn from
     one power to another: one list for each scale, none where nothing turns."""
     n = field.degrees
@@ -128,7 +129,7 @@ def _sizes(field: Field, first: int, usual: float = 1.0) -> list[list[float]]:
     return [[x * (scale / nearest) for x in sizes] for scale in scales[:_MOST_SCALES] or [usual]]
 
 
-def _size_near_scale(field: Field, first: int, scale: float) -> list[float]:
+def _size_near_scale(field: FloatField, first: int, scale: float) -> list[float]:
     """Return the size of each coordinate near that scale: the scale, or one of its own."""
     n = field.degrees
     base = _pad_with_zeros(first, [scale * x for x in _direction(n)])
@@ -159,7 +160,7 @@ def _slopes_of_other_half(slopes: Sequence[float], first: int) -> Sequence[float
     return slopes[: len(slopes) // 2] if first else slopes[len(slopes) // 2 :]
 
 
-def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
+def _response(field: FloatField, base: Vector, j: int) -> Callable[[float], float | None]:
     """Return a function that measures how far the forces change as one coordinate moves."""
 
     def size(s: float) -> float | None:
@@ -205,17 +206,18 @@ def _find_turns(size: Callable[[float], float | None]) -> list[float]:
     return turns
 
 
-def _find_partners(field: Field, sizes: Vector, first: int) -> list[float]:
+def _find_partners(field: FloatField, sizes: Vector, first: int) -> list[float]:
     """Return for each p the value whose kinetic energy is the work of its force over its length; or
     the same for q."""
     n = field.degrees
     base = _pad_with_zeros(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
-    work = [min(each, default=0.0) for each in zip(*_works(field, base, sizes, first), strict=True)]
+    works = zip(*_works(field, base, sizes, first), strict=True)
+    work = [min(works_of_force, default=0.0) for works_of_force in works]
     mean = sum(work) / max(len(work), 1) or 1.0
     return [_partner(field, base, n - first + k, work[k] or mean) for k in range(n)]
 
 
-def _works(field: Field, base: Vector, sizes: Vector, first: int) -> list[list[float]]:
+def _works(field: FloatField, base: Vector, sizes: Vector, first: int) -> list[list[float]]:
     """Return the work of each force over its length, at states beside one another, as one may lie
     in a core."""
     states = [field([x * y for x in base]) for y in _ASIDE]
@@ -230,7 +232,7 @@ def _works(field: Field, base: Vector, sizes: Vector, first: int) -> list[list[f
     return works or [[0.0] * len(sizes)]
 
 
-def _partner(field: Field, base: Vector, j: int, work: float) -> float:
+def _partner(field: FloatField, base: Vector, j: int, work: float) -> float:
     n = field.degrees
 
     def energy(x: float) -> float:
@@ -249,7 +251,7 @@ def _partner(field: Field, base: Vector, j: int, work: float) -> float:
     return math.pow(2.0, high)
 
 
-def _duration(field: Field, units: Vector) -> float:
+def _duration(field: FloatField, units: Vector) -> float:
     """Find the time over which the field changes otherwise than by a power of t, from 0 on or where
     it is defined; 1 where it does not."""
     if not field.timed:
@@ -257,68 +259,3 @@ def _duration(field: Field, units: Vector) -> float:
     begin = 0.0 if field(units, 0.0) is not None else 0.125
     turns = _find_turns(lambda s: field.octave(units, begin + s, units, begin))
     return turns[0] if turns else 1.0
-
-
-# -- at one place ---------------------------------------------------------------------------------
-
-
-def reaches(field: Field, z: Vector, t: float, units: Vector) -> list[float]:
-    """Return how far each coordinate may be moved before the field bends, at most its unit."""
-    field_values = field(z, t)
-    if field_values is None:
-        raise NoFlowError("H is not defined there")
-    steep = field.jacobian(z, t, units)
-    return [_reach(field, z, t, j, field_values, units[j], steep[j]) for j in range(len(z))]
-
-
-def _reach(
-    field: Field, z: Vector, t: float, j: int, field_values: Vector, unit: float, steep: Vector
-) -> float:
-    length = unit
-    for _ in range(20):
-        ends = []
-        for sign in (1, -1):
-            state = list(z)
-            state[j] += sign * length
-            ends.append(field(state, t))
-        if ends[0] is not None and ends[1] is not None:
-            pairs = list(zip(ends[0], ends[1], field_values, strict=True))
-            bend = max(
-                abs(a - 2 * c + b) / (abs(a - b) + abs(c) * 1e-3 + 1e-300) for a, b, c in pairs
-            )
-            ripples = any(
-                2 * length * abs(slope) > _RIPPLE * (abs(a - b) + 1e-12 * abs(c))
-                for slope, (a, b, c) in zip(steep, pairs, strict=True)
-            )
-            calm = all(abs(a - 2 * c + b) <= 0.5 * abs(c) for a, b, c in pairs)
-            if not ripples and (bend < 1 or calm):
-                return length
-        length /= 4
-    return length
-
-
-def rate(field: Field, z: Vector, t: float, reach: Vector) -> float:
-    """Measure how fast the motion changes: ‖∂f/∂z‖ with its coordinates balanced, and of its way.
-
-    Balancing (Osborne, J. ACM 7 (1960)) takes units out: the norm is then near the largest
-    frequency. Raises NoFlowError.
-    """
-    columns = field.jacobian(z, t, reach)
-    size = len(columns)
-    entries = [[abs(columns[j][i]) * reach[j] / reach[i] for j in range(size)] for i in range(size)]
-    for _ in range(20):
-        for k in range(size):
-            row = sum(entries[k][j] for j in range(size) if j != k)
-            column = sum(entries[i][k] for i in range(size) if i != k)
-            if row > 0 and column > 0:
-                # A diagonal scaling that makes the sums of row and column equal leaves the
-                # eigenvalues as they are.
-                ratio = math.sqrt(column / row)
-                for j in range(size):
-                    if j != k:
-                        entries[k][j] *= ratio
-                        entries[j][k] /= ratio
-    slopes = field(z, t) or []
-    # Where f is large the state leaves its surroundings at once, however smooth f is there.
-    moving = max((abs(x) / length for x, length in zip(slopes, reach, strict=True)), default=0.0)
-    return max(map(sum, entries)) + moving / 2

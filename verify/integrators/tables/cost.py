@@ -18,11 +18,11 @@ from verify.arithmetic.arb import midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.prose import Prose, read_prose
 from verify.schemes.printed.condition_set import BITS, ConditionSet, ball_of
-from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.judgement import Judgement
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
 
-_FAR = 1e9  # ulps: more is another number
+_MOST_ULPS = 1e9  # ulps: more is another number
 DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
 
 
@@ -40,10 +40,14 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True)
 class Cost:
-    """The cost of a mistake. `double`: whether a double can tell; None where that is not known.
-    `ulps`: by how many ulps the number that is farthest off differs from the nearest exact one.
-    `order`: what it has, in place of `claimed`. `error_constant`: as printed, and of the nearest
-    exact numbers. `below`: the step size below which wrong digits are what is seen."""
+    """The cost of a mistake in the numbers of a table.
+
+    `double`: whether a double can tell; None where that is not known. `ulps`: by how many ulps the
+    number that is farthest off differs from the nearest exact one, None where no exact numbers are
+    known. `order`: what it has, in place of `claimed`. `error_constant`: as printed, and
+    `nearest_error_constant` of the nearest exact numbers. `below`: the step size below which wrong
+    digits are what is seen.
+    """
 
     double: bool | None
     claimed: int | None
@@ -61,7 +65,7 @@ class Cost:
             parts.append(f"the order: {self.order} in place of {self.claimed}")
         if self.double is False:
             parts.append("nothing that a double can tell")
-        elif self.double and self.ulps is not None and self.ulps < _FAR:
+        elif self.double and self.ulps is not None and self.ulps < _MOST_ULPS:
             parts.append(
                 f"a double can tell: the number farthest off is `{self.ulps:.2g}` ulps from its own"
             )
@@ -71,7 +75,7 @@ class Cost:
 
 
 def cost_of(
-    judgement: Judged, claimed: int | None, following: ConditionSet | None = None
+    judgement: Judgement, claimed: int | None, following: ConditionSet | None = None
 ) -> Cost | None:
     """Return the cost of what is wrong; None where nothing is. `claimed`: an order, if one is
     claimed; `following`: the conditions of the order after it."""
@@ -82,18 +86,18 @@ def cost_of(
     double: bool | None = None
     if ulps is not None:
         double = ulps >= 1
-    elif judgement.largest or judgement.residue:
-        double = max(judgement.largest, abs(judgement.residue)) > DOUBLE
+    elif judgement.largest_residual or judgement.residual:
+        double = max(judgement.largest_residual, abs(judgement.residual)) > DOUBLE
     refuted = judgement.verdict is Verdict.REFUTED
     order = None if claimed is None or not refuted else min(judgement.order, claimed)
     printed = nearest = below = None
     if following is not None and not refuted:
         printed, nearest = _constants(judgement, following)
-        below = _below(judgement, claimed, printed)
+        below = _find_step_below(judgement, claimed, printed)
     return Cost(double, claimed, order, ulps, printed, nearest, below)
 
 
-def exact_numbers(judgement: Judged) -> dict[str, Fraction]:
+def exact_numbers(judgement: Judgement) -> dict[str, Fraction]:
     """Return numbers that would be right: the nearest ones, or the misprinted one corrected."""
     if judgement.nearest is not None:
         return dict(judgement.nearest)
@@ -102,11 +106,11 @@ def exact_numbers(judgement: Judged) -> dict[str, Fraction]:
     return {}
 
 
-def _ulps(judgement: Judged) -> float | None:
+def _ulps(judgement: Judgement) -> float | None:
     """Return the largest distance in ulps; None where no right numbers are known."""
-    if judgement.read is None:
+    if judgement.numbers is None:
         return None
-    values = judgement.read.values
+    values = judgement.numbers.values
     pairs = [(values.get(n), x) for n, x in exact_numbers(judgement).items()]
     if not pairs or any(y is None for y, _ in pairs):
         return None
@@ -118,28 +122,32 @@ def _apart(x: Fraction, y: Fraction) -> float:
     return float(abs(x - y) / Fraction(max(math.ulp(float(x)), math.ulp(float(y)))))
 
 
-def _constants(judgement: Judged, following: ConditionSet) -> tuple[float | None, float | None]:
-    assert judgement.read is not None  # noqa: S101 - digits are of rounded numbers
-    printed = error_constant(following, judgement.read.values)
+def _constants(judgement: Judgement, following: ConditionSet) -> tuple[float | None, float | None]:
+    assert judgement.numbers is not None  # noqa: S101 - digits are of rounded numbers
+    printed = error_constant(following, judgement.numbers.values)
     if judgement.nearest is None:
         return printed, None
-    return printed, error_constant(following, {**judgement.read.values, **judgement.nearest})
+    return printed, error_constant(following, {**judgement.numbers.values, **judgement.nearest})
 
 
-def error_constant(conditions: ConditionSet, at: Mapping[str, Fraction]) -> float:
+def error_constant(conditions: ConditionSet, values: Mapping[str, Fraction]) -> float:
     """Return the norm of the residuals, each with its share."""
     with working_precision(BITS):
-        point = {name: flint.arb(flint.fmpq(x.numerator, x.denominator)) for name, x in at.items()}
+        point = {
+            name: flint.arb(flint.fmpq(x.numerator, x.denominator)) for name, x in values.items()
+        }
         entries = entries_at(conditions.entries, point, ball_of)
         sizes = [
-            float(midpoint_and_radius(x)[0]) for x in conditions.residues(entries, flint.arb(1))
+            float(midpoint_and_radius(x)[0]) for x in conditions.residuals(entries, flint.arb(1))
         ]
     # Conditions by words have no symmetry factors: each counts as 1.
-    shares = [float(x) for x in conditions.shares] or [1.0] * len(sizes)
+    shares = [float(x) for x in conditions.error_weights] or [1.0] * len(sizes)
     return math.hypot(*(x * y for x, y in zip(sizes, shares, strict=True)))
 
 
-def _below(judgement: Judged, claimed: int | None, constant: float | None) -> float | None:
+def _find_step_below(
+    judgement: Judgement, claimed: int | None, constant: float | None
+) -> float | None:
     """Return the largest step size at which some residual of a lower order is as large as what is
     truncated."""
     if claimed is None or not constant:
@@ -148,13 +156,13 @@ def _below(judgement: Judged, claimed: int | None, constant: float | None) -> fl
         # A residual r of order k and the truncated term C h^(p+1) are equal at h =
         # (r/C)^(1/(p+1−k)).
         (abs(float(r)) / constant) ** (1 / (claimed + 1 - e.order))
-        for e, r in judgement.residues
+        for e, r in judgement.residuals
         if e.order <= claimed and r
     ]
     return max(sizes, default=None)
 
 
-def severity_of(judgement: Judged, refuted_as: Severity) -> Severity | None:
+def severity_of(judgement: Judgement, refuted_as: Severity) -> Severity | None:
     """Return the kind of mistake; `refuted_as`: where it is more than digits."""
     if judgement.verdict is Verdict.REFUTED:
         return refuted_as

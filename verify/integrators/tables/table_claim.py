@@ -11,15 +11,16 @@ from verify.errors import InputError
 from verify.integrators.tables.cost import Cost, Severity, cost_of, exact_numbers, severity_of
 from verify.prose import Prose
 from verify.schemes.printed.condition_set import ConditionSet
-from verify.schemes.printed.judged import Judged, Misprint
+from verify.schemes.printed.judgement import Judgement
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
 from verify.schemes.printed.sentences import (
     Details,
-    judgement_of_conditions,
-    judgement_of_digits,
-    judgement_of_order,
     mended_text,
+    ruling_on_conditions,
+    ruling_on_digits,
+    ruling_on_order,
 )
+from verify.schemes.printed.solutions import Misprint
 from verify.verdict import Verdict
 
 _DIGITS = "every digit is right, to one unit of the last"
@@ -27,8 +28,13 @@ _DIGITS = "every digit is right, to one unit of the last"
 
 @dataclass(frozen=True)
 class TableClaim:
-    """`kind` is the end of its id. `severity`, `nearest` and `cost` are of what is wrong, and None
-    where nothing is; `nearest` are texts of exact numbers, by name."""
+    """A claim of a table with its verdict.
+
+    `kind` is the end of its id, and `statement` the claim in words. `verdict` rests on `evidence`,
+    a sentence, and on `details`. `severity`, `nearest` and `cost` are of what is wrong, and None
+    where nothing is: the kind of the mistake, texts of the nearest exact numbers by name, and what
+    the printed ones cost.
+    """
 
     kind: str
     statement: str
@@ -53,7 +59,7 @@ _HALF = Fraction(51, 100)  # of a unit, to which a number is rounded, as far as 
 T = TypeVar("T", bound=Readable)
 
 
-def best_reading(table: T, judge: Callable[[T], Judged]) -> Judged:
+def best_reading(table: T, judge: Callable[[T], Judgement]) -> Judgement:
     """Judge the table in a reading in which it holds, if there is one; else as it is read last,
     with short decimals taken for rounded, too."""
     readings = table.printed.readings()
@@ -65,16 +71,16 @@ def best_reading(table: T, judge: Callable[[T], Judged]) -> Judged:
     closely = table.printed.closely
     if judgement.verdict is Verdict.REFUTED and closely.units != readings[-1].units:
         # Of numbers with three decimals ten units are no digits any more, and half a one is.
-        other = judge(table.read(closely))
-        if other.holds and other.off is not None and other.off <= _HALF:
-            return other
+        close = judge(table.read(closely))
+        if close.holds and close.distance is not None and close.distance <= _HALF:
+            return close
     return judgement
 
 
 def order_claims(
     kind: str,
     statement: str,
-    judgement: Judged,
+    judgement: Judgement,
     order: int,
     following: "Callable[[PrintedNumbers], ConditionSet] | None" = None,
     severity: Severity = Severity.WRONG_ORDER,
@@ -82,30 +88,31 @@ def order_claims(
     """Yield the claim of an order, and where it holds and numbers are rounded that of their
     digits."""
     next_conditions = None
-    if following is not None and judgement.digits is False and judgement.read is not None:
+    if following is not None and judgement.digits is False and judgement.numbers is not None:
         with suppress(InputError):  # beyond the orders that are looked at
-            next_conditions = following(judgement.read)
+            next_conditions = following(judgement.numbers)
     cost = cost_of(judgement, order, next_conditions)
     claim = _add_mistake(
-        TableClaim(kind, statement, *judgement_of_order(judgement, order)),
-        judgement,
-        severity,
-        cost,
+        TableClaim(kind, statement, *ruling_on_order(judgement, order)), judgement, severity, cost
     )
     yield claim
-    if claim.verdict is not Verdict.REFUTED and judgement.read is not None and judgement.read.units:
+    if (
+        claim.verdict is not Verdict.REFUTED
+        and judgement.numbers is not None
+        and judgement.numbers.units
+    ):
         name = "digits" if kind == "order" else f"{kind} digits"
         yield _of_digits(name, _DIGITS, judgement, severity, cost)
 
 
 def condition_claims(
-    kind: str, statement: str, what: str, judgement: Judged, severity: Severity
+    kind: str, statement: str, property_name: str, judgement: Judgement, severity: Severity
 ) -> Iterator[TableClaim]:
     """Yield a claim of conditions that are of no order; and of their digits, where these are
     wrong."""
     cost = cost_of(judgement, None) if exact_numbers(judgement) else None
     claim = _add_mistake(
-        TableClaim(kind, statement, *judgement_of_conditions(judgement, what)),
+        TableClaim(kind, statement, *ruling_on_conditions(judgement, property_name)),
         judgement,
         severity,
         cost,
@@ -116,14 +123,14 @@ def condition_claims(
 
 
 def _of_digits(
-    kind: str, statement: str, judgement: Judged, severity: Severity, cost: Cost | None
+    kind: str, statement: str, judgement: Judgement, severity: Severity, cost: Cost | None
 ) -> TableClaim:
-    claim = TableClaim(kind, statement, *judgement_of_digits(judgement))
+    claim = TableClaim(kind, statement, *ruling_on_digits(judgement))
     return _add_mistake(claim, judgement, severity_of(judgement, severity), cost)
 
 
 def _add_mistake(
-    claim: TableClaim, judgement: Judged, severity: Severity | None, cost: Cost | None
+    claim: TableClaim, judgement: Judgement, severity: Severity | None, cost: Cost | None
 ) -> TableClaim:
     """Add to a refuted claim what kind of mistake it is, and what would be right."""
     if claim.verdict is not Verdict.REFUTED:
@@ -131,9 +138,9 @@ def _add_mistake(
     return replace(claim, severity=severity, nearest=nearest_texts(judgement), cost=cost)
 
 
-def nearest_texts(judgement: Judged) -> dict[str, str] | None:
+def nearest_texts(judgement: Judgement) -> dict[str, str] | None:
     """Format the right numbers, to a few digits more than are printed."""
-    numbers, printed = exact_numbers(judgement), judgement.read
+    numbers, printed = exact_numbers(judgement), judgement.numbers
     if not numbers or printed is None:
         return None
     units = printed.units
@@ -152,32 +159,32 @@ class Hints:
 
     Where each of several numbers alone would do, all of them are reported, and none is blamed.
 
-    `again`: its claims with these numbers in place of printed ones.
+    `judge`: its claims with these numbers in place of printed ones.
     """
 
-    def __init__(self, again: Callable[[Mapping[str, str]], Iterable[TableClaim]] | None) -> None:
-        self._again = again
-        self.some: tuple[Misprint, ...] = ()
+    def __init__(self, judge: Callable[[Mapping[str, str]], Iterable[TableClaim]] | None) -> None:
+        self._judge = judge
+        self.misprints: tuple[Misprint, ...] = ()
 
-    def keep_explaining(self, judgement: Judged) -> Judged:
+    def keep_explaining(self, judgement: Judgement) -> Judgement:
         """Return the judgement with the hint that explains all claims, and without one that does
         not."""
         refuted = judgement.verdict is Verdict.REFUTED
-        if self._again is None or not (refuted or judgement.digits is False):
+        if self._judge is None or not (refuted or judgement.digits is False):
             return judgement
-        if not self.some:
+        if not self.misprints:
             texts = ((m, mended_text(judgement, m)) for m in judgement.misprints)
-            self.some = tuple(m for m, text in texts if self._holds({m.name: text}))
-        judgement = replace(judgement, misprints=self.some)
-        if self.some or not refuted or judgement.nearest is None:
+            self.misprints = tuple(m for m, text in texts if self._holds({m.name: text}))
+        judgement = replace(judgement, misprints=self.misprints)
+        if self.misprints or not refuted or judgement.nearest is None:
             return judgement
         if self._holds(nearest_texts(judgement) or {}):
             return judgement
-        return replace(judgement, nearest=None, off=None)
+        return replace(judgement, nearest=None, distance=None)
 
     def _holds(self, numbers: Mapping[str, str]) -> bool:
-        assert self._again is not None  # noqa: S101 - the caller has looked
-        claims = self._again({name: text.replace("−", "-") for name, text in numbers.items()})
+        assert self._judge is not None  # noqa: S101 - the caller has looked
+        claims = self._judge({name: text.replace("−", "-") for name, text in numbers.items()})
         # Other numbers may have wrong digits.
         return all(x.verdict is not Verdict.REFUTED or x.kind.endswith("digits") for x in claims)
 

@@ -17,16 +17,11 @@ import gmpy2
 
 from verify.arithmetic.exact import fraction
 from verify.functions import by_name
-from verify.integrators.tracing.number import (
-    OPERATORS,
-    Kind,
-    TracedNumber,
-    UntraceableError,
-    constant,
-)
+from verify.integrators.tracing.named_functions import OPERATORS
+from verify.integrators.tracing.traced_number import Kind, TracedNumber, UntraceableError, constant
 
 Number: TypeAlias = gmpy2.mpfr
-BITS = 200
+DUAL_BITS = 200
 _MOST_COMPARISONS = 4096  # of one call that are written down
 
 
@@ -36,7 +31,7 @@ class Comparison:
     first less the second; `limit`: the second, where it is a constant."""
 
     line: tuple[str, int, int]
-    gap: "Dual"
+    gap: "DualNumber"
     limit: Number | None
 
     @property
@@ -51,7 +46,7 @@ class Duals(Kind):
     `comparisons`: those of numbers that move with the state, since a probe began a new list.
     """
 
-    def __init__(self, bits: int = BITS) -> None:
+    def __init__(self, bits: int = DUAL_BITS) -> None:
         super().__init__()
         self.bits = bits
         self.comparisons: list[Comparison] = []
@@ -62,17 +57,17 @@ class Duals(Kind):
         with gmpy2.context(precision=self.bits, round=gmpy2.RoundToNearest):
             yield
 
-    def rational(self, value: Fraction) -> "Dual":
-        return Dual(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), ())
+    def rational(self, value: Fraction) -> "DualNumber":
+        return DualNumber(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), ())
 
-    def pi(self) -> "Dual":
-        return Dual(self, gmpy2.const_pi(), ())
+    def pi(self) -> "DualNumber":
+        return DualNumber(self, gmpy2.const_pi(), ())
 
-    def state(self, *z: Fraction) -> list["Dual"]:
+    def state(self, *z: Fraction) -> list["DualNumber"]:
         """Return z as dual numbers, whose derivatives are the unit vectors."""
         unit = [[gmpy2.mpfr(int(j == k)) for j in range(len(z))] for k in range(len(z))]
         pairs = zip(z, unit, strict=True)
-        return [Dual(self, self.rational(x).value, tuple(row)) for x, row in pairs]
+        return [DualNumber(self, self.rational(x).value, tuple(row)) for x, row in pairs]
 
 
 def slope_of(name: str, x: Number, y: Number) -> Number:
@@ -98,7 +93,7 @@ def _line_of_user() -> tuple[str, int, int]:
     return Path(frame.f_code.co_filename).name, frame.f_lineno, frame.f_lasti
 
 
-class Dual(TracedNumber):
+class DualNumber(TracedNumber):
     """`value`, and `slopes`, its derivatives; no slopes are zeros, as of a constant."""
 
     __slots__ = ("slopes", "value")
@@ -108,28 +103,28 @@ class Dual(TracedNumber):
         super().__init__(kind)
         self.value, self.slopes = value, slopes
 
-    def _chain(self, value: Number, slope: Number) -> "Dual":
-        return Dual(self.kind, value, tuple([slope * a for a in self.slopes]))
+    def _chain(self, value: Number, slope: Number) -> "DualNumber":
+        return DualNumber(self.kind, value, tuple([slope * a for a in self.slopes]))
 
     def exact_value(self) -> Fraction | None:
         """Return its value where it does not move with the state and is a rational of few bits."""
         if any(self.slopes) or not gmpy2.is_finite(self.value):
             return None
-        exact = fraction(self.value)
-        if exact.numerator.bit_length() + exact.denominator.bit_length() < self.kind.bits // 2:
-            return exact
+        value = fraction(self.value)
+        if value.numerator.bit_length() + value.denominator.bit_length() < self.kind.bits // 2:
+            return value
         # 1/3 and its like, as exponents: rounded to the working precision, and read back.
-        near = exact.limit_denominator(10**4)
-        return near if self.kind.rational(near).value == self.value else None
+        nearest = value.limit_denominator(10**4)
+        return nearest if self.kind.rational(nearest).value == self.value else None
 
     def _order(self, other: object) -> int:
         lifted = constant(self.kind, other)
         if lifted is None:
             self.refuse("it compares a number with what is none")
-        assert isinstance(lifted, Dual)  # noqa: S101 - of this kind
+        assert isinstance(lifted, DualNumber)  # noqa: S101 - of this kind
         return self.compare(lifted)
 
-    def compare(self, other: "Dual") -> int:
+    def compare(self, other: "DualNumber") -> int:
         if self.slopes or other.slopes:
             self.kind.compared = True
             if len(self.kind.comparisons) < _MOST_COMPARISONS:
@@ -140,14 +135,14 @@ class Dual(TracedNumber):
             return 2 if gmpy2.is_nan(self.value) else -2
         return int(self.value > other.value) - int(self.value < other.value)
 
-    def combine(self, name: str, other: "Dual") -> "Dual":
+    def combine(self, name: str, other: "DualNumber") -> "DualNumber":
         x, y, a, b = self.value, other.value, self.slopes, other.slopes
         if name == "divide" and y == 0:
             raise ZeroDivisionError("division by zero")
         act = OPERATORS[name]
         z, is_sum = act(x, y), name in ("add", "subtract")
         if not b:  # a constant moves nothing
-            return Dual(self.kind, z, a if is_sum else tuple([act(u, y) for u in a]))
+            return DualNumber(self.kind, z, a if is_sum else tuple([act(u, y) for u in a]))
         pairs = zip(a or (gmpy2.mpfr(0),) * len(b), b, strict=True)
         if is_sum:
             slopes = [act(u, v) for u, v in pairs]
@@ -156,19 +151,19 @@ class Dual(TracedNumber):
         else:
             # (x/y)' = (x' − z y')/y with z = x/y.
             slopes = [(u - z * v) / y for u, v in pairs]
-        return Dual(self.kind, z, tuple(slopes))
+        return DualNumber(self.kind, z, tuple(slopes))
 
-    def apply(self, name: str) -> "Dual":
+    def apply(self, name: str) -> "DualNumber":
         x = self.value
         domain = by_name()[name].domain
         if domain and domain.relation != "!=":
-            inside = domain.inside(x)
-            if inside < 0 or (inside == 0 and domain.relation == ">"):
+            interior = domain.inside(x)
+            if interior < 0 or (interior == 0 and domain.relation == ">"):
                 raise ValueError("math domain error")
         y = getattr(gmpy2, name)(x)
         return self._chain(y, slope_of(name, x, y))
 
-    def raise_to(self, exponent: Fraction) -> "Dual":
+    def raise_to(self, exponent: Fraction) -> "DualNumber":
         x = self.value
         if exponent.denominator == 1:
             n = int(exponent)

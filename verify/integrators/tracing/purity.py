@@ -18,9 +18,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-_EXACT = (int, float, complex, bool, str, bytes)
-_PLAIN = (*_EXACT, type(None), types.EllipsisType, types.NotImplementedType, range, slice, Fraction,
-          Decimal, object, types.GenericAlias, types.UnionType,
+_EXACT_TYPES = (int, float, complex, bool, str, bytes)
+_PLAIN = (*_EXACT_TYPES, type(None), types.EllipsisType, types.NotImplementedType, range, slice,
+          Fraction, Decimal, object, types.GenericAlias, types.UnionType,
           type(vars(namedtuple("One", "x"))["x"]))  # fmt: skip
 _PLAIN_HOMES = ("typing", "dataclasses")  # what types and fields are declared with
 # The names that are pure, of each module; "" for all functions and classes that it defines.
@@ -121,7 +121,7 @@ def _qualified_name(x: Any) -> str:
     return ".".join(part.lstrip("_") or part for part in f"{home}{x.__qualname__}".split("."))
 
 
-class Outside:
+class Surroundings:
     """The impure things that a traced function reached, and the mutable ones that it was handed."""
 
     def __init__(self) -> None:
@@ -156,12 +156,12 @@ def _changed_parts(before: Contents, after: Contents) -> list[str | int]:
     return [
         part
         for part in {**before, **after}
-        if part not in before or part not in after or not _same(before[part], after[part])
+        if part not in before or part not in after or not _are_same(before[part], after[part])
     ]
 
 
-def _same(x: Any, y: Any) -> bool:
-    return x is y or (type(x) is type(y) and type(x) in _EXACT and x == y)
+def _are_same(x: Any, y: Any) -> bool:
+    return x is y or (type(x) is type(y) and type(x) in _EXACT_TYPES and x == y)
 
 
 def contents(x: Any) -> dict[Any, Any]:

@@ -18,11 +18,15 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import fraction
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.dual import Dual, Duals
+from verify.integrators.tracing.dual import DualNumber, Duals
 from verify.integrators.tracing.linear_sums import Scalars
 from verify.integrators.tracing.trace import Node, Tape, evaluate_nodes, in_order, replay_in
 
-_AT = {"p": Fraction(2, 7), "q": Fraction(5, 11), "t": Fraction(3, 13)}  # any that is not special
+_POINT = {
+    "p": Fraction(2, 7),
+    "q": Fraction(5, 11),
+    "t": Fraction(3, 13),
+}  # any that is not special
 _MOST_DENOMINATOR, _CLEAR = 2**64, Fraction(1, 2**150)  # of a time made of floats
 _BITS, _STEP, _NO_PART = 600, Fraction(1, 2**200), Fraction(1, 2**40)
 
@@ -47,14 +51,14 @@ class _Place:
     """The operation that reads, which of its inputs reads, and a for each a (t + c h) in what that
     is of."""
 
-    at: Node
+    node: Node
     index: int
     clocks: Mapping[int, Fraction]
     time: Fraction
 
     @property
     def moves(self) -> Node:
-        return self.at.inputs[1 - self.index]
+        return self.node.inputs[1 - self.index]
 
 
 class Readings:
@@ -67,7 +71,7 @@ class Readings:
         self._places = [x for node in self.nodes if (x := self._place(node)) is not None]
         self._kind = Duals()
         with gmpy2.context(precision=_BITS):
-            self._at = _numbers(hamiltonian)
+            self._point = _numbers(hamiltonian)
             due, parts = self._due(), [self._part(place) for place in self._places]
         self.reads = [
             Read(place.time, c, *part)
@@ -111,7 +115,9 @@ class Readings:
         """Evaluate all nodes in numbers of that kind, each reading at the time that `times` has for
         it."""
         plain = replay_in(kind, symbols)
-        places = {place.at.number: (place, t) for place, t in zip(self._places, times, strict=True)}
+        places = {
+            place.node.number: (place, t) for place, t in zip(self._places, times, strict=True)
+        }
 
         def made_of(node: Node, inputs: list[Any]) -> Any:
             if node.number in places:
@@ -128,13 +134,13 @@ class Readings:
     def _due(self) -> list[Fraction]:
         """Compute the due times by derivatives along h, and along the flow in place of it, at a
         very small step."""
-        kind, at = self._kind, self._at
+        kind, at = self._kind, self._point
         zero, one, h = gmpy2.mpfr(0), gmpy2.mpfr(1), kind.rational(_STEP).value
-        t = Dual(kind, at["t"], (zero, zero))
+        t = DualNumber(kind, at["t"], (zero, zero))
         symbols = {
-            "p": Dual(kind, at["p"], (zero, -at["H_q"])),
-            "q": Dual(kind, at["q"], (zero, at["H_p"])),
-            "h": Dual(kind, h, (one, zero)),
+            "p": DualNumber(kind, at["p"], (zero, -at["H_q"])),
+            "q": DualNumber(kind, at["q"], (zero, at["H_p"])),
+            "h": DualNumber(kind, h, (one, zero)),
             "t": t,
         }
         values = self._replay(kind, symbols, [t] * len(self._places))
@@ -152,10 +158,10 @@ class Readings:
     def _part(self, place: _Place) -> tuple[Fraction, bool]:
         """Measure a reading's part of the step by the derivatives of p' and q' along its time, at a
         very small step."""
-        kind, at = self._kind, self._at
+        kind, at = self._kind, self._point
         zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
-        still = {name: Dual(kind, at[name], (zero,)) for name in "pqt"}
-        moving_time = Dual(kind, at["t"], (one,))
+        still = {name: DualNumber(kind, at[name], (zero,)) for name in "pqt"}
+        moving_time = DualNumber(kind, at["t"], (one,))
         times = [moving_time if x is place else still["t"] for x in self._places]
         h = kind.rational(_STEP)
         values = self._replay(kind, {**still, "h": h}, times)
@@ -173,12 +179,12 @@ class Readings:
 def _numbers(hamiltonian: Hamiltonian) -> dict[str, "gmpy2.mpfr"]:
     """Return the point, and derivatives of H at it."""
     p, q, t = (symbol(name) for name in "pqt")
-    exact = hamiltonian.exact
+    expression = hamiltonian.exact
     derivatives = {"H_p": (p,), "H_q": (q,), "H_pt": (p, t), "H_qt": (q, t)}
-    point = {symbol(name): sympy.Rational(x.numerator, x.denominator) for name, x in _AT.items()}
-    numbers = {name: gmpy2.mpfr(gmpy2.mpq(x)) for name, x in _AT.items()}
-    for name, by in derivatives.items():
-        value = sympy.N(exact.diff(*by).subs(point), _BITS // 3)
+    point = {symbol(name): sympy.Rational(x.numerator, x.denominator) for name, x in _POINT.items()}
+    numbers = {name: gmpy2.mpfr(gmpy2.mpq(x)) for name, x in _POINT.items()}
+    for name, derivative in derivatives.items():
+        value = sympy.N(expression.diff(*derivative).subs(point), _BITS // 3)
         if not value.is_real:
             raise NoReadingsError
         numbers[name] = gmpy2.mpfr(str(value))
@@ -188,8 +194,8 @@ def _numbers(hamiltonian: Hamiltonian) -> dict[str, "gmpy2.mpfr"]:
 def _rational(x: "gmpy2.mpfr") -> Fraction:
     if not gmpy2.is_finite(x):
         raise NoReadingsError
-    exact = fraction(x)
-    near = exact.limit_denominator(_MOST_DENOMINATOR)
-    if abs(near - exact) > _CLEAR:
+    value = fraction(x)
+    near = value.limit_denominator(_MOST_DENOMINATOR)
+    if abs(near - value) > _CLEAR:
         raise NoReadingsError
     return near

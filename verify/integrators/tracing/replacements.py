@@ -1,4 +1,7 @@
-"""Replacements of `math`'s and numpy's functions that know our numbers, too."""
+"""Replacements of `math`'s and numpy's functions that know our numbers, too.
+
+numpy's `solve`, `inv` and `det` are among them, as LAPACK does not take our numbers.
+"""
 
 import operator
 from collections.abc import Callable
@@ -6,8 +9,8 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-from verify.integrators.tracing import derived, linear_algebra
-from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, constant
+from verify.integrators.tracing.named_functions import OF_ONE, OF_TWO, OPERATORS, hypot
+from verify.integrators.tracing.traced_number import Kind, TracedNumber, constant
 
 _PLAIN = int | float | Fraction
 _FLOATS = ("float", "float64", "double")
@@ -26,8 +29,8 @@ def replacement(kind: Kind, called: str, x: Any) -> Any:
     home, _, name = called.rpartition(".")
     if name in _FLOATS:
         return Float
-    if home == "numpy.linalg" and name in ("solve", "inv", "det"):
-        return _guard(partial(getattr(linear_algebra, name), kind), x)
+    if home == "numpy.linalg" and name in _OF_MATRICES:
+        return _guard(partial(_OF_MATRICES[name], kind), x)
     if home not in ("math", "numpy"):
         return x
     if name in ("pi", "e", "tau"):
@@ -40,13 +43,13 @@ def replacement(kind: Kind, called: str, x: Any) -> Any:
     if name in (*_FILLED, *_TYPED):
         return _of_objects(x, untold=name in _FILLED)
     if home == "math":
-        return _guard(_OTHERS[name], x) if name in _OTHERS else x
+        return _guard(_OF_MATH[name], x) if name in _OF_MATH else x
     if name in _OF_NUMPY:
         return _guard(_OF_NUMPY[name], x)
     return x
 
 
-_OF_NUMBERS: dict[str, Callable[..., Any]] = {**derived.OF_ONE, **derived.OF_TWO}
+_OF_NUMBERS: dict[str, Callable[..., Any]] = {**OF_ONE, **OF_TWO}
 
 
 class _FloatType(type):
@@ -131,21 +134,21 @@ def _isclose(x: Any, y: Any, *, rel_tol: float = 1e-9, abs_tol: float = 0.0) -> 
     return bool(abs(x - y) <= max(rel_tol * max(abs(x), abs(y)), abs_tol))
 
 
-_OTHERS: dict[str, Callable[..., Any]] = {
+_OF_MATH: dict[str, Callable[..., Any]] = {
     **{name: OPERATORS[name] for name in ("fabs", "isnan", "isfinite")},
     "isinf": OPERATORS["isnan"],
     "isclose": _isclose,
     "fsum": sum,
-    "dist": lambda p, q: derived.hypot(*(x - y for x, y in zip(p, q, strict=True))),
+    "dist": lambda p, q: hypot(*(x - y for x, y in zip(p, q, strict=True))),
 }
 
 
-def _near(x: Any, y: Any, rtol: float = 1e-5, atol: float = 1e-8) -> Any:
+def _is_near(x: Any, y: Any, rtol: float = 1e-5, atol: float = 1e-8) -> Any:
     return abs(x - y) <= atol + rtol * abs(y)
 
 
-def _all_near(*arguments: Any, **options: Any) -> bool:
-    near = _near(*arguments, **options)
+def _are_near(*arguments: Any, **options: Any) -> bool:
+    near = _is_near(*arguments, **options)
     return bool(near.all() if hasattr(near, "all") else near)
 
 
@@ -156,6 +159,68 @@ def _is_finite(x: Any) -> Any:
 _OF_NUMPY: dict[str, Callable[..., Any]] = {
     "isfinite": _is_finite,
     "isnan": lambda x: x != x,
-    "isclose": _near,
-    "allclose": _all_near,
+    "isclose": _is_near,
+    "allclose": _are_near,
 }
+
+
+# -- linear algebra -------------------------------------------------------------------------------
+
+
+def solve(kind: Kind, matrix: Any, right: Any) -> Any:
+    """Solve matrix·x = right for x, one vector or the columns of a matrix."""
+    import numpy as np
+
+    right = np.asarray(right, dtype=object)
+    rows, _ = _eliminate_numbers(kind, matrix, right.reshape(len(right), -1))
+    size = len(rows)
+    columns = [[x / row[k] for x in row[size:]] for k, row in enumerate(rows)]
+    return np.array(columns, dtype=object).reshape(right.shape)
+
+
+def inv(kind: Kind, matrix: Any) -> Any:
+    """Return the inverse."""
+    import numpy as np
+
+    return solve(kind, matrix, np.identity(len(matrix), dtype=object))
+
+
+def det(kind: Kind, matrix: Any) -> Any:
+    """Return the determinant."""
+    rows, determinant = _eliminate_numbers(kind, matrix, [()] * len(matrix))
+    for k, row in enumerate(rows):
+        determinant = determinant * row[k]
+    return determinant
+
+
+def _eliminate_numbers(kind: Kind, matrix: Any, right: Any) -> tuple[list[list[Any]], int]:
+    """Apply `eliminate` to our numbers."""
+    rows = [[constant(kind, x) for x in (*a, *b)] for a, b in zip(matrix, right, strict=True)]
+    return rows, eliminate(rows, partial(_size, kind))
+
+
+def eliminate(rows: list[list[Any]], size: Callable[[Any], Any]) -> int:
+    """Make the left of the rows a diagonal matrix, by Gauss; return the sign of its determinant.
+
+    Pivots are the largest of their columns, by that size.
+    """
+    sign = 1
+    for k in range(len(rows)):
+        pivot = max(range(k, len(rows)), key=lambda i: size(rows[i][k]))
+        # An exchange of rows changes the determinant's sign.
+        if pivot != k:
+            rows[k], rows[pivot], sign = rows[pivot], rows[k], -sign
+        for i, row in enumerate(rows):
+            if i != k:
+                factor = row[k] / rows[k][k]
+                rows[i] = [x - factor * y for x, y in zip(row, rows[k], strict=True)]
+    return sign
+
+
+def _size(kind: Kind, x: Any) -> Any:
+    """Return the size by which pivots are chosen: a symbol, of no size, comes first, and 0 last."""
+    value = x.exact_value()
+    return abs(x) if kind.ordered else 1 if value is None else bool(value) / 2
+
+
+_OF_MATRICES: dict[str, Callable[..., Any]] = {"solve": solve, "inv": inv, "det": det}

@@ -12,7 +12,8 @@ import sympy
 
 from verify.algebra.formula import function, symbol
 from verify.algebra.limits import MAX_EXPONENT
-from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
+from verify.integrators.tracing.named_functions import OPERATORS
+from verify.integrators.tracing.traced_number import Kind, TracedNumber, UntraceableError
 
 MOST_NODES = 20_000
 _MOST_BITS = 20_000  # of a folded number

@@ -1,20 +1,34 @@
-"""Faults that a user's map may have before anything is proved or measured, by their names."""
+"""Faults that a user's map may have before anything is proved or measured, by their names.
 
+Its answers must be the same at every call, after many others, and in a second process that asks in
+the reverse order. That process is a fork, so that it begins with all that the code keeps here. It
+shows nothing, runs nothing of ours when it ends, and what it has started ends with it.
+"""
+
+import contextlib
+import numbers
+import os
+import selectors
+import signal
 import sys
-from collections.abc import Mapping, Sequence
+import time
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from os import _exit as leave  # the user's code may be kept from it by another one
+from typing import Any, NoReturn, TypeVar
 
-from verify.integrators.places.place import Place
-from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
+from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.user_code.step import StepError, last_line, limit_call, unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import Number, Prose, join_prose, prose
 from verify.verdict import Verdict
 
+S = TypeVar("S")
 _PARTS = 8, 16  # of a place's largest step, with which it is tried
-_MOST = 6  # places
+_MOST_PLACES = 6
 _SECONDS = 2.0  # for calls in a second process
 
 
@@ -34,13 +48,13 @@ class Fault:
         return self.allows is Verdict.REFUTED or self.ends
 
 
-Calls = dict[Place, State]  # what it returned at places
+Calls = dict[TrialPlace, State]  # what it returned at places
 
 
-def find_faults(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls]:
+def find_faults(step: UserMap, places: Sequence[TrialPlace]) -> tuple[list[Fault], Calls]:
     """Return the faults at the first of the places, and the results there."""
     first = Calls()
-    for place in places[:_MOST]:
+    for place in places[:_MOST_PLACES]:
         state = unless_it_fails(partial(call_at, step, place))  # at others it may not fail
         if state is not None:
             first[place] = state
@@ -50,11 +64,11 @@ def find_faults(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Ca
     return [*faults, *_check_arrays(step, first)], first
 
 
-def _check_second_process(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
+def _check_second_process(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
     """Check that the step answers the same in a second process, in the reverse order."""
-    another = getattr(step.function, "another", None)
-    if another is not None:
-        answers = _answers_of(replace(step, function=another()), list(first))
+    start_another = getattr(step.function, "another", None)
+    if start_another is not None:
+        answers = _answers_of(replace(step, function=start_another()), list(first))
     elif step.foreign:
         return []  # a library that is driven from here: it may not be forked
     else:
@@ -63,25 +77,25 @@ def _check_second_process(step: UserMap, first: Mapping[Place, State]) -> list[F
     for (place, state), answer in zip(first.items(), answers, strict=True):
         # None: the other process ended before it answered, which is no difference.
         if answer is not None and answer != outcome(lambda x: x, state):
-            where = "in a second process, in another order of calls"
-            text = f"{where}, it returns another result at {step.state(place.z)}"
+            circumstances = "in a second process, in another order of calls"
+            text = f"{circumstances}, it returns another result at {step.state(place.z)}"
             return [Fault("not a function", text, Verdict.UNDECIDED, ends=True)]
     return []
 
 
-def _answers_of(step: UserMap, places: Sequence[Place]) -> list[str | None]:
+def _answers_of(step: UserMap, places: Sequence[TrialPlace]) -> list[str | None]:
     """Return the answers of a fresh process of its program, from the last place to the first."""
     answers = [outcome(lambda place: call_at(step, place), place) for place in reversed(places)]
     step.function.close()  # type: ignore[attr-defined]
     return [*reversed(answers)]
 
 
-def call_at(step: UserMap, place: Place, part: int = _PARTS[0]) -> State:
+def call_at(step: UserMap, place: TrialPlace, part: int = _PARTS[0]) -> State:
     """Return the state after a small step, as floats."""
     return step.at_place(place, place.step / part)
 
 
-def find_changes(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
+def find_changes(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
     """Check that the step still returns what it did, after many calls."""
     for place, before in first.items():
         after = unless_it_fails(partial(call_at, step, place))  # a cache may hold numbers of ours
@@ -104,7 +118,7 @@ def _format_state(state: State) -> Prose:
     return prose("(", join_prose(", ", (Number(repr(x)) for x in state)), ")")
 
 
-def _check_repeated_calls(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
+def _check_repeated_calls(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
     """Check that it is one map of z and h, the same at every call, and one that moves."""
     second = Calls()
     for place, before in first.items():
@@ -133,7 +147,7 @@ def _check_repeated_calls(step: UserMap, first: Mapping[Place, State]) -> list[F
     return []
 
 
-def _check_arrays(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
+def _check_arrays(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
     """Check that it changes no arrays that it takes. Without numpy in use there are none."""
     if "numpy" not in sys.modules or step.foreign or not first or "z" in step.layout.roles:
         return []
@@ -159,3 +173,82 @@ def _check_arrays(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
     if np.array_equal(p, originals[0]) and np.array_equal(q, originals[1]):
         return []
     return [Fault("mutates", "it changes the arrays p or q that it is given", Verdict.PROVED)]
+
+
+# -- in a second process --------------------------------------------------------------------------
+
+
+def outcomes_elsewhere(
+    call: Callable[[S], object], states: Sequence[S], seconds: float
+) -> list[str | None]:
+    """Return `outcome` at each state, from the last to the first; None where none came in that
+    time."""
+    if not hasattr(os, "fork"):
+        return [None] * len(states)
+    reader, writer = os.pipe()
+    with warnings.catch_warnings(action="ignore"):  # of this process's threads: the child has none
+        child = os.fork()
+    if child == 0:
+        _answer(writer, call, states)
+    try:
+        with contextlib.suppress(OSError):  # the child has done it, or has ended
+            os.setpgid(child, child)
+        os.close(writer)
+        lines = _read(reader, len(states), seconds)
+    finally:
+        os.close(reader)
+        for kill in (os.killpg, os.kill):
+            with contextlib.suppress(OSError):
+                kill(child, signal.SIGKILL)
+        with contextlib.suppress(OSError):
+            os.waitpid(child, 0)
+    return [*[None] * (len(states) - len(lines)), *reversed(lines)]
+
+
+def outcome(call: Callable[[S], object], state: S) -> str:
+    """Return all digits of the numbers that the call returns there, or the type of what it
+    raises."""
+    try:
+        return _text(call(state))
+    except BaseException as error:
+        return type(error).__name__
+
+
+def _text(x: Any) -> str:
+    x = x.tolist() if hasattr(x, "tolist") else x
+    if isinstance(x, list | tuple):
+        return f"({', '.join(map(_text, x))})"
+    if isinstance(x, float):
+        return x.hex()
+    # Of another object no more is said: its address is another one there.
+    return repr(x) if isinstance(x, numbers.Number | str | None) else type(x).__name__
+
+
+def _answer(writer: int, call: Callable[[S], object], states: Sequence[S]) -> NoReturn:
+    """Answer in the child, and end it."""
+    try:
+        os.setpgid(0, 0)
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        for stream in range(3):
+            os.dup2(nowhere, stream)
+        sys.stdin = sys.stdout = sys.stderr = open(nowhere, "r+", closefd=False)  # noqa: SIM115
+        with open(writer, "w") as pipe:
+            for state in reversed(states):
+                print(outcome(call, state), file=pipe, flush=True)
+    finally:
+        leave(0)
+
+
+def _read(reader: int, count: int, seconds: float) -> list[str]:
+    """Read so many lines, or those that come in time."""
+    received_bytes, until = b"", time.monotonic() + seconds
+    with selectors.DefaultSelector() as waiting:
+        waiting.register(reader, selectors.EVENT_READ)
+        while received_bytes.count(b"\n") < count and waiting.select(
+            max(until - time.monotonic(), 0)
+        ):
+            part = os.read(reader, 1 << 16)
+            if not part:  # it has ended
+                break
+            received_bytes += part
+    return received_bytes.decode().split("\n")[:-1]

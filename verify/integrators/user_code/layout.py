@@ -34,7 +34,7 @@ def role_of(name: str) -> str:
     return ROLES.get(name.lower().strip("_"), "")
 
 
-class Pair(tuple[Theirs, ...]):
+class StatePair(tuple[Theirs, ...]):
     """p and q as one thing that also answers to names: y.q, y.pos, y.velocity."""
 
     order: tuple[str, ...]
@@ -49,21 +49,21 @@ class Pair(tuple[Theirs, ...]):
             raise AttributeError(name)
         return self[self.order.index(role)]
 
-    def _replace(self, **changed: Theirs) -> "Pair":
+    def _replace(self, **changed: Theirs) -> "StatePair":
         parts = {role_of(name): x for name, x in changed.items()}
         return pair([parts.get(name, x) for name, x in zip(self.order, self, strict=True)],
                     self.order)  # fmt: skip
 
 
-def pair(parts: Sequence[Theirs], order: tuple[str, ...]) -> Pair:
+def pair(parts: Sequence[Theirs], order: tuple[str, ...]) -> StatePair:
     """Return p and q in that order as one thing."""
-    both = Pair(parts)
-    both.order = order
-    return both
+    whole = StatePair(parts)
+    whole.order = order
+    return whole
 
 
 @dataclass(frozen=True)
-class Layout:
+class CallLayout:
     """`roles`: the function's arguments in their order, each p, q, t, h or z. `halves`: in which
     order p and q stand in z, and in what is returned. `shape`: of p and of q, () for plain numbers.
     `kind`: "array", or "list"; of z "flat", one array of all, "rows", an array of two, or "pair", a
@@ -146,8 +146,28 @@ class Layout:
     def __str__(self) -> str:
         if "z" not in self.roles:
             return ", ".join(self.roles)
-        inside = ", ".join(self.halves)
-        return ", ".join(f"({inside})" if name == "z" else name for name in self.roles)
+        halves_text = ", ".join(self.halves)
+        return ", ".join(f"({halves_text})" if name == "z" else name for name in self.roles)
+
+
+def layouts_of(
+    roles: tuple[str, ...], degrees: int, halves: list[tuple[str, str]] | None
+) -> Iterator[CallLayout]:
+    """Yield the layouts in which a function with these arguments may take its state, the usual
+    first. `halves`: the orders of p and q in z; both where it is None."""
+    if "z" not in roles:
+        first = "p" if roles.index("p") < roles.index("q") else "q"
+        order = ("p", "q") if first == "p" else ("q", "p")
+        for shape, kind in shapes(degrees):
+            yield CallLayout(roles, order, shape, kind)
+        return
+    for order in halves or [("p", "q"), ("q", "p")]:
+        yield CallLayout(roles, order, (degrees,), "flat")
+        for shape, kind in shapes(degrees):
+            if kind == "array" and shape:
+                yield CallLayout(roles, order, shape, "rows")
+        for shape, kind in shapes(degrees):
+            yield CallLayout(roles, order, shape, "pair" if kind == "array" else "list")
 
 
 def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:

@@ -20,7 +20,7 @@ from pathlib import Path
 from types import ModuleType
 
 from verify.errors import InputError, find_nearest, format_suggestion
-from verify.integrators.user_code.layout import Layout, role_of, shapes
+from verify.integrators.user_code.layout import CallLayout, layouts_of, role_of
 from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contain_effects, last_line
 from verify.integrators.user_code.user_map import UserMap
 
@@ -50,7 +50,7 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
         target_object: Theirs = module
         for part in name.split("."):
             if not hasattr(target_object, part):
-                names = sorted(x for x, one in vars(module).items() if inspect.isfunction(one))
+                names = sorted(x for x, f in vars(module).items() if inspect.isfunction(f))
                 has = list_functions(names, name) if names else "it has no function"
                 raise InputError(called, target, f"{place} has no {name}; {has}")
             target_object = getattr(target_object, part)
@@ -64,10 +64,10 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
 
 def list_functions(functions: Sequence[str], wanted: str) -> str:
     """List the functions, the nearest to the wanted name first."""
-    near = find_nearest(wanted, functions)
-    first = sorted(functions, key=lambda name: name != near)[:_LISTED]
-    more = f", and {len(functions) - _LISTED} more" if len(functions) > _LISTED else ""
-    return f"{format_suggestion(near)}it has: {', '.join(first)}{more}"
+    nearest = find_nearest(wanted, functions)
+    first = sorted(functions, key=lambda name: name != nearest)[:_LISTED]
+    ellipsis = f", and {len(functions) - _LISTED} more" if len(functions) > _LISTED else ""
+    return f"{format_suggestion(nearest)}it has: {', '.join(first)}{ellipsis}"
 
 
 def _module(place: str, target: str, called: str) -> ModuleType:
@@ -101,16 +101,16 @@ def from_file(path: Path) -> ModuleType:
 
 def from_folder(name: str) -> ModuleType:
     """Import the module of that name from the current folder, else the one that is installed."""
-    top, dot, rest = name.partition(".")
+    top, dot, submodule = name.partition(".")
     folder = Path.cwd()
     spec = PathFinder.find_spec(top, [str(folder)])
     free = _free_name(top, folder)
     if spec is None or spec.origin is None:  # a folder without code is behind libraries, too
         return import_module(name)
     if free != top and free not in sys.modules:
-        inside = spec.submodule_search_locations
-        _execute(spec_from_file_location(free, spec.origin, submodule_search_locations=inside))
-    return import_module(f"{free}{dot}{rest}")
+        paths = spec.submodule_search_locations
+        _execute(spec_from_file_location(free, spec.origin, submodule_search_locations=paths))
+    return import_module(f"{free}{dot}{submodule}")
 
 
 def _free_name(name: str, folder: Path) -> str:
@@ -150,7 +150,7 @@ class Callee:
     """
 
     step: UserMap
-    layouts: tuple[Layout, ...]
+    layouts: tuple[CallLayout, ...]
     named: bool = True
     arguments: tuple[str, ...] = ()
 
@@ -184,14 +184,13 @@ def callee_from(
         order, places = _order(arguments, names, stepped, signature)
         orders, names_tell = [order], True
     halves = [("p", "q")] if places else None
-    layouts = [x for roles in orders for x in _layouts(roles, len(names) // 2, halves)]
+    layouts = [x for roles in orders for x in layouts_of(roles, len(names) // 2, halves)]
     layouts = [replace(x, places=places, record=signature.record) for x in layouts]
     values_taken = {name: x for name, x in values.items() if name in signature.takes}
     step = UserMap(function, layouts[0], names, values_taken, limit=time_limit)
     several = len({(x.roles, x.halves) for x in layouts}) > 1
-    return Callee(
-        step, tuple(layouts), names_tell and not several, signature.argument_names(len(orders[0]))
-    )
+    argument_names = tuple(x.name for x in signature.places[: len(orders[0])])
+    return Callee(step, tuple(layouts), names_tell and not several, argument_names)
 
 
 def foreign_callee(step: UserMap) -> Callee:
@@ -214,9 +213,9 @@ class _Signature:
         except (TypeError, ValueError):  # some functions written in C have none
             parameters = []
         self.text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, parameters))})"
-        every = {x.name for x in parameters}
+        parameter_names = {x.name for x in parameters}
         for name in values if strict else ():
-            if name not in every:
+            if name not in parameter_names:
                 raise InputError("parameter", name, f"is no argument of {self.text}")
         places = [x for x in parameters if x.kind in _POSITIONAL]
         self.variadic = not parameters or any(x.kind is x.VAR_POSITIONAL for x in parameters)
@@ -235,10 +234,6 @@ class _Signature:
         """Return the error of a signature that is none of a step's or a map's."""
         return InputError("integrator" if self.stepped else "map", self.text, _WANTED[self.stepped])
 
-    def argument_names(self, count: int) -> tuple[str, ...]:
-        """Return the names of the first arguments."""
-        return tuple(x.name for x in self.places[:count])
-
     def orders(self) -> tuple[list[tuple[str, ...]], bool]:
         """Return roles of its arguments, the likeliest first; and whether their names tell them."""
         if self.variadic and not self.needed:
@@ -253,8 +248,8 @@ class _Signature:
         if count not in counts:
             count = max((n for n in counts if count <= n <= len(self.places)), default=0)
         roles_from_names = set(roles[:count]) - {""}
-        both, all_told = {"p", "q"} <= roles_from_names, {"p", "q", "h"} <= roles_from_names
-        if not count or (self.stepped and ((count == 2 and both) or (count == 4 and all_told))):
+        pq, pqh = {"p", "q"} <= roles_from_names, {"p", "q", "h"} <= roles_from_names
+        if not count or (self.stepped and ((count == 2 and pq) or (count == 4 and pqh))):
             raise self.wrong()
         # To a map p and q are alike.
         return list(_matching_orders(roles[:count], counts[count])), not self.stepped or count == 1
@@ -265,7 +260,7 @@ def _matching_orders(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, .
     fixed = [role if role in wanted and roles.count(role) == 1 else "" for role in roles]
     orders = sorted(set(permutations(wanted)), key=lambda x: (x != tuple(wanted), x))
     for order in orders:
-        if all(role in ("", one) for role, one in zip(fixed, order, strict=True)):
+        if all(role in ("", r) for role, r in zip(fixed, order, strict=True)):
             yield order
 
 
@@ -273,24 +268,6 @@ def _is_record(annotation: object) -> bool:
     return isinstance(annotation, type) and sorted(
         map(role_of, getattr(annotation, "_fields", ()))
     ) == ["p", "q"]
-
-
-def _layouts(
-    roles: tuple[str, ...], degrees: int, halves: list[tuple[str, str]] | None
-) -> Iterator[Layout]:
-    if "z" not in roles:
-        first = "p" if roles.index("p") < roles.index("q") else "q"
-        order = ("p", "q") if first == "p" else ("q", "p")
-        for shape, kind in shapes(degrees):
-            yield Layout(roles, order, shape, kind)
-        return
-    for order in halves or [("p", "q"), ("q", "p")]:
-        yield Layout(roles, order, (degrees,), "flat")
-        for shape, kind in shapes(degrees):
-            if kind == "array" and shape:
-                yield Layout(roles, order, shape, "rows")
-        for shape, kind in shapes(degrees):
-            yield Layout(roles, order, shape, "pair" if kind == "array" else "list")
 
 
 def _order(

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NoReturn, Protocol, TypeAlias, TypeVar
 
 from verify.errors import InputError
-from verify.integrators.tracing.number import TracedNumber, UntraceableError
+from verify.integrators.tracing.traced_number import TracedNumber, UntraceableError
 from verify.prose import Prose, prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
@@ -21,7 +21,7 @@ T = TypeVar("T")
 TIME_LIMIT = 60.0  # seconds for all of the user's code
 # Python drops what is raised within a finalizer or a callback of its garbage collector, and a bare
 # `except:` of the user's catches it: the alarm rings again after so many seconds.
-_AGAIN, _SOONEST = 1.0, 0.01
+_NEXT_ALARM, _FIRST_ALARM = 1.0, 0.01
 
 
 class StepError(Exception):
@@ -89,10 +89,10 @@ def limit_time(seconds: float, problem: str) -> Iterator[None]:
     It may stand in another one, whose time goes on. In other threads than the main one, and on
     systems without alarms, there is no limit.
     """
-    error, done = _OverTimeError(problem), False
+    error, has_ended = _OverTimeError(problem), False
 
     def late(*_: object) -> None:
-        if not done:  # it may be late for what has just ended
+        if not has_ended:  # it may be late for what has just ended
             raise error
 
     outer = signal.getitimer(signal.ITIMER_REAL)[0] if hasattr(signal, "getitimer") else 0.0
@@ -106,11 +106,11 @@ def limit_time(seconds: float, problem: str) -> Iterator[None]:
     start = time.perf_counter()
     try:
         # Sooner it could ring before what is done here has begun, where nobody would take it.
-        signal.setitimer(signal.ITIMER_REAL, max(seconds, _SOONEST), _AGAIN)
+        signal.setitimer(signal.ITIMER_REAL, max(seconds, _FIRST_ALARM), _NEXT_ALARM)
         yield
-        done = True
+        has_ended = True
     except _OverTimeError as raised:
-        done = True
+        has_ended = True
         if raised is not error:
             raise
         raise StepError(problem) from None
@@ -119,7 +119,7 @@ def limit_time(seconds: float, problem: str) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
         if outer:
             spent = time.perf_counter() - start
-            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _SOONEST), _AGAIN)
+            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _FIRST_ALARM), _NEXT_ALARM)
 
 
 def unless_it_fails(call: Callable[[], T]) -> T | None:
@@ -140,13 +140,13 @@ def lift_numbers(first: Theirs, result: Sequence[Theirs]) -> list[Theirs]:
     return numbers
 
 
-def why(error: Exception) -> Prose:
+def describe_error(error: Exception) -> Prose:
     """Describe an error that the user's code, or what we do with it, raised."""
     is_ours = isinstance(error, UntraceableError | StepError | InputError)
     return prose(error.args[0] if is_ours and error.args else last_line(error))
 
 
-def real(x: Theirs) -> float:
+def to_float(x: Theirs) -> float:
     if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, TracedNumber):
         raise StepError(f"it returns {'text' if isinstance(x, str) else type(x).__name__}")
     if isinstance(x, complex):

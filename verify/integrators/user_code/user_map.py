@@ -1,7 +1,7 @@
-"""A user's own step or map as it is called: z → z', in any number of degrees of freedom.
+"""A user's own step or map as it is called, z → z', and the type of the numbers that it takes.
 
 A step has an h, and perhaps a t; a map has neither. All calls of either go through here, in floats,
-in numbers of ours, or in those of another program.
+in numbers of ours, or in those of another program, whose types are told apart by their bits.
 """
 
 import math
@@ -10,10 +10,69 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from verify.integrators.places.place import Place
-from verify.integrators.user_code.layout import Layout, OfNumber
-from verify.integrators.user_code.number_type import DOUBLE, NumberType
-from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limit_call, real
+import gmpy2
+
+from verify.arithmetic.exact import fraction
+from verify.errors import unknown_name
+from verify.integrators.places.trial_places import TrialPlace
+from verify.integrators.user_code.layout import CallLayout, OfNumber
+from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limit_call, to_float
+
+
+@dataclass(frozen=True)
+class NumberType:
+    """`bits` of the significand. `parts`: doubles that one number is the sum of, or 1.
+
+    `declared`: what C calls it. `digits`: decimals that tell any two of them apart.
+    """
+
+    name: str
+    bits: int
+    declared: str
+    digits: int
+    parts: int = 1
+
+    @property
+    def declared_as(self) -> str:
+        """The name of the type in a sentence."""
+        return self.name if self.parts > 1 else self.declared
+
+    @property
+    def epsilon(self) -> float:
+        """The distance between 1 and the next number."""
+        return 2.0 ** (1 - self.bits)
+
+    def round_number(self, x: Fraction) -> Fraction:
+        """Return the nearest number of the type, but for its range."""
+        if self.parts > 1:
+            return sum(map(Fraction, two_doubles(x)), Fraction(0))
+        if self is DOUBLE:
+            return Fraction(float(x))
+        return fraction(gmpy2.mpfr(gmpy2.mpq(x), self.bits))
+
+
+def two_doubles(x: Fraction) -> tuple[float, float]:
+    """Return the nearest double, and that of the rest."""
+    # The nearest double, then the nearest one to what is left: their sum has at least 106 bits.
+    high = float(x)
+    return high, float(x - Fraction(high))
+
+
+DOUBLE = NumberType("double", 53, "double", 17)
+LONG_DOUBLE = NumberType("long-double", 64, "long double", 21)
+FLOAT128 = NumberType("float128", 113, "__float128", 36)
+DOUBLE_DOUBLE = NumberType("double-double", 106, "double", 33, parts=2)
+TYPES = {each.name: each for each in (DOUBLE, LONG_DOUBLE, FLOAT128, DOUBLE_DOUBLE)}
+
+
+def type_of(name: str) -> NumberType:
+    """Return the type of that name. Raises InputError for one that is not known."""
+    if name not in TYPES:
+        raise unknown_name(
+            "--type", name, TYPES, aliases={"quad": "float128", "binary128": "float128"}
+        )
+    return TYPES[name]
+
 
 State = tuple[float, ...]
 
@@ -30,7 +89,7 @@ class UserMap:
     """
 
     function: Callable[..., Theirs]
-    layout: Layout
+    layout: CallLayout
     names: tuple[str, ...]
     parameters: Mapping[str, Fraction] = field(default_factory=dict)
     limit: float = TIME_LIMIT
@@ -100,7 +159,7 @@ class UserMap:
 
     def evaluate(self, z: Sequence[float], h: float, t: float) -> State:
         """Return z' as floats. Raises StepError, also for what is not finite."""
-        state = tuple(map(real, self.call(self.function, z, h, t, float)))
+        state = tuple(map(to_float, self.call(self.function, z, h, t, float)))
         if not all(map(math.isfinite, state)):
             numbers = ", ".join(f"{x:g}" for x in state)
             raise StepError(f"it returns what is not finite ({numbers}){self.place(z, h)}")
@@ -135,13 +194,13 @@ class UserMap:
                 raise answer
         return [[Fraction(x) for half in answer for x in half] for answer in answers]
 
-    def at_place(self, place: Place, h: Fraction) -> State:
+    def at_place(self, place: TrialPlace, h: Fraction) -> State:
         """Return z' as floats of a step from there; as `evaluate`."""
         return self.evaluate([float(x) for x in place.z], float(h), float(place.t))
 
-    def entry(self, at: tuple[int, int]) -> str:
+    def entry(self, indices: tuple[int, int]) -> str:
         """Return the name of an entry of S, such as dp1∧dq1."""
-        return "∧".join(f"d{self.names[k]}" for k in at)
+        return "∧".join(f"d{self.names[k]}" for k in indices)
 
     def state(self, z: Sequence[float | Fraction]) -> str:
         """Format a state, for messages."""

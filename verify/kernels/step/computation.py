@@ -2,13 +2,13 @@
 program.
 
 It has z' − z, S = JᵀΩJ − Ω, det J − 1, det J the plain way, the tangent map, and W. In the plane S
-is ΔJ dp∧dq. S is written in closed form where the map has one, coefficient by coefficient of h, so
+is ΔJ dp∧dq. S is written in closed form if the map has one, coefficient by coefficient of h, so
 that nothing cancels in it; else from K = J − 1 as S = KᵀΩ + ΩK + KᵀΩK, which costs digits, since
 terms that cancel identically do so only in the sum. K comes from the step's own operations, one
 derivative after the other. Along an orbit M ← M + K M and W ← W + MᵀSM, with M before the step.
 
 It depends on the map, and on the requested quantities, but on no precision and on no number system
-beyond `Observed`. So it is built once for a map, and shared by the runs of it.
+beyond `StepRequest`. So it is built once for a map, and shared by the runs of it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,22 +19,26 @@ from itertools import combinations
 
 from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step.increments import increments
-from verify.kernels.step.pfaffian import Pfaffian, change_of_volume
-from verify.kernels.step.program import Evaluator, Program
-from verify.kernels.step.program_algebra import Dual, ProgramAlgebra, TangentAlgebra, Value
+from verify.kernels.step.evaluator import Evaluator, increments
+from verify.kernels.step.matrix_operations import (
+    Matrix,
+    Pfaffian,
+    Place,
+    change_of_volume,
+    defect_from_slopes,
+    multiply,
+)
+from verify.kernels.step.operations import StepProgram
+from verify.kernels.step.program_algebra import Dual, ProgramAlgebra, ProgramValue, TangentAlgebra
 from verify.kernels.step.tangent_map import Tangent
 from verify.observables.observable import Need
 from verify.schemes import get
 from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.step_map import StepMap
 
-Place = tuple[int, int]
-Matrix = list[list[int]]  # of indices
-
 
 @dataclass(frozen=True)
-class Observed:
+class StepRequest:
     """The quantities requested of a step: those that observables need, A − 1 of the tangent map, K
     = J − 1 itself.
 
@@ -58,14 +62,14 @@ class Observed:
 class Computation:
     """A step's program, and the places of its values in it.
 
-    `outputs`: the indices of the increments of the coordinates, as `dp`, of ΔJ, `dj`, and where
+    `outputs`: the indices of the increments of the coordinates, as `dp`, of ΔJ, `dj`, and if
     they are requested of det J, `det`, of H, `de`, and of M's and W's entries. `power` is the r of
     κ; `parameters` are those of H; `timed` says whether it depends on t, which is one more input
     then. `coordinates` name the state; `defect` has the requested entries of S, `slopes` K by rows,
-    where that is requested. The program is complete: nothing is added to it any more.
+    if that is requested. The program is complete: nothing is added to it any more.
     """
 
-    program: Program
+    program: StepProgram
     outputs: Mapping[str, int]
     tangent: Tangent | None
     power: int
@@ -77,7 +81,7 @@ class Computation:
 
     @property
     def matrix(self) -> list[str]:
-        """The names of M's entries, where it is carried."""
+        """The names of M's entries, if it is carried."""
         return [name[1:] for name in self.outputs if name.startswith("dm_")]
 
     @property
@@ -93,7 +97,7 @@ def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
 
 
 @lru_cache(maxsize=64)
-def computation_of(step_map: StepMap, request: Observed) -> Computation:
+def computation_of(step_map: StepMap, request: StepRequest) -> Computation:
     """Return the requested computation of a map; the last ones are cached."""
     return _Step(step_map, request).computation()
 
@@ -105,33 +109,33 @@ class _SharedPart:
     The program, to be copied, its inputs by their names, and the entries of S.
     """
 
-    program: Program
+    program: StepProgram
     inputs: Mapping[str, int]
     forms: Mapping[Place, int]
 
 
 @lru_cache(maxsize=64)
 def _shared_part(step_map: StepMap, pipelined: bool, scaled: bool, defect: bool) -> _SharedPart:
-    program, exact = Program(), step_map.hamiltonian
+    program, hamiltonian = StepProgram(), step_map.hamiltonian
     # A user's parameter may be named like anything; in the source it is x0, x1, ….
     # The source's names must not depend on the user's: a parameter may be called `v1` or `steps`.
-    arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(exact.symbols)}
+    arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(hamiltonian.symbols)}
     inputs = {n: program.input(a, static=True) for n, a in arguments.items()}
-    time = ("t",) if exact.time_dependent else ()
-    inputs |= {n: program.input(n, static=False) for n in (*exact.coordinates, *time)}
+    time = ("t",) if hamiltonian.time_dependent else ()
+    inputs |= {n: program.input(n, static=False) for n in (*hamiltonian.coordinates, *time)}
     kappa = program.input("kappa", static=True) if scaled else None
     closed_form = step_map.written_defect
     forms: dict[Place, int] = {}
     if defect and closed_form and not step_map.preserves_area:
         evaluator = Evaluator(program, step_map.ring, inputs, pipelined)
         power = common_power(step_map) if scaled else 0
-        for place in combinations(range(len(exact.coordinates)), 2):
+        for place in combinations(range(len(hamiltonian.coordinates)), 2):
             forms[place] = evaluator.evaluate(_sum_of(closed_form, [place], power), kappa)
     return _SharedPart(program, inputs, forms)
 
 
 def common_power(step_map: StepMap) -> int:
-    """Return the greatest r for which h^r divides all of S as it is written; 0 where it is not."""
+    """Return the greatest r for which h^r divides all of S as it is written; 0 if it is not."""
     closed_form = step_map.written_defect
     return (
         min(closed_form.forms or {}, default=0)
@@ -153,7 +157,7 @@ def _sum_of(closed_form: ClosedForm, places: Sequence[Place], power: int) -> Pol
 class _Step:
     """One computation while it is being written."""
 
-    def __init__(self, step_map: StepMap, request: Observed) -> None:
+    def __init__(self, step_map: StepMap, request: StepRequest) -> None:
         self.step_map, self.request = step_map, request
         needs_defect = request.defect
         shared = _shared_part(step_map, request.pipelined, request.scaled, needs_defect)
@@ -165,7 +169,7 @@ class _Step:
         self.points: set[int] = set()  # the coordinates of the points at which f is evaluated
 
     def computation(self) -> Computation:
-        request, program, exact = self.request, self.program, self.step_map.hamiltonian
+        request, program, hamiltonian = self.request, self.program, self.step_map.hamiltonian
         changes = self.changes
         outputs = {f"d{name}": index for name, index in zip(self.names, changes, strict=True)}
         outputs["dj"] = program.constant(Fraction(0))
@@ -187,23 +191,17 @@ class _Step:
         entries = self.forms if "symplectic" in request.needs else {}
         defect = {f"s_{a}_{b}": index for (a, b), index in entries.items()}
         return Computation(
-            program, outputs, tangent, self.power, exact.symbols, exact.time_dependent,
+            program, outputs, tangent, self.power, hamiltonian.symbols, hamiltonian.time_dependent,
             self.names, defect, self.slopes if request.slopes else [],
         )  # fmt: skip
 
     @cached_property
     def changes(self) -> list[int]:
         """The indices of z' − z."""
-        step, n = self.step_map, len(self.names) // 2
+        step = self.step_map
         if step.step is not None:
             return [x.index for x in self.changes_of_step]
-        moves = step.flat.increments
-        evaluator = self.evaluator()
-        pairs = [
-            increments(evaluator, step.ring, pair, self.inputs["h"])
-            for pair in zip(moves[:n], moves[n:], strict=True)
-        ]
-        return [pair[part] for part in (0, 1) for pair in pairs]
+        return increments(self.evaluator(), step.flat.increments, self.inputs["h"])
 
     @cached_property
     def slopes(self) -> Matrix:
@@ -216,8 +214,8 @@ class _Step:
         return [[evaluator.evaluate(x) for x in row] for row in rows]
 
     @cached_property
-    def changes_of_step(self) -> list[Value]:
-        """The values z' − z of a map that is defined by its step, with derivatives where K is
+    def changes_of_step(self) -> list[ProgramValue]:
+        """The values z' − z of a map that is defined by its step, with derivatives if K is
         needed."""
         request, field = self.request, self.step_map.field
         plain = ProgramAlgebra(self.program, field, self.inputs, request.pipelined)
@@ -235,31 +233,12 @@ class _Step:
     # -- S and what follows from it -----------------------------------------------------------
 
     def from_slopes(self) -> dict[Place, int]:
-        """Return S = KᵀΩ + ΩK + KᵀΩK, or 2^s times it."""
-        program, slopes = self.program, self.slopes
-        n, entries = len(self.names) // 2, {}
-        add, mul, neg = program.add, program.mul, program.neg
-        for a, b in combinations(range(2 * n), 2):
-            total = program.constant(Fraction(0))
-            for i in range(n):
-                u, v = slopes[i], slopes[n + i]
-                # du∧dq + dp∧dv at ab, and du∧dv
-                if b == n + i:
-                    total = add(total, u[a])
-                if a == n + i:
-                    total = add(total, neg(u[b]))
-                if a == i:
-                    total = add(total, v[b])
-                if b == i:
-                    total = add(total, neg(v[a]))
-                # K is O(h), so S is evaluated from K and not as JᵀΩJ − Ω, where entries near 1
-                # would cancel.
-                total = add(total, add(mul(u[a], v[b]), neg(mul(u[b], v[a]))))
-            entries[a, b] = total
-        if self.request.scaled:
-            kappa = program.input("kappa", static=True)
-            return {place: mul(kappa, index) for place, index in entries.items()}
-        return entries
+        """Return S from K, or 2^s times it."""
+        entries = defect_from_slopes(self.program, self.slopes)
+        if not self.request.scaled:
+            return entries
+        kappa = self.program.input("kappa", static=True)
+        return {place: self.program.mul(kappa, index) for place, index in entries.items()}
 
     def volume(self) -> int:
         """Return det J − 1, or 2^s times it."""
@@ -303,31 +282,18 @@ class _Step:
     def increments_of_matrices(self) -> dict[str, int]:
         """Return the increments of M and of W."""
         program, size = self.program, len(self.names)
-        every = range(size)
-        matrix_m = [[program.input(f"m_{a}_{b}", static=False) for b in every] for a in every]
-        change_m = _product(program, self.slopes, matrix_m)
-        outputs = {f"dm_{a}_{b}": change_m[a][b] for a in every for b in every}
-        matrix = [[program.constant(Fraction(0))] * size for _ in every]
+        indices = range(size)
+        matrix_m = [[program.input(f"m_{a}_{b}", static=False) for b in indices] for a in indices]
+        change_m = multiply(program, self.slopes, matrix_m)
+        outputs = {f"dm_{a}_{b}": change_m[a][b] for a in indices for b in indices}
+        matrix = [[program.constant(Fraction(0))] * size for _ in indices]
         for (a, b), entry in self.forms.items():
             matrix[a][b], matrix[b][a] = entry, program.neg(entry)
         # W ← W + MᵀSM reads M before the step: the increment of M is applied after it.
-        right = _product(program, matrix, matrix_m)
-        for a, b in combinations(every, 2):
+        right = multiply(program, matrix, matrix_m)
+        for a, b in combinations(indices, 2):
             total = program.constant(Fraction(0))
-            for c in every:
+            for c in indices:
                 total = program.add(total, program.mul(matrix_m[c][a], right[c][b]))
             outputs[f"dw_{a}_{b}"] = total
         return outputs
-
-
-def _product(program: Program, x: Matrix, y: Matrix) -> Matrix:
-    columns, rows = list(zip(*y, strict=True)), []
-    for row in x:
-        line = []
-        for column in columns:
-            total = program.constant(Fraction(0))
-            for a, b in zip(row, column, strict=True):
-                total = program.add(total, program.mul(a, b))
-            line.append(total)
-        rows.append(line)
-    return rows

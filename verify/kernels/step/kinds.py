@@ -42,7 +42,7 @@ class Input(_OfNone):
 
 
 @dataclass(frozen=True, slots=True)
-class Constant(_OfNone):
+class RationalConstant(_OfNone):
     """A rational number."""
 
     kind: ClassVar[Literal["const"]] = "const"
@@ -56,21 +56,21 @@ class Pi(_OfNone):
     kind: ClassVar[Literal["pi"]] = "pi"
 
 
-class Sum(_OfTwo):
+class Addition(_OfTwo):
     """x + y."""
 
     __slots__ = ()
     kind: ClassVar[Literal["add"]] = "add"
 
 
-class Difference(_OfTwo):
+class Subtraction(_OfTwo):
     """x − y."""
 
     __slots__ = ()
     kind: ClassVar[Literal["sub"]] = "sub"
 
 
-class Product(_OfTwo):
+class Multiplication(_OfTwo):
     """x y."""
 
     __slots__ = ()
@@ -78,7 +78,7 @@ class Product(_OfTwo):
     cost = 4
 
 
-class Opposite(_OfOne):
+class Negation(_OfOne):
     """−x."""
 
     __slots__ = ()
@@ -129,9 +129,9 @@ class Solving:
     cost: ClassVar[int] = 40
 
 
-Unary: TypeAlias = Opposite | Inverse | Root | Call
-Binary: TypeAlias = Sum | Difference | Product
-Op: TypeAlias = Input | Constant | Pi | Unary | Binary | Solving | Solution
+Unary: TypeAlias = Negation | Inverse | Root | Call
+Binary: TypeAlias = Addition | Subtraction | Multiplication
+Op: TypeAlias = Input | RationalConstant | Pi | Unary | Binary | Solving | Solution
 
 
 def may_leave_range(op: Op) -> bool:

@@ -1,5 +1,21 @@
-"""A program's operations → lines of source, separated into those before the loop and those in
-it."""
+"""A program's operations → lines of source, those before the loop over steps and those in it.
+
+Unknowns that are defined by equations are computed by Newton's method, in a loop of their own. It
+goes on until an update is no more than the last places of the p or q that it is added to, or would
+be followed by such a one. Each of Newton's updates is a multiple of the square of the one before;
+the last two give the multiple, so that after one of `size` the next would have the size
+size·(size/last)². That is believed once half of the digits are settled. An update that is no
+smaller than the one before is only rounding, if half of the digits are settled, and ends it too.
+
+The solution sought is the one that goes over into 0 with h. On the way there ∂F/∂Z, which is the
+unit matrix at h = 0, does not become singular; so a solution where its determinant is not positive
+is another one. If that happens, an update grows out of all proportion, an unknown leaves the
+arithmetic's range, or 25 updates do not settle, the method starts once more, at 0. If that fails
+too the unknowns are set to 0/0, which ends the run at that step. (If h is so large that there are
+several solutions with a positive determinant, it may be any of them.)
+"""
+
+from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
@@ -7,13 +23,14 @@ from fractions import Fraction
 
 import gmpy2
 
-from verify.arithmetic.number import Number
-from verify.kernels.step import newton
-from verify.kernels.step.kinds import Call, Input, Inverse, Opposite, Pi, Root, Solution, Solving
-from verify.kernels.step.operations import Loop, Program
+from verify.arithmetic.number_system import SystemNumber
+from verify.kernels.step.kinds import Call, Input, Inverse, Negation, Pi, Root, Solution, Solving
+from verify.kernels.step.operations import NewtonLoop, StepProgram
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _GUARD = 64  # bits of a given root beyond those of the arithmetic
+MOST_UPDATES = 25  # if h is small 2 … 4 are needed for 17 digits, 5 … 8 for 200
+_ATTEMPTS = 2
 
 
 @dataclass
@@ -21,12 +38,12 @@ class Lowering:
     """Writes a program's values as variables `prefix` + index.
 
     `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
-    where it has `cos_sin` or `sin_cos`. Where it has no `root`, the root of a number is a number
+    if it has `cos_sin` or `sin_cos`. If it has no `root`, the root of a number is a number
     too, known to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
     `verify.arithmetic.number_system`).
     """
 
-    program: Program
+    program: StepProgram
     functions: Collection[str]
     prefix: str = "v"
     bits: int = 0
@@ -55,9 +72,9 @@ class Lowering:
             elif op.kind == "const" or index in self._already_written:
                 continue
             elif op.kind == "loop":
-                before, inside = self._newton(program.loops[op.number])
-                static += before
-                dynamic += inside
+                loop = LoopSource(program.loops[op.number], self)
+                static += loop.static
+                dynamic += loop.lines()
                 continue
             else:
                 line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
@@ -65,10 +82,10 @@ class Lowering:
         return static, dynamic
 
     def _pair(self, index: int, live: Sequence[int]) -> str | None:
-        """Write cos and sin of one argument as one call, where the arithmetic has that."""
+        """Write cos and sin of one argument as one call, if the arithmetic has that."""
         op = self.program.ops[index]
-        both = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
-        names = both.split("_") if both else ()
+        joint_name = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
+        names = joint_name.split("_") if joint_name else ()
         if op.kind != "call" or op.function.name not in names:
             return None
         calls = {
@@ -76,34 +93,19 @@ class Lowering:
             for i in live
             if isinstance(other := self.program.ops[i], Call) and other.args == op.args
         }
-        # A combined call pays only where both values are needed.
+        # A combined call pays only if both values are needed.
         if not calls.keys() >= {*names}:
             return None
         self._already_written |= {calls[name] for name in names}
         first, second = (self.name(calls[name]) for name in names)
-        return f"{first}, {second} = {both}({self.name(op.args[0])})"
+        return f"{first}, {second} = {joint_name}({self.name(op.args[0])})"
 
-    def inner(self, loop: Loop) -> "Lowering":
+    def inner(self, loop: NewtonLoop) -> Lowering:
         """Return the lowering of an inner loop's program, with a prefix of its own."""
         return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
 
-    def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
-        """Return the lines before the outer loop, and the inner loop."""
-        inner = self.inner(loop)
-        static, turn = inner.lines([*loop.updates, *loop.determinants])
-        loop_source = newton.Source(
-            prefix=f"u{loop.number}_",
-            starts=[self.name(index) for index in loop.starts],
-            updates=[inner.name(index) for index in loop.updates],
-            added_to=[self.name(index) for index in loop.added_to],
-            determinants=[inner.name(index) for index in loop.determinants],
-            turn=turn,
-            guard=self.guard,
-        )
-        return static, loop_source.lines()
-
     def function(self, index: int) -> str | None:
-        """Return the name of the function that an operation calls, where it calls one."""
+        """Return the name of the function that an operation calls, if it calls one."""
         op = self.program.ops[index]
         if op.kind == "root" and self._radicand(op) is None:
             return "sqrt" if op.degree == 2 else "root"
@@ -121,7 +123,7 @@ class Lowering:
         """Return True if equations are solved for the roots."""
         return bool(self.loops(self.live(roots)))
 
-    def loops(self, live: Sequence[int]) -> list[Loop]:
+    def loops(self, live: Sequence[int]) -> list[NewtonLoop]:
         """Return the inner loops among live operations, in their order."""
         ops = (self.program.ops[index] for index in live)
         return [self.program.loops[op.number] for op in ops if op.kind == "loop"]
@@ -134,7 +136,7 @@ class Lowering:
                 return name
             case Pi():
                 return "pi"
-            case Opposite():
+            case Negation():
                 return f"-{args[0]}"
             case Inverse():
                 return f"1 / {args[0]}"
@@ -149,7 +151,7 @@ class Lowering:
         return f"{self.function(index)}({args[0]})"
 
     def _radicand(self, op: Root) -> Fraction | None:
-        """Return the number whose root this is, where there is one and the arithmetic has no
+        """Return the number whose root this is, if there is one and the arithmetic has no
         function for the root."""
         inner = self.program.ops[op.args[0]]
         if op.degree == 2 or "root" in self.functions or inner.kind != "const":
@@ -157,13 +159,13 @@ class Lowering:
         return inner.value if inner.value > 0 else None
 
     def named_constants(
-        self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None
-    ) -> dict[str, Number]:
+        self, number: Callable[[Fraction], SystemNumber], roots: Sequence[int] | None = None
+    ) -> dict[str, SystemNumber]:
         """Return the constants, and roots of numbers, as numbers by their names in the source.
 
         `roots`: those alone that these need.
         """
-        program, constants = self.program, dict[str, Number]()
+        program, constants = self.program, dict[str, SystemNumber]()
         live = range(len(program.ops)) if roots is None else self.live(roots)
         for index in live:
             op = program.ops[index]
@@ -184,3 +186,110 @@ def _root(x: Fraction, degree: int, bits: int) -> Fraction:
     # integer division by less than one more.
     scaled = (x.numerator << degree * bits) // x.denominator
     return Fraction(int(gmpy2.iroot(gmpy2.mpz(scaled), degree)[0]), 1 << bits)
+
+
+def newton_constants(
+    bits: int, number: Callable[[Fraction], SystemNumber]
+) -> dict[str, SystemNumber]:
+    """Return the numbers that the loops compare with, by their names in the source, for numbers of
+    so many bits."""
+    return {
+        "newton_zero": number(Fraction(0)),
+        "newton_last": number(Fraction(1, 2 ** (bits + 1))),
+        "newton_half": number(Fraction(1, 2 ** (bits // 2))),
+        "newton_most": number(Fraction(2**16)),
+    }
+
+
+class LoopSource:
+    """The lines of one of Newton's loops, whose unknowns are `u<number>_0`, `u<number>_1`, ….
+
+    `static`: those before the loop over steps. `turn`: those that compute the updates, to be
+    subtracted, and the determinants, whose product is that of ∂F/∂Z.
+    """
+
+    def __init__(self, loop: NewtonLoop, outer: Lowering) -> None:
+        inner, self.prefix = outer.inner(loop), f"u{loop.number}_"
+        self.unknowns = [f"{self.prefix}{k}" for k in range(len(loop.updates))]
+        self.starts, self.added_to = (
+            list(map(outer.name, x)) for x in (loop.starts, loop.added_to)
+        )
+        self.updates = list(map(inner.name, loop.updates))
+        self.determinants = list(map(inner.name, loop.determinants))
+        self.static, self.turn = inner.lines([*loop.updates, *loop.determinants])
+        self.guard = outer.guard
+
+    def lines(self) -> list[str]:
+        """Return the statements of both attempts."""
+        converged = f"{self.prefix}found"
+        pairs = zip(self.unknowns, self.starts, strict=True)
+        positive = " * ".join(self.determinants)
+        attempt = [
+            f"{converged} = 0",
+            f"for turn in range({MOST_UPDATES}):",
+            *(f"    {line}" for line in self._iteration_lines(f"{converged} = 1")),
+            f"if {converged} == 1 and {positive} > newton_zero: break",
+            f"if attempt == {_ATTEMPTS - 1}:",
+            *(f"    {u} = ({u} - {u}) / ({u} - {u})" for u in self.unknowns),
+            "    break",
+            *(f"{u} = newton_zero" for u in self.unknowns),
+        ]
+        # The first values of these are never read: they give them a type.
+        names = [self.prefix + n for n in ("size", "last", "first", "ratio")]
+        names += [x for x in self.determinants if any(s.startswith(f"{x} =") for s in self.turn)]
+        return [
+            *(f"{u} = {x}" for u, x in pairs),
+            f"{' = '.join(names)} = newton_zero",
+            f"for attempt in range({_ATTEMPTS}):",
+            *(f"    {line}" for line in attempt),
+        ]
+
+    def _iteration_lines(self, stop: str) -> list[str]:
+        """Return the statements of one iteration; `stop` is run if it has converged."""
+        size, last, first, ratio = (self.prefix + n for n in ("size", "last", "first", "ratio"))
+        pairs = zip(self.unknowns, self.updates, strict=True)
+        sizes, widths, small = self._by_component()
+        whole = " + ".join(width for width, _ in widths)
+        end = [f"    {stop}", "    break"]
+        return [
+            *self._guard_lines(),
+            *self.turn,
+            *(f"{u} = {u} - {d}" for u, d in pairs),
+            *(f"{name} = {sum_}" for name, sum_ in (*sizes, *widths)),
+            f"{size} = {' + '.join(name for name, _ in sizes)}",
+            f"if {small('')}:",
+            *end,
+            # The first update sets the scale; one that is 2^16 times as large has diverged.
+            f"if turn == 0: {first} = {size} + {whole}",
+            f"if turn > 0 and {size} <= newton_half * ({whole}):",
+            f"    {ratio} = {size} / {last}",
+            f"    if {size} >= {last} or {small(f' * {ratio} * {ratio}')}:",
+            *(f"    {line}" for line in end),
+            f"if not {size} <= newton_most * {first}: break",
+            f"{last} = {size}",
+        ]
+
+    def _by_component(
+        self,
+    ) -> tuple[list[tuple[str, str]], list[tuple[str, str]], Callable[[str], str]]:
+        """Return, for p and for q, names and sums of the sizes of the updates and of the values
+        they are added to; and the condition that all sizes, times a factor, are small."""
+        sizes, widths = [], []
+        for part, base in enumerate(dict.fromkeys(self.added_to)):
+            members = [k for k, name in enumerate(self.added_to) if name == base]
+            total = " + ".join(f"abs({self.updates[k]})" for k in members)
+            sizes.append((f"{self.prefix}by{part}", total))
+            total = " + ".join(f"abs({x})" for x in (base, *(self.unknowns[k] for k in members)))
+            widths.append((f"{self.prefix}of{part}", total))
+
+        def small(factor: str) -> str:
+            pairs = zip(sizes, widths, strict=True)
+            return " and ".join(f"{x}{factor} <= newton_last * {w}" for (x, _), (w, _) in pairs)
+
+        return sizes, widths, small
+
+    def _guard_lines(self) -> list[str]:
+        if self.guard is None:
+            return []
+        inside = " and ".join(self.guard.format(x=u) for u in self.unknowns)
+        return [f"if not ({inside}): break"]

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 from verify.functions.function import Function
 from verify.kernels.step import kinds
-from verify.kernels.step.kinds import Op as Op
+from verify.kernels.step.kinds import Op
 
 _SPECIAL = (0, 1, -1)  # constants that products and sums are shorter with
 
 
 @dataclass(frozen=True)
-class Loop:
+class NewtonLoop:
     """Newton's method: x_k ← x_k − `updates`[k] in `inner`, from the outer program's `starts`[k].
 
     `determinants`: of the blocks of the matrix that it divides by. `added_to`[k] is the value that
@@ -30,7 +30,7 @@ class Loop:
     """
 
     number: int
-    inner: "Program"
+    inner: "StepProgram"
     updates: tuple[int, ...]
     starts: tuple[int, ...]
     added_to: tuple[int, ...]
@@ -57,38 +57,39 @@ class Tail(NamedTuple):
     depth: list[int]
     keys: list[Key]
     indices: list[int]
-    loops: list[Loop]
+    loops: list[NewtonLoop]
     cost: int
 
 
-class Program:
+class StepProgram:
     """A growing list of operations; each method returns the index of its result.
 
     `cost`: what the loop's operations cost; a product is worth several sums.
     """
 
     def __init__(self) -> None:
-        self.loops: list[Loop] = []
+        self.loops: list[NewtonLoop] = []
         self.ops: list[Op] = []
         self.static: list[bool] = []
         self.depth: list[int] = []
         self.cost = 0
         # Results by their operation, as numbers and texts, since the hash of a Fraction takes long.
         self._index_of: dict[Key, int] = {}
-        self._keys: list[Key] = []  # of `_known`, in their order
+        self._keys: list[Key] = []  # of `_index_of`, in their order
         self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
         self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
-    def copy(self) -> "Program":
+    def copy(self) -> "StepProgram":
         """Return a copy that grows on its own from here."""
-        other = Program()
-        other.put_back(Tail(self.ops, self.static, self.depth, self._keys,
+        program = StepProgram()
+        program.put_back(Tail(self.ops, self.static, self.depth, self._keys,
                             list(self._index_of.values()), self.loops, self.cost))  # fmt: skip
-        return other
+        return program
 
     # -- trials -------------------------------------------------------------------------------
 
     def mark(self) -> Mark:
+        """Return the present end, for `cut`."""
         return Mark(len(self.ops), len(self._keys), len(self.loops), self.cost)
 
     def cut(self, mark: Mark) -> Tail:
@@ -156,9 +157,9 @@ class Program:
 
     def _binary(self, kind: type[kinds.Binary], x: int, y: int) -> int:
         key = kind, x, y
-        index_found = self._index_of.get(key)
-        if index_found is not None:
-            return index_found
+        existing = self._index_of.get(key)
+        if existing is not None:
+            return existing
         index, depth = len(self.ops), self.depth
         self._index_of[key] = index
         self._keys.append(key)
@@ -187,33 +188,33 @@ class Program:
         existing = self._index_of.get(key)
         if existing is not None:
             return existing
-        index = self._new(key, kinds.Constant(Fraction(numerator, denominator)), True)
+        index = self._new(key, kinds.RationalConstant(Fraction(numerator, denominator)), True)
         if denominator == 1 and numerator in _SPECIAL:
             self._special[index] = numerator
         return index
 
     def pi(self) -> int:
-        """π."""
+        """Return π."""
         existing = self._index_of.get(("pi",))
         return self._new(("pi",), kinds.Pi(), True) if existing is None else existing
 
     def inverse(self, x: int) -> int:
-        """1/x."""
+        """Return 1/x."""
         return self._unary(("inverse", x), kinds.Inverse((x,)))
 
     def root(self, x: int, degree: int) -> int:
-        """x^(1/degree)."""
+        """Return x^(1/degree)."""
         return self._unary(("root", degree, x), kinds.Root((x,), degree))
 
     def call(self, function: Function, x: int) -> int:
-        """A function of x."""
+        """Return the function of x."""
         return self._unary((function.name, x), kinds.Call((x,), function))
 
     def _unary(self, key: Key, op: kinds.Unary) -> int:
         existing = self._index_of.get(key)
         return self._new(key, op, self.static[op.args[0]]) if existing is None else existing
 
-    def solve(self, loop: Loop, more_read: Sequence[int]) -> list[int]:
+    def solve(self, loop: NewtonLoop, more_read: Sequence[int]) -> list[int]:
         """Return the values that a loop computes; `more_read`: the other values of this program
         that it reads."""
         self.loops.append(loop)
@@ -225,6 +226,7 @@ class Program:
         ]
 
     def is_constant(self, x: int, value: int) -> bool:
+        """Return True if that is the index of this integer."""
         return self._index_of.get((value, 1)) == x
 
     def neg(self, x: int) -> int:
@@ -233,7 +235,7 @@ class Program:
             return self.quotient(-op.value.numerator, op.value.denominator)
         if op.kind == "neg":
             return op.args[0]
-        return self._unary(("neg", x), kinds.Opposite((x,)))
+        return self._unary(("neg", x), kinds.Negation((x,)))
 
     # Identities with 0, ±1 and signs are applied when an operation is added, so that equal values
     # get one index whichever way they were written.
@@ -244,11 +246,11 @@ class Program:
         if y in special and special[y] == 0:
             return x
         if ops[y].kind == "neg":
-            return self._binary(kinds.Difference, x, ops[y].args[0])
+            return self._binary(kinds.Subtraction, x, ops[y].args[0])
         if ops[x].kind == "neg":
-            return self._binary(kinds.Difference, y, ops[x].args[0])
+            return self._binary(kinds.Subtraction, y, ops[x].args[0])
         # Commutative operations are stored with sorted arguments, so that x + y and y + x are one.
-        return self._binary(kinds.Sum, x, y) if x <= y else self._binary(kinds.Sum, y, x)
+        return self._binary(kinds.Addition, x, y) if x <= y else self._binary(kinds.Addition, y, x)
 
     def mul(self, x: int, y: int) -> int:
         special, ops, static = self._special, self.ops, self.static
@@ -262,7 +264,11 @@ class Program:
             return self._multiple(special[y], y, x)
         if ops[y].kind == "neg" and not static[y]:
             return self.neg(self.mul(ops[y].args[0], x))
-        return self._binary(kinds.Product, x, y) if x <= y else self._binary(kinds.Product, y, x)
+        return (
+            self._binary(kinds.Multiplication, x, y)
+            if x <= y
+            else self._binary(kinds.Multiplication, y, x)
+        )
 
     def _multiple(self, n: int, constant: int, x: int) -> int:
         """Return n x for n = 0, 1, −1, which is a constant of that index."""
@@ -275,6 +281,7 @@ class Program:
         return _combine_repeatedly(self.add, x, n)
 
     def power(self, x: int, n: int) -> int:
+        """Return xⁿ, n ≥ 0."""
         return _combine_repeatedly(self.mul, x, n) if n else self.quotient(1, 1)
 
 

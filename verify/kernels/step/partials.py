@@ -6,10 +6,12 @@ as derivatives, and no operation is written twice, so that they cost little besi
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.kernels.step.operations import Op, Program
-from verify.kernels.step.slopes import slope_of
+from verify.functions import by_name
+from verify.kernels.step.kinds import Call, Op
+from verify.kernels.step.operations import StepProgram
 
 Gradient = Mapping[int, int]  # by input; zeros are left out
 
@@ -17,7 +19,7 @@ Gradient = Mapping[int, int]  # by input; zeros are left out
 class Partials:
     """∂/∂x of a program's values, for inputs x given by their indices."""
 
-    def __init__(self, program: Program, inputs: Sequence[int]) -> None:
+    def __init__(self, program: StepProgram, inputs: Sequence[int]) -> None:
         self.program, self.inputs = program, tuple(inputs)
         self._gradients: dict[int, Gradient] = {}
 
@@ -83,3 +85,42 @@ class Partials:
         # Written in y, as x may be an inner value that nothing else needs.
         below = program.mul(program.quotient(degree, 1), program.power(index, degree - 1))
         return program.inverse(below)
+
+
+def slope_of(program: StepProgram, call: Call, index: int) -> int:
+    """Return the index of f'(x), where y = f(x) is the value of that index."""
+
+    def apply(name: str, x: Operand) -> Operand:
+        if name == "inverse":
+            return Operand(program, program.inverse(x.index))
+        if name == "sqrt":
+            return Operand(program, program.root(x.index, 2))
+        return Operand(program, program.call(by_name()[name], x.index))
+
+    # The derivative may use the function's value, which the program already has.
+    x, y = Operand(program, call.args[0]), Operand(program, index)
+    slope: Operand = call.function.derivative(x, y, apply)
+    return slope.index
+
+
+@dataclass(frozen=True, eq=False)
+class Operand:
+    """A program's value, by its index, with + − * that are written into the program."""
+
+    program: StepProgram
+    index: int
+
+    def _at(self, index: int) -> "Operand":
+        return Operand(self.program, index)
+
+    def __neg__(self) -> "Operand":
+        return self._at(self.program.neg(self.index))
+
+    def __mul__(self, other: "Operand") -> "Operand":
+        return self._at(self.program.mul(self.index, other.index))
+
+    def __radd__(self, number: int) -> "Operand":
+        return self._at(self.program.add(self.program.quotient(number, 1), self.index))
+
+    def __rsub__(self, number: int) -> "Operand":
+        return number + -self

@@ -4,7 +4,7 @@ See `verify.schemes.steps.step_algebra`; a value is an operation of a program. E
 by Newton's method, with derivatives taken in the loop's own program.
 
 Derivatives are taken forwards, operation by operation of the step. Those of f at a stage are
-elements of H's ring, evaluated together with f itself, so that they share its parts; where
+elements of H's ring, evaluated together with f itself, so that they share its parts; if
 equations are solved, Z = R(Z, z), they are ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
 """
 
@@ -17,24 +17,24 @@ from typing import Any
 
 from verify.algebra.ring import Poly
 from verify.hamiltonians.canonical_field import CanonicalField
-from verify.kernels.step.increments import increments
-from verify.kernels.step.operations import Loop, Program
-from verify.kernels.step.program import Evaluator
+from verify.kernels.step.evaluator import Evaluator, increments
+from verify.kernels.step.matrix_operations import eliminate, less_one
+from verify.kernels.step.operations import NewtonLoop, StepProgram
 from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class Value:
+class ProgramValue:
     """An operation, by its index, of the program that it belongs to."""
 
-    program: Program
+    program: StepProgram
     index: int
 
 
 @dataclass(frozen=True, eq=False)
-class Dual(Value):
+class Dual(ProgramValue):
     """A value with its derivatives, as indices in the program, and the algebra that it belongs
     to."""
 
@@ -42,7 +42,7 @@ class Dual(Value):
     algebra: TangentAlgebra
 
 
-class ProgramAlgebra(StepAlgebra[Value]):
+class ProgramAlgebra(StepAlgebra[ProgramValue]):
     """Writes into `program`; `inputs` has the indices of h, the coordinates, t, the parameters.
 
     `outer`: the algebra whose values a loop's program takes over. `points`: the coordinates of all
@@ -51,7 +51,7 @@ class ProgramAlgebra(StepAlgebra[Value]):
 
     def __init__(
         self,
-        program: Program,
+        program: StepProgram,
         field: CanonicalField,
         inputs: Mapping[str, int],
         pipelined: bool,
@@ -64,28 +64,26 @@ class ProgramAlgebra(StepAlgebra[Value]):
         )
 
     @property
-    def nothing(self) -> Value:
+    def nothing(self) -> ProgramValue:
         return self.value(self.program.constant(Fraction(0)))
 
     @property
     def size(self) -> int:
         return len(self.field.names)
 
-    def along_flow(self, eta: int) -> list[Value]:
-        n, evaluator, moves = self.size // 2, self.evaluator(), self.field.flow_changes(eta)
-        pairs = [
-            increments(evaluator, self.field.ring, pair, self.inputs["h"])
-            for pair in zip(moves[:n], moves[n:], strict=True)
-        ]
-        return [self.value(pair[part]) for part in (0, 1) for pair in pairs]
+    def along_flow(self, eta: int) -> list[ProgramValue]:
+        moves = self.field.flow_changes(eta)
+        return list(map(self.value, increments(self.evaluator(), moves, self.inputs["h"])))
 
-    def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Value]:
+    def slopes(
+        self, changes: Sequence[ProgramValue], clock: Number, places: Sequence[int]
+    ) -> list[ProgramValue]:
         evaluator = self.evaluator_at(changes, clock)
         return [self.value(evaluator.evaluate(self.field.slopes[k])) for k in places]
 
     def shear(
-        self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
-    ) -> list[Value]:
+        self, changes: Sequence[ProgramValue], size: Number, clock: Number, places: Sequence[int]
+    ) -> list[ProgramValue]:
         """Write the shear with h and the size in the coefficients of f, which are computed once."""
         evaluator, result = self.evaluator_at(changes, clock), list(changes)
         for k, move in zip(places, self.field.shears(size, places), strict=True):
@@ -93,7 +91,7 @@ class ProgramAlgebra(StepAlgebra[Value]):
             result[k] = self.value(total)
         return result
 
-    def evaluator_at(self, changes: Sequence[Value], clock: Number) -> Evaluator:
+    def evaluator_at(self, changes: Sequence[ProgramValue], clock: Number) -> Evaluator:
         """Return an evaluator of ring elements at z + changes, and at t + clock h."""
         program, inputs = self.program, dict(self.inputs)
         for name, change in zip(self.field.names, changes, strict=True):
@@ -104,20 +102,22 @@ class ProgramAlgebra(StepAlgebra[Value]):
             inputs["t"] = program.add(inputs["t"], late)
         return Evaluator(program, self.field.ring, inputs, self.pipelined)
 
-    def move(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Value:
+    def move(
+        self, change: ProgramValue, weights: Sequence[Number], slopes: Sequence[ProgramValue]
+    ) -> ProgramValue:
         program, evaluator = self.program, self.evaluator()
         shares = [program.mul(self.inputs["h"], self._coefficient(w)) for w in weights]
         move = evaluator.combination(shares, [self.local_index(x) for x in slopes])
         return self.value(program.add(self.local_index(change), move))
 
-    def add_share(self, x: Value, y: Value, share: Fraction) -> Value:
+    def add_share(self, x: ProgramValue, y: ProgramValue, share: Fraction) -> ProgramValue:
         program = self.program
         part = program.mul(program.constant(share), self.local_index(y))
         return self.value(program.add(self.local_index(x), part))
 
-    def solve(self, count: int, right: Right) -> list[Value]:
+    def solve(self, count: int, right: Right) -> list[ProgramValue]:
         """Solve by Newton's method, starting from the right side at 0."""
-        outer, number, inner = self.program, len(self.program.loops), Program()
+        outer, number, inner = self.program, len(self.program.loops), StepProgram()
         starts = [self.local_index(x) for x in right(self, [self.nothing] * count)]
         unknowns = [inner.input(f"u{number}_{k}", static=False) for k in range(count)]
         algebra = ProgramAlgebra(inner, self.field, self.inputs, self.pipelined, self)
@@ -125,21 +125,21 @@ class ProgramAlgebra(StepAlgebra[Value]):
         sides = tangents.read_right_side(right, [algebra.value(x) for x in unknowns])
         residuals = [inner.add(x, inner.neg(y.index)) for x, y in zip(unknowns, sides, strict=True)]
         # F(Z) = Z − R(Z) has the derivative 1 − ∂R/∂Z, by which the residual is divided.
-        matrix = _less_one(inner, [side.gradient for side in sides])
+        matrix = less_one(inner, [side.gradient for side in sides])
         updates, pivots = eliminate(inner, matrix, [[x] for x in residuals])
         names = self.field.names
         # Unknown k is a change of coordinate k mod 2n, whose size decides which update is small.
         scale = [self.inputs[names[k % self.size]] for k in range(count)]
         steps = [x for (x,) in updates]
-        loop = Loop(number, inner, *map(tuple, (steps, starts, scale, pivots)))
+        loop = NewtonLoop(number, inner, *map(tuple, (steps, starts, scale, pivots)))
         return [self.value(index) for index in outer.solve(loop, sorted(algebra.outer_indices))]
 
     # -- values -------------------------------------------------------------------------------
 
-    def value(self, index: int) -> Value:
-        return Value(self.program, index)
+    def value(self, index: int) -> ProgramValue:
+        return ProgramValue(self.program, index)
 
-    def local_index(self, x: Value) -> int:
+    def local_index(self, x: ProgramValue) -> int:
         """Return a value's index; one of the outer program becomes an input of the loop."""
         return x.index if x.program is self.program else self._take_over(x.index)
 
@@ -162,7 +162,7 @@ class ProgramAlgebra(StepAlgebra[Value]):
 
 
 class TangentAlgebra(StepAlgebra[Dual]):
-    """The algebra with derivatives, by the coordinates first, where `outer` is none and they move,
+    """The algebra with derivatives, by the coordinates first, if `outer` is none and they move,
     then by `unknowns` that are seeds. In a loop's program all values but the unknowns are held
     constant."""
 
@@ -188,7 +188,7 @@ class TangentAlgebra(StepAlgebra[Dual]):
     def size(self) -> int:
         return self.plain.size
 
-    def read_right_side(self, right: Right, unknowns: Sequence[Value]) -> list[Dual]:
+    def read_right_side(self, right: Right, unknowns: Sequence[ProgramValue]) -> list[Dual]:
         """Return the right side at these unknowns, with its derivatives by them too."""
         seeds = []
         for k, x in enumerate(unknowns):
@@ -206,7 +206,9 @@ class TangentAlgebra(StepAlgebra[Dual]):
             for value, row in zip(values, rows, strict=True)
         ]
 
-    def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Dual]:
+    def slopes(
+        self, changes: Sequence[ProgramValue], clock: Number, places: Sequence[int]
+    ) -> list[Dual]:
         evaluator, duals = self.plain.evaluator_at(changes, clock), list(map(self._fit, changes))
         slopes = [self.field.slopes[k] for k in places]
         values = [evaluator.evaluate(x) for x in slopes]
@@ -216,7 +218,7 @@ class TangentAlgebra(StepAlgebra[Dual]):
         ]
 
     def shear(
-        self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
+        self, changes: Sequence[ProgramValue], size: Number, clock: Number, places: Sequence[int]
     ) -> list[Dual]:
         evaluator, before = self.plain.evaluator_at(changes, clock), list(map(self._fit, changes))
         after, result = self.plain.shear(changes, size, clock, places), list(before)
@@ -225,7 +227,9 @@ class TangentAlgebra(StepAlgebra[Dual]):
             result[k] = self._dual(after[k].index, self._add(before[k].gradient, row))
         return result
 
-    def move(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Dual:
+    def move(
+        self, change: ProgramValue, weights: Sequence[Number], slopes: Sequence[ProgramValue]
+    ) -> Dual:
         total, plain = self._fit(change), self.plain
         index = plain.move(total, weights, slopes).index
         columns = list(zip(*(self._fit(x).gradient for x in slopes), strict=True))
@@ -233,19 +237,19 @@ class TangentAlgebra(StepAlgebra[Dual]):
         moves = (plain.move(plain.nothing, weights, [*map(plain.value, x)]) for x in columns)
         return self._dual(index, self._add(total.gradient, [x.index for x in moves]))
 
-    def add_share(self, x: Value, y: Value, share: Fraction) -> Dual:
-        one, other = self._fit(x), self._fit(y)
+    def add_share(self, x: ProgramValue, y: ProgramValue, share: Fraction) -> Dual:
+        dual_x, dual_y = self._fit(x), self._fit(y)
         part = self.program.constant(share)
-        scaled = [self.program.mul(part, entry) for entry in other.gradient]
-        index = self.plain.add_share(one, other, share).index
-        return self._dual(index, self._add(one.gradient, scaled))
+        scaled = [self.program.mul(part, entry) for entry in dual_y.gradient]
+        index = self.plain.add_share(dual_x, dual_y, share).index
+        return self._dual(index, self._add(dual_x.gradient, scaled))
 
     def solve(self, count: int, right: Right) -> list[Dual]:
         # Implicit differentiation of Z = R(Z, z) at the solution: no derivative of the iteration is
         # needed.
         values, program = self.plain.solve(count, right), self.program
         sides = TangentAlgebra(self.plain, count, self).read_right_side(right, values)
-        matrix = _less_one(program, [side.gradient[self.width :] for side in sides])
+        matrix = less_one(program, [side.gradient[self.width :] for side in sides])
         rows, _ = eliminate(program, matrix, [side.gradient[: self.width] for side in sides])
         return [self._dual(x.index, tuple(row)) for x, row in zip(values, rows, strict=True)]
 
@@ -254,7 +258,7 @@ class TangentAlgebra(StepAlgebra[Dual]):
     def _dual(self, index: int, gradient: tuple[int, ...]) -> Dual:
         return Dual(self.program, index, gradient, self)
 
-    def _fit(self, x: Value) -> Dual:
+    def _fit(self, x: ProgramValue) -> Dual:
         """Return the value with as many derivatives as there are here; those of values from
         elsewhere are 0."""
         if isinstance(x, Dual) and x.algebra is self:
@@ -280,44 +284,5 @@ class TangentAlgebra(StepAlgebra[Dual]):
             total = [add(x, mul(slope, y)) for x, y in zip(total, change.gradient, strict=True)]
         return tuple(total)
 
-    def _add(self, one: Sequence[int], other: Sequence[int]) -> tuple[int, ...]:
-        return tuple(map(self.program.add, one, other))
-
-
-def _less_one(program: Program, rows: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return 1 − the matrix of these rows."""
-    matrix = [list(map(program.neg, row)) for row in rows]
-    for k, row in enumerate(matrix):
-        row[k] = program.add(program.quotient(1, 1), row[k])
-    return matrix
-
-
-def eliminate(
-    program: Program, matrix: Sequence[Sequence[int]], right: Sequence[Sequence[int]]
-) -> tuple[list[list[int]], list[int]]:
-    """Solve linear systems whose matrix is 1 + O(h), one for each column of the right side. Return
-    the solutions row by row, and the pivots that are not 1.
-
-    Without pivoting: at h = 0 the diagonal is 1.
-    """
-    add, mul, neg = program.add, program.mul, program.neg
-    size, rows = len(matrix), [[*row, *more] for row, more in zip(matrix, right, strict=True)]
-    width = len(rows[0])
-    pivots, over = [], []
-    for k in range(size):
-        pivot = rows[k][k]
-        one = program.is_constant(pivot, 1)
-        pivots += [] if one else [pivot]
-        over.append(pivot if one else program.inverse(pivot))
-        for i in range(k + 1, size):
-            factor = mul(rows[i][k], over[k])
-            for j in range(k + 1, width):
-                rows[i][j] = add(rows[i][j], neg(mul(factor, rows[k][j])))
-    solutions: list[list[int]] = [[] for _ in range(size)]
-    for k in reversed(range(size)):
-        for column in range(width - size):
-            total = rows[k][size + column]
-            for j in range(k + 1, size):
-                total = add(total, neg(mul(rows[k][j], solutions[j][column])))
-            solutions[k].append(mul(total, over[k]))
-    return solutions, pivots or [program.constant(Fraction(1))]
+    def _add(self, x: Sequence[int], y: Sequence[int]) -> tuple[int, ...]:
+        return tuple(map(self.program.add, x, y))

@@ -2,11 +2,11 @@
 
 M₀ = 1 and M_{k+1} = A_k M_k, with A_k the Jacobian of one step at the orbit's k-th state. A_k − 1
 is evaluated at the state rounded to float64, and its product with M is added in twice the precision
-(Knuth's two-sum), so that one step's error is about h·2⁻⁵³ of M. `verify.runs.a_posteriori` bounds
-the orbit's error by the sums here: `growth` Σ ‖M‖², `growth_top` its greatest term, `det_low`
-the least det M, and the box that the orbit has visited; the kernel adds `least` and `most`, between
-which Λ has been. In n degrees of freedom det M is Pf(MᵀΩM)/Pf Ω, and `form_top` is the greatest sum
-of squares of MᵀΩM's entries above the diagonal.
+(Knuth's two-sum), so that one step's error is about h·2⁻⁵³ of M. `verify.runs.a_posteriori_bound`
+bounds the orbit's error by the sums here: `growth` Σ ‖M‖², `growth_top` its greatest term,
+`det_low` the least det M, and the box that the orbit has visited; the kernel adds `least` and
+`most`, between which Λ has been. In n degrees of freedom det M is Pf(MᵀΩM)/Pf Ω, and `form_top` is
+the greatest sum of squares of MᵀΩM's entries above the diagonal.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -14,13 +14,13 @@ from itertools import combinations
 
 from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Program
+from verify.kernels.step.operations import StepProgram
 
 _SUMS = ("growth", "growth_top", "det_low", "form_top", "least", "most")
 
 
 def names_of(coordinates: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the noted numbers of the tangent map, where it is carried."""
+    """Return the names of the noted numbers of the tangent map, if it is carried."""
     return (*_SUMS, *(f"{name}_{end}" for name in coordinates for end in ("low", "high")))
 
 
@@ -42,8 +42,8 @@ def initial_values(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
 class Tangent:
     """A − 1 of the whole step, row by row, in a float64 program of its own."""
 
-    def __init__(self, main: Program) -> None:
-        self.main, self.program = main, Program()
+    def __init__(self, main: StepProgram) -> None:
+        self.main, self.program = main, StepProgram()
         self.main_values: list[int] = []  # values of the main program that are read
         self.change: list[int] = []
 

@@ -1,20 +1,21 @@
-"""Axes that several figures share: logarithmic by decades, step sizes, one exponent for all."""
+"""Axes that several figures share: by decades, step sizes, one exponent for all; panels of them."""
 
 from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Any
 
+from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, MaxNLocator
 
-from verify.pages.figures.logarithm import lg
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.captioned_plot import lg
+from verify.pages.figures.sheet import INK, NARROW, SERIES, WIDE, sheet
 from verify.pages.text.typography import superscript
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ((), (5, 2), (1.5, 1.5), (6, 2, 1.5, 2), (9, 2), (3, 2), (5, 1.5, 1, 1.5, 1, 1.5), (2, 3))
 MOST_STYLES = len(SERIES)
 
-Mark = tuple[float, str]
+LabelledAbscissa = tuple[float, str]
 """An abscissa, and the label beside the line there."""
 
 # The room between tick labels and that of a letter, as parts of the axis.
@@ -37,9 +38,9 @@ def line_style(index: int, count: int) -> dict[str, Any]:
     return style | ({"dashes": DASHES[index]} if DASHES[index] else {})
 
 
-def draw_grid(axes: Any, which: str = "y") -> None:
+def draw_grid(axes: Any, direction: str = "y") -> None:
     """Draw faint grid lines behind the data and shorten the ticks."""
-    axes.grid(axis=which, **_GRID_STYLE)
+    axes.grid(axis=direction, **_GRID_STYLE)
     axes.set_axisbelow(True)
     axes.tick_params(length=3, width=0.7)
 
@@ -58,17 +59,17 @@ def set_decade_ticks(axis: Any, *, max_ticks: int = 7) -> None:
 
 
 class _Decades(MaxNLocator):
-    """A locator of whole exponents; where these are too few, of 1, 2, 5 or 1 … 9 times powers.
+    """A locator of whole exponents; if these are too few, of 1, 2, 5 or 1 … 9 times powers.
 
-    Where fewer than two of those are visible too, it takes round numbers in between.
+    If fewer than two of those are visible too, it takes round numbers in between.
     """
 
     def tick_values(self, vmin: float, vmax: float) -> Any:
         low, high = min(vmin, vmax), max(vmin, vmax)
         for mantissas in ((1,), (1, 2, 5), range(1, 10)):
             exponents = range(floor(low), floor(high) + 1)
-            places = [n + log10(m) for n in exponents for m in mantissas]
-            visible = [x for x in places if low <= x <= high]
+            ticks = [n + log10(m) for n in exponents for m in mantissas]
+            visible = [x for x in ticks if low <= x <= high]
             if len(visible) > 1:
                 return super().tick_values(vmin, vmax) if len(mantissas) == 1 else visible
         n = floor(low)
@@ -77,7 +78,7 @@ class _Decades(MaxNLocator):
 
 
 def _power_of_ten(exponent: float, _: object) -> str:
-    """Return 10ⁿ as text, with a mantissa where there is one."""
+    """Return 10ⁿ as text, with a mantissa if there is one."""
     # A tick may be a little below a whole exponent by rounding.
     n = floor(exponent + 1e-9)
     scale = f"10{superscript(n)}"
@@ -93,17 +94,17 @@ def set_whole_number_ticks(axis: Any) -> None:
 
 def set_step_size_axis(axes: Any, sizes: Sequence[str]) -> None:
     """Set the step sizes as ticks of a logarithmic x axis, in units of a power of ten."""
-    places = sorted({lg(h): h for h in sizes}.items())
-    unit = floor(places[0][0] + 1e-9)
-    low, high = places[0][0], places[-1][0]
+    sizes_by_lg = sorted({lg(h): h for h in sizes}.items())
+    unit = floor(sizes_by_lg[0][0] + 1e-9)
+    low, high = sizes_by_lg[0][0], sizes_by_lg[-1][0]
     span = (high - low) or 1.0
     labels: list[tuple[float, str]] = []
     # From right to left: the largest step size always has a label, others only where there is room.
-    for place, _ in reversed(places):
-        label = f"{float(10 ** (place - unit)):.3g}"
-        if not labels or labels[-1][0] - place > (_LABEL_GAP + _LETTER * len(label)) * span:
-            labels.append((place, label))
-    axes.xaxis.set_major_locator(FixedLocator([place for place, _ in reversed(labels)]))
+    for tick, _ in reversed(sizes_by_lg):
+        label = f"{float(10 ** (tick - unit)):.3g}"
+        if not labels or labels[-1][0] - tick > (_LABEL_GAP + _LETTER * len(label)) * span:
+            labels.append((tick, label))
+    axes.xaxis.set_major_locator(FixedLocator([tick for tick, _ in reversed(labels)]))
     axes.xaxis.set_major_formatter(FixedFormatter([label for _, label in reversed(labels)]))
     axes.set_xlim(low - 0.05 * span, high + 0.05 * span)
     scale = "" if unit == 0 else f", in units of 10{superscript(unit)}"
@@ -139,18 +140,18 @@ def set_scaled_ticks(axis: Any, low: float, high: float) -> None:
     axis.set_major_formatter(FuncFormatter(format_tick))
 
 
-def mark_places(axes: Any, places: Sequence[Mark], room: float) -> None:
+def mark_places(axes: Any, labels: Sequence[LabelledAbscissa], room: float) -> None:
     """Draw a dashed vertical line at each x, its label on a row of its own above all points.
 
-    `places`: from left to right, so that no line runs through another's label. `room`: the width of
+    `labels`: from left to right, so that no line runs through another's label. `room`: the width of
     a label as a part of the axes' width.
     """
     # The labels take the part `above` of the enlarged range: extra/(range + extra) = above.
     low, high = axes.get_ylim()
-    label_share = _LINE * (len(places) + 0.5)
+    label_share = _LINE * (len(labels) + 0.5)
     axes.set_ylim(low, high + (high - low) * label_share / (1 - label_share))
     left, right = axes.get_xlim()
-    for row, (x, label) in enumerate(places):
+    for row, (x, label) in enumerate(labels):
         top = 1 - _LINE * row
         axes.axvline(x, ymax=top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
         to_the_right = (right - x) / (right - left) > room
@@ -159,3 +160,48 @@ def mark_places(axes: Any, places: Sequence[Mark], room: float) -> None:
             xytext=(4 if to_the_right else -4, 0), textcoords="offset points",
             ha="left" if to_the_right else "right", va="top", fontsize=11,
         )  # fmt: skip
+
+
+# -- panels side by side --------------------------------------------------------------------------
+
+
+def make_panels(
+    count: int, *, in_a_row: int, height: float, legend_height: float = 0, shared: bool = True
+) -> tuple[Figure, Any]:
+    """Return a figure with `count` panels in rows of `height`, and an array of all their axes.
+
+    Places that stay empty show no axes. `legend_height`: the height of the legend below the panels;
+    `shared`: True if all panels have the same axes.
+    """
+    columns = min(count, in_a_row)
+    rows = -(-count // columns)
+    figure = sheet(height * rows + legend_height, WIDE if columns > 1 else NARROW)
+    panels: Any = figure.subplots(rows, columns, sharex=shared, sharey=shared, squeeze=False)
+    for axes in panels.flat[count:]:
+        axes.set_axis_off()
+    return figure, panels
+
+
+def name_states(panels: Any, titles: Sequence[str], names: Sequence[str], room: float) -> None:
+    """Set the titles of the panels and the names of their coordinates, with round numbers."""
+    for axes, title in zip(panels.flat, titles, strict=False):
+        axes.set_title(title)
+        axes.set_xlabel(names[0])
+        axes.margins(room)
+        set_round_ticks(axes)
+        axes.tick_params(labelbottom=True)
+        draw_grid(axes, "both")
+    for row in panels:
+        row[0].set_ylabel(names[1], rotation=0, labelpad=10)
+
+
+def name_marks(figure: Figure, panels: Any, ncols: int) -> None:
+    """Set one legend below all panels, with each mark once."""
+    handles = {
+        label: handle
+        for axes in panels.flat
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(
+        handles.values(), handles, loc="outside lower center", ncols=ncols, handlelength=1.6
+    )

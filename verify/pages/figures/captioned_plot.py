@@ -1,9 +1,11 @@
-"""A picture with its caption, and the phrases that captions share."""
+"""A picture with its caption, and the phrases and numbers that captions share."""
 
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
+from math import inf
 from typing import TYPE_CHECKING
 
 from markupsafe import Markup
@@ -15,6 +17,7 @@ from verify.scenes.results.run import RunResult
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
 
 _WIDTH = re.compile(r'viewBox="0 0 ([0-9.]+) ')
 # Widths in points up to which a picture takes half, or most, of the page.
@@ -48,11 +51,14 @@ def captioned_plot(
     The lead, as a sentence, stands above it and is its text alternative, unless `label` is another.
     `name` prefixes every id in the SVG, so it must be unique on the page.
     """
-    # matplotlib takes long to import, and is needed only where something is drawn.
+    # matplotlib takes long to import, and is needed only if something is drawn.
     from verify.pages.figures.svg import render_svg
 
     alternative = label or f"{lead}."
     return Plot(render_svg(draw, name=name, label=alternative), f"{lead}.", caption, alternative)
+
+
+# -- phrases and numbers of captions --------------------------------------------------------------
 
 
 def describe_runs(runs: Sequence[RunResult]) -> str:
@@ -74,7 +80,7 @@ def name_arithmetic(result: RunResult | FlowImage) -> str:
 
 
 def known_digits(value: Value | None, *, strong: bool = False) -> Markup:
-    """Return the first of the known digits; where none is known, the bound."""
+    """Return the first of the known digits; if none is known, the bound."""
     if value is None:
         return Markup("–")
     if Decimal(value.value) == 0 and value.bound != "0":
@@ -89,3 +95,17 @@ def round_to_few_digits(text: str) -> str:
     if not is_decimal(text) or digits <= _MAX_DIGITS or Decimal(text) == 0:
         return number(text)
     return number(f"{Decimal(text):.{_MAX_DIGITS - 1}e}")
+
+
+def round_crossover(step_size: str) -> str:
+    """Return a crossover to two digits, as it is interpolated between distant step sizes."""
+    return number(f"{Decimal(step_size):.1e}").replace(" ", NBSP)
+
+
+def lg(text: str) -> float:
+    """Return lg |value| of a decimal or a quotient that no float need hold; −∞ for 0."""
+    if "/" in text:
+        value = Fraction(text)
+        return lg(str(abs(value.numerator))) - lg(str(value.denominator))
+    size = abs(Decimal(text))
+    return float(size.log10()) if size else -inf

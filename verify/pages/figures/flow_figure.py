@@ -1,6 +1,6 @@
 """Regions carried by maps: panels on equal axes, q to the right and p upwards, as inline SVG.
 
-The images of a map stand in one panel where each keeps its shape. Where shear draws them out, or
+The images of a map stand in one panel if each keeps its shape. If shear draws them out, or
 three maps are compared, each number of steps has a panel for each scheme, upon the exact image.
 """
 
@@ -17,10 +17,9 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import draw_grid
-from verify.pages.figures.flow_grid import Curves, Grid, Panel, perimeter
+from verify.pages.figures.flow_grid import Curves, FlowPanel, PanelGrid, perimeter
 from verify.pages.figures.label_place import choose_place, sample_curves
-from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.sheet import INK, NARROW, SERIES, WIDE, sheet
 from verify.pages.text.typography import whole
 from verify.studies.regions.polyline import thin
 
@@ -69,7 +68,7 @@ class _Layout:
         return self.width / float(self.high[0] - self.low[0])
 
 
-def draw_flow(grid: Grid) -> Figure:
+def draw_flow(grid: PanelGrid) -> Figure:
     """Draw the panels of the grid on equal axes of one scale."""
     layout = _layout(grid)
     columns = grid.in_a_row
@@ -81,8 +80,8 @@ def draw_flow(grid: Grid) -> Figure:
         i, j = divmod(k, columns)
         x = layout.left + j * (layout.width + _GAP)
         y = _BOTTOM + (rows - 1 - i) * (layout.height + _GAP + layout.top)
-        place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
-        axes = figure.add_axes(place)
+        rectangle = x / layout.total, y / high, layout.width / layout.total, layout.height / high
+        axes = figure.add_axes(rectangle)
         _frame(axes, layout, grid.axes, left=j == 0, bottom=k + columns >= len(grid.panels))
         _draw_panel(axes, panel, before, layout)
         if not grid.counts:
@@ -93,7 +92,7 @@ def draw_flow(grid: Grid) -> Figure:
     return figure
 
 
-def _heading(index: int, grid: Grid, max_length: int) -> str:
+def _heading(index: int, grid: PanelGrid, max_length: int) -> str:
     """Return a panel's title: with its letter, or below the number of steps of its group."""
     panel = grid.panels[index]
     longest = max(4, max_length if grid.counts else max_length - len("(a) "))
@@ -105,16 +104,16 @@ def _heading(index: int, grid: Grid, max_length: int) -> str:
     return f"{letter}{name}{_missing(panel)}"
 
 
-def _missing(panel: Panel) -> str:
+def _missing(panel: FlowPanel) -> str:
     """Return a note on the numbers of steps for which the panel has no image; else ""."""
     if not panel.missing_counts:
         return ""
-    first, *others = panel.missing_counts
-    others_text = f" and {len(others)} more" if others else ""
+    first, *further_counts = panel.missing_counts
+    others_text = f" and {len(further_counts)} more" if further_counts else ""
     return f"; no image at N = {whole(first)}{others_text}"
 
 
-def _layout(grid: Grid) -> _Layout:
+def _layout(grid: PanelGrid) -> _Layout:
     """Return the layout on equal axes; a panel is as high as its content, within limits."""
     low, high = grid.size
     longest = max(len(_tick(y)) for y in _ticks().tick_values(low[1], high[1]))
@@ -153,13 +152,13 @@ def _tick(x: float, _: object = None) -> str:
     return f"{x:g}".replace("-", "−")
 
 
-def _draw_panel(axes: Any, panel: Panel, before: Curves, layout: _Layout) -> None:
+def _draw_panel(axes: Any, panel: FlowPanel, before: Curves, layout: _Layout) -> None:
     if len(before[0]) == 1:  # of another plane than the region's
         axes.plot(*before[0].T, linestyle="none", marker="+", color=INK, markersize=_POINT)
     else:
         _draw_region(axes, before, INK, layout, before=True)
-    if panel.exact:
-        path = _path(_thin_curves(panel.exact[:1], layout))
+    if panel.exact_curves:
+        path = _path(_thin_curves(panel.exact_curves[:1], layout))
         faint = to_rgba(INK, 0.3)
         axes.add_artist(
             PathPatch(path, fill=False, edgecolor=faint, linewidth=_EXACT, clip_on=False)
@@ -179,7 +178,7 @@ def _draw_region(
     axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: bool = False
 ) -> None:
     """Draw the region lightly filled with a thin line, the other outlines as thinner lines."""
-    region, *others = curves
+    region, *outlines = curves
     strength = 0.35 if before else 1
     thin = _THINNER if perimeter(region) > _LONG * (layout.width / layout.scale) else 1
     axes.add_artist(
@@ -188,10 +187,10 @@ def _draw_region(
             edgecolor=to_rgba(colour, strength), linewidth=_LINE * thin, clip_on=False,
         )
     )  # fmt: skip
-    if others:
+    if outlines:
         axes.add_artist(
             PathPatch(
-                _path(others), fill=False, edgecolor=to_rgba(colour, strength),
+                _path(outlines), fill=False, edgecolor=to_rgba(colour, strength),
                 linewidth=0.45 * thin, clip_on=False,
             )
         )  # fmt: skip
@@ -201,7 +200,7 @@ def _path(curves: Sequence[np.ndarray]) -> Path:
     return Path.make_compound_path(*(Path(np.vstack([c, c[:1]]), closed=True) for c in curves))
 
 
-def _label_images(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
+def _label_images(axes: Any, panel: FlowPanel, grid: PanelGrid, layout: _Layout) -> None:
     """Write the number of steps beside each image, clear of all that is drawn."""
     low, scale = layout.low, layout.scale
     images = [(n, sample_curves(curves, low, scale)) for n, curves in panel.images]
@@ -222,11 +221,6 @@ def _label_images(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
 # -- what is seen ---------------------------------------------------------------------------------
 
 
-def line_width(grid: Grid) -> float:
+def line_width(grid: PanelGrid) -> float:
     """Return the width of an outline's line in units of q and p, below which curves merge."""
     return _LINE / _layout(grid).scale
-
-
-def stretch_of_outline(before: Curves, image: Curves) -> float:
-    """Return the length of the region's outline over its length before."""
-    return perimeter(image[0]) / perimeter(before[0])

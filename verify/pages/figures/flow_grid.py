@@ -1,11 +1,12 @@
-"""The arrangement of a picture of regions carried by maps: panels of images, in groups."""
+"""A picture of regions carried by maps: panels of images in groups, sentences on what is seen."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
-from verify.pages.text.typography import number, whole
+from verify.pages.text.typography import IS, join_and, map_name, number, whole
 from verify.scenes.results.regions import (
     EXACT_FLOW,
     CarriedOutline,
@@ -21,59 +22,63 @@ _MOST_COUNTS = 6
 _WITH_OTHERS = 2
 # An outline that is stretched more than this has lost its shape.
 _MAX_STRETCH = 3.0
+# An outline within so many widths of a line from another nearly hides it.
+_NEAR_WIDTHS = 2
+# A stretch is mentioned if the outline is at least so many times as long as before.
+_MIN_STRETCH = 1.5
 
 Curves = tuple[np.ndarray, ...]
 """An image's outlines, arrays (n, 2) of q, p, the region's first."""
 
 
 @dataclass(frozen=True)
-class Panel:
+class FlowPanel:
     """The images of a map with the number of steps of each.
 
-    `missing_counts`: the numbers of steps without an image; `exact`: the exact flow's image, below
-    the others; `colour_index`: the place of its colour in `SERIES`.
+    `missing_counts`: the numbers of steps without an image; `exact_curves`: the exact flow's image,
+    below the others; `colour_index`: the place of its colour in `SERIES`.
     """
 
     name: str
     images: tuple[tuple[int, Curves], ...]
     missing_counts: tuple[int, ...] = ()
-    exact: Curves = ()
+    exact_curves: Curves = ()
     colour_index: int = 0
 
 
 @dataclass(frozen=True)
-class Grid:
+class PanelGrid:
     """Groups of panels, one for each number of steps in `counts`; or one group without a name."""
 
     counts: tuple[str, ...]
-    groups: tuple[tuple[Panel, ...], ...]
+    groups: tuple[tuple[FlowPanel, ...], ...]
     before: Curves
     axes: tuple[str, str] = ("q", "p")
 
     @property
-    def panels(self) -> tuple[Panel, ...]:
+    def panels(self) -> tuple[FlowPanel, ...]:
         return tuple(panel for group in self.groups for panel in group)
 
     @property
     def in_a_row(self) -> int:
-        """The number of panels in a row; a group is not broken where it fits into one."""
-        each = len(self.groups[0])
+        """The number of panels in a row; a group is not broken if it fits into one."""
+        group_size = len(self.groups[0])
         if not self.counts:
-            return each
-        whole_groups = max(1, _MOST_IN_A_ROW // each)
-        return min(each * whole_groups, len(self.panels))
+            return group_size
+        whole_groups = max(1, _MOST_IN_A_ROW // group_size)
+        return min(group_size * whole_groups, len(self.panels))
 
     @property
     def size(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the greatest (q, p) of everything that is drawn."""
         images = (curves for panel in self.panels for _, curves in panel.images)
-        exact = (panel.exact for panel in self.panels)
-        groups_of_curves = (self.before, *images, *exact)
+        exact_images = (panel.exact_curves for panel in self.panels)
+        groups_of_curves = (self.before, *images, *exact_images)
         points = np.concatenate([curve for curves in groups_of_curves for curve in curves])
         return points.min(axis=0), points.max(axis=0)
 
 
-def grid_of(flow: FlowResult, plane: int | None = None) -> Grid:
+def grid_of(flow: FlowResult, plane: int | None = None) -> PanelGrid:
     """Return the images of all maps, for a few numbers of steps including the first and the last.
 
     In n degrees of freedom they are projected on the plane (q_k, p_k), k = `plane`, by default that
@@ -88,11 +93,11 @@ def grid_of(flow: FlowResult, plane: int | None = None) -> Grid:
             _panel([image for image in flow.images if image.map == name], look)
             for look, name in enumerate(maps)
         )
-        return Grid((), (together,), before)
+        return PanelGrid((), (together,), before)
     return _grid_by_counts(flow, maps, before)
 
 
-def _grid_of_plane(flow: FlowResult, maps: Sequence[str], k: int) -> Grid:
+def _grid_of_plane(flow: FlowResult, maps: Sequence[str], k: int) -> PanelGrid:
     before, axes = _curves(flow.before), (f"q{k}", f"p{k}")
     # In another plane the region before the map was a single point.
     if k != flow.plane:
@@ -114,7 +119,7 @@ def _project_image(image: FlowImage, k: int) -> FlowImage:
     return image.model_copy(update={"outlines": tuple(outlines)})
 
 
-def _grid_by_counts(flow: FlowResult, maps: Sequence[str], before: Curves) -> Grid:
+def _grid_by_counts(flow: FlowResult, maps: Sequence[str], before: Curves) -> PanelGrid:
     """Return a group of panels for each number of steps."""
     counts = _select_counts(sorted({image.steps for image in flow.images if image.outlines}))
     image_by_map = {(image.map, image.steps): image for image in flow.images}
@@ -128,17 +133,23 @@ def _grid_by_counts(flow: FlowResult, maps: Sequence[str], before: Curves) -> Gr
         )
         for n in counts
     )
-    return Grid(tuple(f"N = {whole(n)}, t = {number(times[n])}" for n in counts), groups, before)
+    return PanelGrid(
+        tuple(f"N = {whole(n)}, t = {number(times[n])}" for n in counts), groups, before
+    )
 
 
 def _select_counts(counts: Sequence[int]) -> list[int]:
-    places = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_COUNTS))
-    return [counts[round(place)] for place in places]
+    indices = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_COUNTS))
+    return [counts[round(index)] for index in indices]
 
 
-def _panel(images: Sequence[FlowImage], look: int, exact: FlowImage | None = None) -> Panel:
-    exact_image = exact if exact and exact.map != images[0].map else None
-    return Panel(
+def _panel(
+    images: Sequence[FlowImage], look: int, exact_flow_image: FlowImage | None = None
+) -> FlowPanel:
+    exact_image = (
+        exact_flow_image if exact_flow_image and exact_flow_image.map != images[0].map else None
+    )
+    return FlowPanel(
         images[0].map,
         tuple((image.steps, _curves(image.outlines)) for image in images if image.outlines),
         tuple(image.steps for image in images if not image.outlines),
@@ -160,3 +171,92 @@ def _keeps_shape(flow: FlowResult, before: Curves) -> bool:
 def perimeter(curve: np.ndarray) -> float:
     """Return the length of a closed polyline (n, 2)."""
     return float(np.hypot(*(np.roll(curve, -1, axis=0) - curve).T).sum())
+
+
+# -- what is visible ------------------------------------------------------------------------------
+
+
+def picture_sentences(flow: FlowResult, grid: PanelGrid, line_width: float) -> Iterator[str]:
+    """Yield the sentences on what is visible in a picture of this region, from the data.
+
+    `line_width`: that of an outline in units of q and p, below which curves merge.
+    """
+    if len(grid.before[0]) == 1:
+        yield "+ is where all of it was before."
+        return
+    yield from _describe_stretch(grid)
+    yield from _compare_with_exact(flow, line_width)
+    yield from _describe_hidden_outline(grid, line_width)
+
+
+def _describe_stretch(grid: PanelGrid) -> Iterator[str]:
+    """Yield how far the first map with images stretches; to the eye the others do the same."""
+    first = grid.panels[0]
+    panels = [panel for panel in grid.panels if panel.name == first.name]
+    images = [image for panel in panels for image in panel.images]
+    if not images:
+        return
+    steps, curves = max(images, key=lambda image: image[0])
+    stretch = perimeter(curves[0]) / perimeter(grid.before[0])
+    if stretch >= _MIN_STRETCH:
+        factor = whole(round(stretch)) if stretch >= 10 else f"{stretch:.1f}"
+        yield (
+            f"After N{IS}{whole(steps)} steps by {map_name(first.name)} the outline is "
+            f"{factor} times as long as before."
+        )
+
+
+def _compare_with_exact(flow: FlowResult, line_width: float) -> Iterator[str]:
+    """Yield the maps whose images lie within a line's width of the exact ones, and the others."""
+    furthest: dict[str, Fraction] = {}
+    for image in flow.images:
+        if image.distance is not None:
+            most = abs(Fraction(image.distance)) + Fraction(image.distance_error or 0)
+            furthest[image.map] = max(most, furthest.get(image.map, Fraction(0)))
+    near_maps = [name for name, most in furthest.items() if most < line_width]
+    far_maps = [name for name in furthest if name not in near_maps]
+    if near_maps:
+        yield f"All images by {join_and(near_maps)} lie within a line’s width of the exact ones."
+    if far_maps:
+        yield (
+            f"Some images by {join_and(far_maps)} lie further from the exact ones than a line’s "
+            "width."
+        )
+
+
+def _describe_hidden_outline(grid: PanelGrid, line_width: float) -> Iterator[str]:
+    """Yield the numbers of steps whose image hides the outline before."""
+    hiding_counts = {
+        steps
+        for panel in grid.panels
+        for steps, curves in panel.images
+        if _lies_upon(curves[0], grid.before[0], _NEAR_WIDTHS * line_width)
+    }
+    if hiding_counts:
+        counts = join_and([f"N{IS}{whole(n)}" for n in sorted(hiding_counts)])
+        yield f"At {counts} the image lies within two lines’ widths of the grey one and hides it."
+
+
+def _lies_upon(curve: np.ndarray, other_curve: np.ndarray, width: float) -> bool:
+    """Return True if two closed polylines (n, 2) lie within that width of each other.
+
+    The corners alone are compared. Most pairs are decided by their boxes; the exact distance is
+    not used, since it takes long to compile for a page.
+    """
+    # Boxes that differ by the width decide at once; else all corners are compared.
+    ends = np.array([curve.min(0) - other_curve.min(0), curve.max(0) - other_curve.max(0)])
+    if np.abs(ends).max() >= width:
+        return False
+    return max(_farthest(curve, other_curve), _farthest(other_curve, curve)) < width
+
+
+def _farthest(points: np.ndarray, curve: np.ndarray) -> float:
+    """Return the greatest distance of the points (n, 2) from the curve's segments."""
+    segments = np.roll(curve, -1, axis=0) - curve
+    offsets = points[:, None] - curve[None]
+    # The denominator of a segment of no length must not be 0.
+    share = (offsets * segments).sum(-1) / np.maximum(
+        (segments * segments).sum(-1), np.finfo(float).tiny
+    )
+    nearest = offsets - np.clip(share, 0, 1)[..., None] * segments
+    return float(np.hypot(nearest[..., 0], nearest[..., 1]).min(1).max())

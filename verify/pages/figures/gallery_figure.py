@@ -6,16 +6,15 @@ from math import isfinite, log10, nan
 from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import (
-    Mark,
+    LabelledAbscissa,
     draw_grid,
     line_style,
     mark_places,
     set_decade_ticks,
     set_round_ticks,
 )
-from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import canvas
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.captioned_plot import lg
+from verify.pages.figures.sheet import INK, SERIES, canvas
 from verify.pages.text.typography import NBSP, whole
 from verify.scenes.results.exploration import GalleryScene
 
@@ -58,7 +57,7 @@ def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
 
 
 def _limits(q: Sequence[float], p: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the least and the greatest (q, p) with some room, also where nothing moves."""
+    """Return the least and the greatest (q, p) with some room, also if nothing moves."""
     least = _LEAST_SPAN * (max(map(abs, (*q, *p))) or 1.0)
     spans = [(1 + 2 * _ROOM) * max(_span(values), least) for values in (q, p)]
     if _has_one_scale(q, p):  # then one scale, in a frame that is filled
@@ -80,9 +79,9 @@ def _span(values: Sequence[float]) -> float:
 # -- truncation and rounding ----------------------------------------------------------------------
 
 
-def draw_parts(each: GalleryScene) -> Figure:
+def draw_parts(scene: GalleryScene) -> Figure:
     """Draw |truncation| and |rounding| on logarithmic axes, dashed lines where one overtakes."""
-    series = each.separation.plain.series if each.separation.plain else ()
+    series = scene.separation.plain.series if scene.separation.plain else ()
     figure, axes = canvas(_HEIGHT)
     x = [log10(point.steps) for point in series]
     kinds = ("truncation", "truncation"), ("total", "rounding, the plain way")
@@ -91,7 +90,7 @@ def draw_parts(each: GalleryScene) -> Figure:
         if any(map(isfinite, y)):
             axes.plot(x, y, label=label, **line_style(index, len(kinds)))
     axes.margins(x=0.05, y=0.06)
-    if crossings := list(marks(each)):
+    if crossings := list(marks(scene)):
         mark_places(axes, crossings, _LABEL_ROOM)
     draw_grid(axes)
     set_decade_ticks(axes.xaxis, max_ticks=6)
@@ -103,18 +102,18 @@ def draw_parts(each: GalleryScene) -> Figure:
 
 
 def _finite_lg(size: str) -> float:
-    """Return lg of the size; nan, which breaks the line, for 0 or where no digit is known."""
-    place = lg(size)
-    return place if isfinite(place) else nan
+    """Return lg of the size; nan, which breaks the line, for 0 or if no digit is known."""
+    logarithm = lg(size)
+    return logarithm if isfinite(logarithm) else nan
 
 
-def marks(each: GalleryScene) -> Iterator[Mark]:
+def marks(scene: GalleryScene) -> Iterator[LabelledAbscissa]:
     """Yield the steps at which rounding overtakes truncation, and truncation rounding for good.
 
     Rounding that is the larger one from the first checkpoint on has overtaken nothing.
     """
-    series = each.separation.plain.series if each.separation.plain else ()
-    lost_after, resumes_at = each.meaningless_after, each.meaningful_from
+    series = scene.separation.plain.series if scene.separation.plain else ()
+    lost_after, resumes_at = scene.meaningless_after, scene.meaningful_from
     if series and lost_after is not None and lost_after > series[0].steps:
         yield log10(lost_after), f"rounding overtakes, N{NBSP}={NBSP}{whole(lost_after)}"
     if resumes_at is not None:

@@ -23,7 +23,7 @@ def choose_place(
     """Return the label's box, which is not in `occupied` yet; `target`, `drawn`: points (n, 2).
 
     It is the first of the places above, below and beside the image where least is drawn. A box that
-    leaves the room or overlaps another label is taken only where there is no other.
+    leaves the room or overlaps another label is taken only if there is no other.
     """
 
     def cost(box: Bbox) -> tuple[bool, int]:
@@ -41,8 +41,8 @@ def sample_curves(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -
     for curve in curves:
         ends = np.vstack([curve, curve[:1]])
         lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
-        places = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
-        parts.append(np.column_stack([np.interp(places, lengths, ends[:, i]) for i in (0, 1)]))
+        arc_lengths = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
+        parts.append(np.column_stack([np.interp(arc_lengths, lengths, ends[:, i]) for i in (0, 1)]))
     points: np.ndarray = (np.concatenate(parts) - low) * scale
     return points
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from verify.pages.figures.panels import make_panels, name_states
-from verify.pages.figures.svg import INK, SERIES
-from verify.scenes.results.orbit_sections import (
+from verify.pages.figures.axes import make_panels, name_states
+from verify.pages.figures.sheet import INK, SERIES
+from verify.scenes.results.orbit_points import (
     MapSections,
     PoincareResult,
     SchemeSections,
@@ -35,8 +35,8 @@ def count_drawn_looks(
 
     `starts`: so many of an orbit's first points are initial states, not looks.
     """
-    orbits = sum(len(each.orbits) for each in sections)
-    points = (len(orbit.points) for each in sections for orbit in each.orbits)
+    orbits = sum(len(section.orbits) for section in sections)
+    points = (len(orbit.points) for section in sections for orbit in section.orbits)
     return min(max(points, default=starts) - starts, max(1, _MOST_DRAWN // max(1, orbits)))
 
 
@@ -50,14 +50,14 @@ def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
     Points of orbits that escape would hide the others: they are replaced by nan.
     """
     count = count_drawn_looks(result.sections)
-    points = [[_first(o.points, count) for o in each.orbits] for each in result.sections]
-    all_points = np.concatenate([x for each in points for x in each])
+    points = [[_first(o.points, count) for o in section.orbits] for section in result.sections]
+    all_points = np.concatenate([x for points_of_map in points for x in points_of_map])
     if not len(all_points):
         return points, 0
     low, high = np.quantile(all_points, (_FEW, 1 - _FEW), axis=0)
     room = _WIDER * (high - low)
     outside = 0
-    for orbit in (x for each in points for x in each):
+    for orbit in (x for points_of_map in points for x in points_of_map):
         # The quantiles are robust against a few escaping orbits, unlike the extremes.
         is_outside = ((orbit < low - room) | (orbit > high + room)).any(axis=1)
         outside += int(is_outside.sum())
@@ -68,8 +68,8 @@ def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
 def draw_passes(result: PoincareResult) -> Figure:
     """Draw each orbit in a colour, its unconfirmed part grey, with the same axes for all maps."""
     panels = {
-        each.map: [(x, orbit.known) for x, orbit in zip(points, each.orbits, strict=True)]
-        for each, points in zip(result.sections, select_points(result)[0], strict=True)
+        section.map: [(x, orbit.known) for x, orbit in zip(points, section.orbits, strict=True)]
+        for section, points in zip(result.sections, select_points(result)[0], strict=True)
     }
     return _draw(panels, result.draw, in_a_row=_IN_A_ROW, size=3.0)
 
@@ -78,12 +78,12 @@ def draw_periods(result: StroboscopicResult) -> Figure:
     """Draw each orbit in a colour, its unconfirmed part grey; an angle is in (−π, π]."""
     count = count_drawn_looks(result.sections, 1) + 1
     panels = {}
-    for each in result.sections:
-        orbits = [(_first(o.points, count), o.known + 1) for o in each.orbits]
+    for section in result.sections:
+        orbits = [(_first(o.points, count), o.known + 1) for o in section.orbits]
         for points, _ in orbits if result.q_is_angle else ():
             # The IEEE remainder lies in [−π, π], symmetric about 0 as the figure is.
             points[:, 0] = [remainder(q, tau) for q in points[:, 0]]
-        panels[each.scheme] = orbits
+        panels[section.scheme] = orbits
     return _draw(panels, ("q", "p"), in_a_row=len(panels), size=2.2)
 
 

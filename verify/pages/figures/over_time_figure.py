@@ -13,9 +13,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 
-from verify.pages.figures.axes import draw_grid, set_scaled_ticks, set_time_axis
-from verify.pages.figures.panels import make_panels
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.axes import draw_grid, make_panels, set_scaled_ticks, set_time_axis
+from verify.pages.figures.sheet import INK, SERIES
 from verify.scenes.results.run import RunResult, SeriesPoint
 
 _MOST_BUCKETS = 600
@@ -58,7 +57,7 @@ def is_filled(run: RunResult, quantity: Quantity) -> bool:
 
 
 def draw_over_time(rows: Sequence[OrbitPanels]) -> Figure:
-    """Draw the panels of each orbit side by side, with its name where there are several."""
+    """Draw the panels of each orbit side by side, with its name if there are several."""
     several = len(rows) > 1
     panels = [(run, quantity, row.label * several) for row in rows for run, quantity in row.panels]
     figure, all_axes = make_panels(

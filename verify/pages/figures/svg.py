@@ -10,23 +10,18 @@ are the same in each figure; a style for `*` and paths of six decimals cannot be
 import hashlib
 import io
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from itertools import groupby
 from typing import Any
 from xml.etree import ElementTree
 
-import matplotlib
 from markupsafe import Markup
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from verify.pages.figures.sheet import FONT_SIZE, INK, SERIES, page_style
 from verify.pages.text.typography import NBSP
-
-INK = "#010203"
-# Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
-SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a3ffc", "#5b6670")
 
 _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
@@ -44,42 +39,6 @@ _FONT_PROPERTIES = {
     "font-weight",
     "font-stretch",
 }
-# The settings do not depend on the user's matplotlibrc, so that figures are the same everywhere.
-_RC: Any = {
-    "svg.fonttype": "none",
-    "svg.hashsalt": "areaproof",
-    "font.family": "DejaVu Sans",
-    "font.size": 12,
-    "axes.titlesize": 12,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 12,
-    "legend.fontsize": 11,
-    "text.color": INK,
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.unicode_minus": True,
-    "axes.facecolor": "none",
-    "figure.facecolor": "none",
-    "legend.frameon": False,
-    "mathtext.default": "regular",
-    "text.usetex": False,
-    "text.parse_math": False,  # a name or a source with dollar signs stays text
-    "path.simplify": False,
-}
-
-
-@contextmanager
-def page_style(**changes: object) -> Iterator[None]:
-    """Run a block under the page's matplotlib settings, which are restored afterwards."""
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC | changes)
-        yield
 
 
 def render_svg(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
@@ -133,7 +92,7 @@ def _inline(root: Any, name: str, label: str) -> Markup:
     _group_marks(root)
     root.set("role", "img")
     root.set("aria-label", label)
-    root.set("font-size", str(_RC["font.size"]))
+    root.set("font-size", str(FONT_SIZE))
     title = ElementTree.Element("title")
     title.text = label
     root.insert(0, title)
@@ -176,7 +135,7 @@ def _group_marks(root: Any) -> None:
 
 
 def _look(element: Any) -> tuple[tuple[str, str], ...] | None:
-    """Return the attributes of a mark except its place; None where the element is no mark."""
+    """Return the attributes of a mark except its place; None if the element is no mark."""
     if element.tag != "use":
         return None
     return tuple(sorted((k, v) for k, v in element.attrib.items() if k not in _PLACE_ATTRIBUTES))
@@ -250,9 +209,9 @@ def _short_path(path: str) -> str:
     out: list[str] = []
     x = y = 0
     start = [0, 0]  # where `z` leads back to
-    for command, rest in re.findall(r"([MLCQz])([^MLCQz]*)", path):
+    for command, arguments in re.findall(r"([MLCQz])([^MLCQz]*)", path):
         # Rounded places are subtracted, not rounded differences: the errors then do not add up.
-        numbers = [_units(n) for n in _NUMBER.findall(rest)]
+        numbers = [_units(n) for n in _NUMBER.findall(arguments)]
         if command == "L":
             out.append(_straight(numbers[0] - x, numbers[1] - y))
         else:

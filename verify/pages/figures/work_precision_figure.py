@@ -24,8 +24,7 @@ from verify.pages.figures.axes import (
     set_whole_number_ticks,
 )
 from verify.pages.figures.label_place import lies_in
-from verify.pages.figures.notebook_figure import WIDE, sheet
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.sheet import INK, SERIES, WIDE, sheet
 
 _WIDTH = 400
 _PANEL, _LEGEND_ROW, _IN_A_ROW = 200, 17, 2
@@ -45,7 +44,7 @@ _Box = tuple[float, float, float, float]  # x0, y0, x1, y1
 
 
 @dataclass(frozen=True)
-class Mark:
+class WorkMark:
     """A point by its finite logarithms: of the abscissa and of the ordinate.
 
     `is_full`: limited by truncation. A failed run has no `y`.
@@ -66,13 +65,13 @@ class DrawnLine:
 
     name: str
     label: str
-    marks: tuple[Mark, ...]
+    marks: tuple[WorkMark, ...]
     style_index: int
     is_peer: bool = False
 
 
 @dataclass(frozen=True)
-class Panel:
+class WorkPanel:
     """Lines over one abscissa; `floor` holds the rounding parts as (x, y)."""
 
     title: str
@@ -81,15 +80,15 @@ class Panel:
     floor: tuple[tuple[float, float], ...] = ()
     is_logarithmic: bool = True
 
-    def is_beyond(self, mark: Mark) -> bool:
+    def is_beyond(self, mark: WorkMark) -> bool:
         """Return True if the value lies above the visible range."""
         return self.is_logarithmic and mark.y is not None and mark.y > _TOP
 
 
-def draw_panels(panels: Sequence[Panel], quantity: str = "") -> Figure:
+def draw_panels(panels: Sequence[WorkPanel], quantity: str = "") -> Figure:
     """Draw the panels, two in a row, with one legend for all: the labels of the first panel.
 
-    `quantity`: the label of all vertical axes, where the titles do not suffice.
+    `quantity`: the label of all vertical axes, if the titles do not suffice.
     """
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
@@ -136,7 +135,7 @@ def style(line: DrawnLine) -> dict[str, Any]:
 # -- one panel ------------------------------------------------------------------------------------
 
 
-def _panel(axes: Any, panel: Panel) -> None:
+def _panel(axes: Any, panel: WorkPanel) -> None:
     if panel.floor:
         x, y = zip(*panel.floor, strict=True)
         axes.plot(x, y, linestyle="none", marker=".", markersize=3.5, color=INK, alpha=0.4)
@@ -157,7 +156,7 @@ def _panel(axes: Any, panel: Panel) -> None:
     axes.set_xlabel(panel.axis)
 
 
-def _line(axes: Any, panel: Panel, line: DrawnLine) -> None:
+def _line(axes: Any, panel: WorkPanel, line: DrawnLine) -> None:
     look = style(line)
     placed = [m for m in line.marks if m.y is not None]
     bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
@@ -172,23 +171,23 @@ def _line(axes: Any, panel: Panel, line: DrawnLine) -> None:
         )  # fmt: skip
 
 
-def _bottom(panel: Panel) -> float:
+def _bottom(panel: WorkPanel) -> float:
     heights = [m.y for line in panel.lines for m in line.marks if m.y is not None]
     return min((*heights, *(y for _, y in panel.floor)))
 
 
-def _mark_edge(axes: Any, panel: Panel) -> None:
+def _mark_edge(axes: Any, panel: WorkPanel) -> None:
     """Mark failed runs by a cross at the upper edge, values beyond it by a caret."""
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.05 * (high - low))
     for line in panel.lines:
         failed = [m.x for m in line.marks if m.y is None]
         values_beyond = [m.x for m in line.marks if panel.is_beyond(m)]
-        for places, marker in ((failed, "x"), (values_beyond, CARETUPBASE)):
-            if not places:
+        for abscissas, marker in ((failed, "x"), (values_beyond, CARETUPBASE)):
+            if not abscissas:
                 continue  # an unclipped line without points would still ask for room
             axes.plot(
-                places, [0.985] * len(places), transform=axes.get_xaxis_transform(),
+                abscissas, [0.985] * len(abscissas), transform=axes.get_xaxis_transform(),
                 linestyle="none", marker=marker, markersize=7, markeredgewidth=1.6, clip_on=False,
                 color=style(line)["color"],
             )  # fmt: skip
@@ -197,7 +196,7 @@ def _mark_edge(axes: Any, panel: Panel) -> None:
 # -- legend ---------------------------------------------------------------------------------------
 
 
-def _legend_of_marks(panels: Sequence[Panel]) -> list[Line2D]:
+def _legend_of_marks(panels: Sequence[WorkPanel]) -> list[Line2D]:
     """Return legend entries for the marks that occur."""
     marks = [m for panel in panels for line in panel.lines for m in line.marks]
     hollow = any(not m.is_full and m.y is not None for m in marks)
@@ -220,7 +219,7 @@ def _legend_of_marks(panels: Sequence[Panel]) -> list[Line2D]:
     ]
 
 
-def _entries(panels: Sequence[Panel]) -> list[Line2D]:
+def _entries(panels: Sequence[WorkPanel]) -> list[Line2D]:
     lines = [Line2D([], [], label=line.label, **style(line)) for line in panels[0].lines]
     return [*lines, *_legend_of_marks(panels)]
 
@@ -228,7 +227,7 @@ def _entries(panels: Sequence[Panel]) -> list[Line2D]:
 # -- names ----------------------------------------------------------------------------------------
 
 
-def _place_names(axes: Any, panel: Panel) -> None:
+def _place_names(axes: Any, panel: WorkPanel) -> None:
     """Write each name near its line's last mark, or another one, where it covers nothing."""
     renderer = axes.figure.canvas.get_renderer()
     occupied = [(x - 3, y - 3, x + 3, y + 3) for x, y in _covered_pixels(axes, panel)]
@@ -244,15 +243,15 @@ def _place_names(axes: Any, panel: Panel) -> None:
             text.remove()
 
 
-def _covered_pixels(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
+def _covered_pixels(axes: Any, panel: WorkPanel) -> Iterator[tuple[float, float]]:
     """Yield pixels under marks, lines and the floor, a few pixels apart."""
     to_pixels = axes.transData.transform
     for x, y in panel.floor:
         yield tuple(to_pixels((x, y)))
     for line in panel.lines:
-        places = [tuple(to_pixels((m.x, m.y))) for m in line.marks if m.y is not None]
-        yield from places
-        for (x0, y0), (x1, y1) in pairwise(places):
+        pixels = [tuple(to_pixels((m.x, m.y))) for m in line.marks if m.y is not None]
+        yield from pixels
+        for (x0, y0), (x1, y1) in pairwise(pixels):
             count = int(max(abs(x1 - x0), abs(y1 - y0)) / _PIXEL_GAP)
             for k in range(1, count):
                 yield x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count

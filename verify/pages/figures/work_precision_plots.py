@@ -1,6 +1,6 @@
 """The figures of error against run time, and their content.
 
-The drawing, and with it matplotlib, is imported only where something is drawn.
+The drawing, and with it matplotlib, is imported only if something is drawn.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,15 +10,14 @@ from statistics import median
 from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.captioned_plot import Plot, captioned_plot
-from verify.pages.figures.logarithm import lg
+from verify.pages.figures.captioned_plot import Plot, captioned_plot, lg
 from verify.pages.text.typography import interval, join_and
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import LimitedBy, WorkLine, WorkPoint, WorkPrecisionResult
 from verify.structures import SYMPLECTIC
 
 if TYPE_CHECKING:
-    from verify.pages.figures.work_precision_figure import DrawnLine, Mark, Panel
+    from verify.pages.figures.work_precision_figure import DrawnLine, WorkMark, WorkPanel
 
 _RUN_TIME = "run time in seconds"
 
@@ -40,38 +39,38 @@ def plots(result: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
         replace(panel, title=f"({letter}) {panel.title}") if len(panels) > 1 else panel
         for letter, panel in zip(ascii_lowercase, panels, strict=False)
     ]
-    what = join_and(panel.title for panel in panels)
+    titles = join_and(panel.title for panel in panels)
     yield captioned_plot(
         lambda: draw_panels(lettered),
         name=f"work-of-{name}",
-        lead=f"Over {interval(result.t0, result.time)}: {what}",
+        lead=f"Over {interval(result.t0, result.time)}: {titles}",
         caption=" ".join(caption for group, caption in panel_groups if group and caption),
     )
 
 
-def error_panels(result: WorkPrecisionResult) -> "Iterator[Panel]":
+def error_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
     """Yield the solution error against run time and, for the schemes, against the step size."""
     lines = [line for line in result.lines if _timed_points(line)]
     schemes = [line for line in lines if not line.peer]
     if lines:
-        from verify.pages.figures.work_precision_figure import Panel
+        from verify.pages.figures.work_precision_figure import WorkPanel
 
         of_time = tuple(_drawn_line(result, line, _marks_by_time(line)) for line in lines)
-        yield Panel("error against run time", _RUN_TIME, of_time, tuple(_floor_points(schemes)))
+        yield WorkPanel("error against run time", _RUN_TIME, of_time, tuple(_floor_points(schemes)))
     if schemes:
         of_step = tuple(_drawn_line(result, line, _marks_by_step(line)) for line in schemes)
         floor = tuple(_floor_points(schemes, by_step=True))
-        yield Panel("error against h", "step size h", of_step, floor)
+        yield WorkPanel("error against h", "step size h", of_step, floor)
 
 
-def _area_panels(result: WorkPrecisionResult) -> "Iterator[Panel]":
+def _area_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
     lines = tuple(
         _drawn_line(result, line, _area_marks(line)) for line in result.lines if _area_marks(line)
     )
     if lines:
-        from verify.pages.figures.work_precision_figure import Panel
+        from verify.pages.figures.work_precision_figure import WorkPanel
 
-        yield Panel(f"{result.structure.size} against run time", _RUN_TIME, lines)
+        yield WorkPanel(f"{result.structure.size} against run time", _RUN_TIME, lines)
 
 
 def _caption_of_areas(result: WorkPrecisionResult) -> str:
@@ -91,26 +90,26 @@ def _caption_of_areas(result: WorkPrecisionResult) -> str:
     return caption
 
 
-def _digit_panels(result: WorkPrecisionResult) -> "Iterator[Panel]":
+def _digit_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
     names = dict.fromkeys(p.arithmetic for p in result.systems if p.certified)
     if not names:
         return
-    from verify.pages.figures.work_precision_figure import DrawnLine, Mark, Panel
+    from verify.pages.figures.work_precision_figure import DrawnLine, WorkMark, WorkPanel
 
     lines = tuple(
         DrawnLine(
             arithmetic,
             arithmetic,
             tuple(
-                Mark(log10(p.seconds_median), float(p.certified))
+                WorkMark(log10(p.seconds_median), float(p.certified))
                 for p in result.systems
                 if p.arithmetic == arithmetic and p.certified and p.seconds_median
             ),
-            place,
+            style_index,
         )
-        for place, arithmetic in enumerate(names)
+        for style_index, arithmetic in enumerate(names)
     )
-    yield Panel("certified digits", "run time in seconds", lines, is_logarithmic=False)
+    yield WorkPanel("certified digits", "run time in seconds", lines, is_logarithmic=False)
 
 
 def _caption_of_digits(result: WorkPrecisionResult) -> str:
@@ -121,7 +120,7 @@ def _caption_of_digits(result: WorkPrecisionResult) -> str:
 
 
 def _drawn_line(
-    result: WorkPrecisionResult, line: WorkLine, marks: "Iterable[Mark]"
+    result: WorkPrecisionResult, line: WorkLine, marks: "Iterable[WorkMark]"
 ) -> "DrawnLine":
     from verify.pages.figures.work_precision_figure import DrawnLine
 
@@ -154,30 +153,32 @@ def _label_with_slope(line: WorkLine) -> str:
 
 def _place(result: WorkPrecisionResult, line: WorkLine) -> int:
     """Return the line's index among the schemes, or among the peers."""
-    return [other.name for other in result.lines if other.peer is line.peer].index(line.name)
+    return [other_line.name for other_line in result.lines if other_line.peer is line.peer].index(
+        line.name
+    )
 
 
 def _timed_points(line: WorkLine) -> list[WorkPoint]:
     return [p for p in line.points if p.seconds_median and p.error]
 
 
-def _marks_by_time(line: WorkLine) -> Iterator["Mark"]:
+def _marks_by_time(line: WorkLine) -> Iterator["WorkMark"]:
     """Yield the marks of error against run time."""
     timed = _timed_points(line)
     for point in line.points:
         yield from _marks_of(_run_time(point, timed), point.error, point.limited_by)
 
 
-def _marks_by_step(line: WorkLine) -> Iterator["Mark"]:
+def _marks_by_step(line: WorkLine) -> Iterator["WorkMark"]:
     """Yield the marks of error against the step size."""
     for point in line.points:
         x = lg(point.step_size) if point.step_size else None
         yield from _marks_of(x, point.error, point.limited_by)
 
 
-def _area_marks(line: WorkLine) -> list["Mark"]:
-    """Return the marks of |Λ| against run time, by the plain product where Λ is exactly 0."""
-    marks: list[Mark] = []
+def _area_marks(line: WorkLine) -> list["WorkMark"]:
+    """Return the marks of |Λ| against run time, by the plain product if Λ is exactly 0."""
+    marks: list[WorkMark] = []
     timed = _timed_points(line)
     for point in timed:
         value = point.lam_plain if line.area_preserving else point.area_error
@@ -187,14 +188,14 @@ def _area_marks(line: WorkLine) -> list["Mark"]:
 
 def _marks_of(
     x: float | None, value: Value | None, limited_by: LimitedBy | None
-) -> Iterator["Mark"]:
+) -> Iterator["WorkMark"]:
     """Yield the mark, unless it has no abscissa, or no digit of the value is known."""
-    from verify.pages.figures.work_precision_figure import Mark
+    from verify.pages.figures.work_precision_figure import WorkMark
 
     if x is not None and limited_by == "failed":
-        yield Mark(x, None)
+        yield WorkMark(x, None)
     elif x is not None and value and isfinite(lg(value.value)):
-        yield Mark(x, lg(value.value), limited_by != "rounding")
+        yield WorkMark(x, lg(value.value), limited_by != "rounding")
 
 
 def _run_time(point: WorkPoint, timed: Sequence[WorkPoint]) -> float | None:

@@ -9,22 +9,22 @@ _VOID = {"br", "img"}
 
 
 @dataclass(frozen=True)
-class Node:
+class MarkupNode:
     """An element: its tag, its attributes and its children, which are texts and elements."""
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
-    children: list["Node | str"] = field(default_factory=list)
+    children: list["MarkupNode | str"] = field(default_factory=list)
 
     @property
     def classes(self) -> list[str]:
         """The classes of the element."""
         return self.attributes.get("class", "").split()
 
-    def elements(self, *tags: str) -> list["Node"]:
+    def elements(self, *tags: str) -> list["MarkupNode"]:
         """Return the child elements, with `tags` only those of these tags."""
-        child_elements = [child for child in self.children if isinstance(child, Node)]
-        return [each for each in child_elements if not tags or each.tag in tags]
+        child_elements = [child for child in self.children if isinstance(child, MarkupNode)]
+        return [element for element in child_elements if not tags or element.tag in tags]
 
     @property
     def text(self) -> str:
@@ -32,27 +32,27 @@ class Node:
         return "".join(c if isinstance(c, str) else c.text for c in self.children)
 
 
-def tree(markup: Markup) -> Node:
+def tree(markup: Markup) -> MarkupNode:
     """Return the markup under a node without a tag; end tags that close nothing are ignored."""
-    reader = _Reader()
+    reader = _MarkupReader()
     reader.feed(str(markup))
     reader.close()
     return reader.open[0]
 
 
-class _Reader(HTMLParser):
+class _MarkupReader(HTMLParser):
     def __init__(self) -> None:
         super().__init__(convert_charrefs=True)
-        self.open = [Node("")]
+        self.open = [MarkupNode("")]
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        node = Node(tag, {key: text or "" for key, text in attrs})
+        node = MarkupNode(tag, {key: text or "" for key, text in attrs})
         self.open[-1].children.append(node)
         if tag not in _VOID:
             self.open.append(node)
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.open[-1].children.append(Node(tag, {key: text or "" for key, text in attrs}))
+        self.open[-1].children.append(MarkupNode(tag, {key: text or "" for key, text in attrs}))
 
     def handle_endtag(self, tag: str) -> None:
         # Only the innermost open element may be closed; other end tags are ignored.

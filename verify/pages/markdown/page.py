@@ -1,17 +1,24 @@
 """A report as one page of GitHub flavoured Markdown with its figures beside it, for a repository.
 
-It is the content of the HTML page in another format; nothing is added here.
+It is the content of the HTML page in another format; nothing is added here. Only the elements that
+the templates write are known; any other element is replaced by its content. Elements for the screen
+alone are skipped. Text reaches Markdown through `inline_text`, or as code.
+
+A table becomes one table for each group of rows, with the group's heading above it, since Markdown
+has neither heads of two rows nor rows of headings.
 """
 
 import re
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
 
 from markupsafe import Markup
 
 from verify.files import write_atomically
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.markdown.blocks import document
-from verify.pages.markdown.markup import tree
+from verify.pages.markdown.inline_text import Markdown, line, render_html, table
+from verify.pages.markdown.markup import MarkupNode, tree
 from verify.pages.page import DATA, environment, page_view
 from verify.scenes.results.report import Report
 
@@ -19,6 +26,16 @@ _CONTENT = '{% include "content.html" %}{% include "footer.html" %}'
 TEXT, FIGURES = "report.md", "figures"
 # The names of figures that `write` has written; other files of the folder are not touched.
 _FIGURE_NAME = re.compile(r"figure-[0-9]{2,}\.svg")
+# Elements of these classes help on a screen only, and are left out.
+_SCREEN_CLASSES = {"mark", "kind"}
+# Elements of these classes are set in bold letters.
+_STRONG = {"finding", "label"}
+_CONTAINERS = {"article", "div", "figure", "header", "section"}
+_LINES = {"p", "figcaption"}
+_HEADINGS = {f"h{level}": "#" * level for level in range(1, 7)}
+_OWN_RULES = {"details", "dl", "footer", "img", "ol", "pre", "table", "ul"}
+_BLOCKS = {*_OWN_RULES, *_CONTAINERS, *_LINES, *_HEADINGS}
+_RowNodes = list[list[MarkupNode]]
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -43,7 +60,7 @@ def render(report: Report) -> tuple[str, dict[str, str]]:
 
     def image(plot: Plot) -> Markup:
         """Store the plot as a document and return the image with its text alternative."""
-        from verify.pages.figures import svg  # and with it matplotlib, where something is drawn
+        from verify.pages.figures import svg  # and with it matplotlib, if something is drawn
 
         path = f"{FIGURES}/figure-{len(figures) + 1:02}.svg"
         figures[path] = svg.document([plot.svg])
@@ -52,3 +69,191 @@ def render(report: Report) -> tuple[str, dict[str, str]]:
     templates = environment(render_plot=image)
     content = templates.from_string(_CONTENT).render(page=page_view(report))
     return document(tree(Markup(content))), figures  # noqa: S704 - the page's own markup
+
+
+# -- blocks ---------------------------------------------------------------------------------------
+
+
+def document(root: MarkupNode) -> str:
+    """Return the document as Markdown, with anchors at the targets of its own links."""
+    links = {a.attributes.get("href", "").removeprefix("#") for a in _walk(root) if a.tag == "a"}
+    return "\n\n".join(_BlockWriter(links).blocks_in(root)) + "\n"
+
+
+def _walk(node: MarkupNode) -> Iterator[MarkupNode]:
+    yield node
+    for child in node.elements():
+        yield from _walk(child)
+
+
+class _BlockWriter:
+    def __init__(self, links: set[str]) -> None:
+        self._links = links - {""}
+
+    def blocks_in(self, node: MarkupNode) -> list[Markdown]:
+        """Return the blocks in the node; texts and inline elements are joined to paragraphs."""
+        return self._blocks_of(node.children)
+
+    def _blocks_of(self, children: Iterable[MarkupNode | str]) -> list[Markdown]:
+        blocks: list[Markdown] = []
+        pending: list[MarkupNode | str] = []
+        for child in children:
+            if isinstance(child, str) or not _is_block(child):
+                pending.append(child)
+            else:
+                blocks += [*_paragraph(pending), *self._block(child)]
+                pending = []
+        return [*blocks, *_paragraph(pending)]
+
+    def _block(self, node: MarkupNode) -> Iterator[Markdown]:
+        if _SCREEN_CLASSES & set(node.classes):
+            return
+        if (anchor := node.attributes.get("id", "")) in self._links:
+            yield Markdown(f'<a id="{anchor}"></a>')
+        if node.tag in _HEADINGS:
+            yield from _heading(node)
+        elif node.tag in _LINES:
+            strong = _STRONG & set(node.classes)
+            yield from _paragraph([MarkupNode("b", {}, node.children)] if strong else node.children)
+        elif node.tag == "img":
+            alternative = line([node.attributes["alt"]])
+            yield Markdown(f"![{alternative}]({node.attributes['src']})")
+        elif node.tag == "math":
+            yield Markdown(line([node], escapes_start=False).strip())
+        elif node.tag == "pre":
+            yield _code(node)
+        elif node.tag == "table":
+            yield from tables(node)
+        elif node.tag == "details":
+            yield from self._details(node)
+        elif node.tag in ("ul", "ol"):
+            yield _list(
+                (self.blocks_in(item) for item in node.elements("li")), numbered=node.tag == "ol"
+            )
+        elif node.tag == "dl":
+            yield _list(map(self._definition, node.elements("div")))
+        elif node.tag == "footer":
+            yield from (Markdown("---"), *self.blocks_in(node))
+        else:
+            yield from self.blocks_in(node)
+
+    def _details(self, node: MarkupNode) -> Iterator[Markdown]:
+        (head,) = node.elements("summary")
+        body = [c for c in node.children if c is not head]
+        yield Markdown(f"<details>\n<summary>{render_html(head)}</summary>")
+        yield from self._blocks_of(body)
+        yield Markdown("</details>")
+
+    def _definition(self, node: MarkupNode) -> list[Markdown]:
+        """Return a term with its meaning, on the same line if that begins with text."""
+        (term,), (meaning,) = node.elements("dt"), node.elements("dd")
+        blocks = self.blocks_in(meaning)
+        first = next((c for c in meaning.children if isinstance(c, MarkupNode) or c.strip()), "")
+        is_inline = isinstance(first, str) or first.tag in _LINES or not _is_block(first)
+        head = f"<b>{line(term.children)}</b>:"
+        if is_inline and blocks:
+            return [Markdown(f"{head} {blocks[0]}"), *blocks[1:]]
+        return [Markdown(head), *blocks]
+
+
+def _is_block(node: MarkupNode) -> bool:
+    return node.tag in _BLOCKS or node.attributes.get("display") == "block"
+
+
+def _paragraph(children: Iterable[MarkupNode | str]) -> list[Markdown]:
+    visible = (c for c in children if isinstance(c, str) or not _SCREEN_CLASSES & set(c.classes))
+    text = line(visible)
+    return [text] if text else []
+
+
+def _heading(node: MarkupNode) -> Iterator[Markdown]:
+    """Yield the heading, and below it the verdicts that are counted in it."""
+    tallies = [c for c in node.elements() if "tally" in c.classes]
+    yield Markdown(f"{_HEADINGS[node.tag]} {line(c for c in node.children if c not in tallies)}")
+    yield from _paragraph(tallies)
+
+
+def _code(node: MarkupNode) -> Markdown:
+    """Return the code between fences that are longer than any run of backticks in it."""
+    language = next((c.removeprefix("language-") for n in _walk(node) for c in n.classes), "")
+    longest = max(map(len, re.findall("`+", node.text)), default=0)
+    # The fence must be longer than any run of backticks in the code, which would end it.
+    fence = "`" * max(3, longest + 1)
+    return Markdown(f"{fence}{language}\n{node.text.strip(chr(10))}\n{fence}")
+
+
+def _list(items: Iterable[list[Markdown]], *, numbered: bool = False) -> Markdown:
+    """Return the list, with the further blocks of an item below its text."""
+    indent = "   " if numbered else "  "
+    texts = [re.sub(r"\n(?!\n)", f"\n{indent}", "\n\n".join(item)) for item in items]
+    separator = "\n\n" if any("\n" in item for item in texts) else "\n"
+    marks = (f"{n}." if numbered else "-" for n, _ in enumerate(texts, start=1))
+    return Markdown(
+        separator.join(f"{mark} {item}" for mark, item in zip(marks, texts, strict=True))
+    )
+
+
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def tables(node: MarkupNode) -> Iterator[Markdown]:
+    """Yield the caption, and then each group with its heading."""
+    (head,) = node.elements("thead")
+    heads = _heads(_rows(head))
+    for caption in node.elements("caption"):
+        yield line(caption.children)
+    groups = [list(_groups(_rows(body))) for body in node.elements("tbody")]
+    all_rows = [row for body in groups for _, rows in body for row in rows]
+    # Rows may have more cells than there are heads; Markdown drops cells without a head.
+    heads += [Markdown("")] * (max(map(len, all_rows), default=0) - len(heads))
+    columns = ([row[i] for row in all_rows if len(row) > i] for i in range(len(heads)))
+    numbers = "numbers" in node.classes
+    alignments = "".join(_alignment(column) if numbers else "l" for column in columns)
+    for label, rows in (group for body in groups for group in body):
+        if label:
+            yield Markdown(f"<b>{label}</b>")
+        yield table(heads, [[line(cell.children) for cell in row] for row in rows], alignments)
+
+
+def _rows(node: MarkupNode) -> _RowNodes:
+    return [row.elements("td", "th") for row in node.elements("tr")]
+
+
+def _groups(rows: _RowNodes) -> Iterator[tuple[Markdown, _RowNodes]]:
+    """Yield each heading, "" if there is none, with the rows below it."""
+    label = Markdown("")
+    group_rows: _RowNodes = []
+    for row in rows:
+        if row and row[0].attributes.get("scope") == "rowgroup":
+            if group_rows:
+                yield label, group_rows
+            label, group_rows = line(row[0].children), []
+        else:
+            group_rows.append(row)
+    yield label, group_rows
+
+
+def _heads(rows: _RowNodes) -> list[Markdown]:
+    """Return for each column the texts of all cells above it, from the top."""
+    # (row, column) → text; None where a cell from a row above reaches down.
+    texts: dict[tuple[int, int], Markdown | None] = {}
+    for r, row in enumerate(rows):
+        for cell in row:
+            c = next(c for c in range(len(texts) + 1) if (r, c) not in texts)
+            for down, right in product(range(_span(cell, "row")), range(_span(cell, "col"))):
+                texts[r + down, c + right] = None if down else line(cell.children)
+    columns = range(max((c for _, c in texts), default=-1) + 1)
+    columns_of_texts = ([texts.get((r, c)) for r in range(len(rows))] for c in columns)
+    return [Markdown(", ".join(filter(None, column_texts))) for column_texts in columns_of_texts]
+
+
+def _span(cell: MarkupNode, way: str) -> int:
+    return int(cell.attributes.get(f"{way}span", "1"))
+
+
+def _alignment(column: Sequence[MarkupNode]) -> str:
+    """Return the alignment of a column: words to the left, numbers to the right."""
+    if any("words" in cell.classes for cell in column):
+        return "l"
+    alone = [cell.text.strip() for cell in column if _span(cell, "col") == 1]
+    return "l" if any(text[:1].isalpha() for text in alone) else "r"

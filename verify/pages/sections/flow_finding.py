@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, Decimal
 from fractions import Fraction
 
-from verify.pages.sections.by_key import by_key
-from verify.pages.sections.flow_words import Words, words
+from verify.pages.sections.flow_vocabulary import Words, vocabulary_of
+from verify.pages.sections.table_rows import by_key
 from verify.pages.text.typography import IS, NBSP, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
@@ -20,18 +20,18 @@ FlowFinding = tuple[FlowResult, FlowImage]
 def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
     """Yield the sentences on all regions of a scene."""
     images = [(flow, image) for flow in flows for image in flow.images]
-    changing = [each for each in images if each[1].area_preserving is not True]
-    measured_images = [each for each in changing if each[1].area_change is not None]
-    vocabulary = words(flows)
+    changing = [pair for pair in images if pair[1].area_preserving is not True]
+    measured_images = [pair for pair in changing if pair[1].area_change is not None]
+    vocabulary = vocabulary_of(flows)
     if measured_images:
         yield _describe_largest_change(measured_images, vocabulary)
         yield _describe_probe_error(measured_images)
         yield from _compare_with_means(measured_images, vocabulary)
     yield from _describe_preserving_maps(
-        [each for each in images if each[1].area_preserving], vocabulary
+        [pair for pair in images if pair[1].area_preserving], vocabulary
     )
-    yield from _describe_distances([each for each in images if each[1].distance is not None])
-    problems = [each for each in images if each[1].problem]
+    yield from _describe_distances([pair for pair in images if pair[1].distance is not None])
+    problems = [pair for pair in images if pair[1].problem]
     if problems:
         count = "image has" if len(problems) == 1 else "images have"
         yield (
@@ -41,7 +41,7 @@ def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
 
 
 def _describe_largest_change(images: Sequence[FlowFinding], vocabulary: Words) -> str:
-    flow, image = max(images, key=lambda each: _size(each[1].area_change))
+    flow, image = max(images, key=lambda pair: _size(pair[1].area_change))
     return (
         f"The largest relative change of {vocabulary.invariant} is that by {image.map} with "
         f"{_step_and_count(flow, image)}: {_format_change(image)}."
@@ -95,9 +95,9 @@ def _compare_with_means(images: Sequence[FlowFinding], vocabulary: Words) -> Ite
 
 def _describe_preserving_maps(images: Sequence[FlowFinding], vocabulary: Words) -> Iterator[str]:
     schemes = list(dict.fromkeys(i.map for _, i in images if i.map != EXACT_FLOW))
-    exact = any(image.map == EXACT_FLOW for _, image in images)
+    has_exact_flow = any(image.map == EXACT_FLOW for _, image in images)
     reasons = [f"{vocabulary.identity} is proved for {join_and(schemes)}"] if schemes else []
-    if exact:
+    if has_exact_flow:
         reasons.append(vocabulary.kept_by_flow)
     measured_images = [image for _, image in images if image.area_change is not None]
     if not reasons or not measured_images:
@@ -125,8 +125,8 @@ def _capital(text: str) -> str:
 def _describe_distances(images: Sequence[FlowFinding]) -> Iterator[str]:
     """Yield the greatest distance of each scheme's outlines from the exact ones."""
     parts = []
-    for name, scheme_images in by_key(images, lambda each: each[1].map).items():
-        flow, image = max(scheme_images, key=lambda each: _size(each[1].distance))
+    for name, scheme_images in by_key(images, lambda pair: pair[1].map).items():
+        flow, image = max(scheme_images, key=lambda pair: _size(pair[1].distance))
         parts.append(f"{name} {_format_distance(image)} ({_step_and_count(flow, image)})")
     if parts:
         yield f"The outlines’ distance from those by the exact flow: {join_and(parts)}."
@@ -138,16 +138,16 @@ def _describe_distances(images: Sequence[FlowFinding]) -> Iterator[str]:
 def finding(flow: FlowResult) -> Iterator[str]:
     """Yield the change of area by each scheme after the most steps, proofs, and distances.
 
-    Where the last image failed, the last one with a measured change is reported too.
+    If the last image failed, the last one with a measured change is reported too.
     """
     ascending = sorted(flow.images, key=lambda image: image.steps)
     for name, images in by_key(ascending, lambda image: image.map).items():
         measured_images = [image for image in images if image.area_change is not None]
         if name != EXACT_FLOW:
             yield from (
-                _describe_image(flow, each)
-                for each in measured_images[-1:]
-                if each is not images[-1]
+                _describe_image(flow, measured_image)
+                for measured_image in measured_images[-1:]
+                if measured_image is not images[-1]
             )
             yield _describe_image(flow, images[-1])
     yield from _describe_projections(flow)
@@ -155,10 +155,10 @@ def finding(flow: FlowResult) -> Iterator[str]:
 
 def _describe_image(flow: FlowResult, image: FlowImage) -> str:
     start = f"{image.map} with {_step_and_count(flow, image)}"
-    vocabulary = words([flow])
+    vocabulary = vocabulary_of([flow])
     if image.area_change is None:
-        why = image.problem or "none was measured"
-        return f"{start}: no change of {vocabulary.invariant} is known ({why})."
+        reason = image.problem or "none was measured"
+        return f"{start}: no change of {vocabulary.invariant} is known ({reason})."
     away = ""
     if image.distance is not None:
         away = f" Its outlines are {_format_distance(image)} away from the exact ones."
@@ -186,7 +186,7 @@ def mean_of(image: FlowImage) -> tuple[str | None, str | None]:
 
 
 def _name_invariant(flow: FlowResult) -> str:
-    invariant = words([flow]).invariant
+    invariant = vocabulary_of([flow]).invariant
     return (
         f"{invariant} around {region_of(flow)}"
         if flow.plane
@@ -232,7 +232,7 @@ def _format_change(image: FlowImage) -> str:
 
 
 def _format_distance(image: FlowImage) -> str:
-    """Return a distance with its error; where that is as large, the bound that both give."""
+    """Return a distance with its error; if that is as large, the bound that both give."""
     distance, error = _size(image.distance), _size(image.distance_error)
     if error < distance:
         return f"up to {_with_error(image.distance, image.distance_error)}"
@@ -241,8 +241,8 @@ def _format_distance(image: FlowImage) -> str:
 
 def _round_up(value: Fraction) -> str:
     """Return a bound rounded up to two digits."""
-    exact = Decimal(value.numerator) / Decimal(value.denominator)
-    return f"{exact.quantize(Decimal((0, (1,), exact.adjusted() - 1)), ROUND_CEILING):.1e}"
+    quotient = Decimal(value.numerator) / Decimal(value.denominator)
+    return f"{quotient.quantize(Decimal((0, (1,), quotient.adjusted() - 1)), ROUND_CEILING):.1e}"
 
 
 def _with_error(value: str | None, error: str | None) -> str:

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from decimal import Decimal
 from math import floor
 
-from verify.pages.figures.logarithm import lg
-from verify.pages.sections.separation_finding import decades_below
+from verify.pages.figures.captioned_plot import lg
+from verify.pages.sections.separation_summary import decades_below
 from verify.pages.text.typography import NBSP, count_noun, number, whole
 from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.separation_parts import EvaluationResult
@@ -58,7 +58,7 @@ def short_value(measure: str, value: float) -> tuple[str, str]:
 
 
 def format_power(value: float) -> str:
-    """Return 10^value to two digits, also where it is out of the range of floats."""
+    """Return 10^value to two digits, also if it is out of the range of floats."""
     exponent = floor(value)
     if _PLAIN[0] <= value < _PLAIN[1]:
         return f"{Decimal(f'{10**value:.1e}'):f}"
@@ -72,17 +72,17 @@ def format_power(value: float) -> str:
 # -- Λ in float64 ---------------------------------------------------------------------------------
 
 
-def describe_lambda(each: GalleryScene) -> Iterator[str]:
+def describe_lambda(scene: GalleryScene) -> Iterator[str]:
     """Yield the step from which on Λ in float64 is meaningless, or the digits that it keeps."""
     separation, lost_after, resumes_at = (
-        each.separation,
-        each.meaningless_after,
-        each.meaningful_from,
+        scene.separation,
+        scene.meaningless_after,
+        scene.meaningful_from,
     )
     count = count_noun(separation.steps, "step")
     if separation.plain is None:
-        why = separation.reason or separation.status
-        yield f"Λ of float64 cannot be split over {count}: {why}."
+        reason = separation.reason or separation.status
+        yield f"Λ of float64 cannot be split over {count}: {reason}."
     elif lost_after is None:
         yield _describe_digits_kept(separation.plain, count)
     else:
@@ -114,7 +114,7 @@ def _describe_digits_kept(plain: EvaluationResult, count: str) -> str:
 
 
 def _describe_pure_rounding(plain: EvaluationResult) -> Iterator[str]:
-    """Yield the size of Λ where the scheme preserves area, so that all of Λ is rounding."""
+    """Yield the size of Λ if the scheme preserves area, so that all of Λ is rounding."""
     truncation = plain.parts.truncation
     if (
         _is_zero(truncation.value)
@@ -129,9 +129,9 @@ def _is_zero(size: str) -> bool:
     return Decimal(size) == 0
 
 
-def describe_longer_run(each: GalleryScene) -> Iterator[str]:
-    """Yield why the longer run is not the one that is shown, where it is not."""
-    if each.longer is not None:
-        why = each.longer.reason or each.longer.status
-        count = count_noun(each.longer.steps, "step")
-        yield f"A longer run of {count} cannot be split: {why}."
+def describe_longer_run(scene: GalleryScene) -> Iterator[str]:
+    """Yield why the longer run is not the one that is shown, if it is not."""
+    if scene.longer is not None:
+        reason = scene.longer.reason or scene.longer.status
+        count = count_noun(scene.longer.steps, "step")
+        yield f"A longer run of {count} cannot be split: {reason}."

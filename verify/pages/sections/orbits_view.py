@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, SectionPlace
+from verify.pages.sections.table_rows import TableRow
 from verify.pages.text.typography import whole
-from verify.scenes.results.orbit_sections import PoincareOrbit, StroboscopicOrbit
+from verify.scenes.results.orbit_points import PoincareOrbit, StroboscopicOrbit
 
 Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
 
@@ -19,15 +19,15 @@ class OrbitsView:
     anchor: str
     title: str
     finding: str
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
     plot: Plot
     source: str = ""
 
 
 def pictures(views: Sequence[OrbitsView], rank: int) -> Iterator[Picture]:
     """Yield the picture of each view, for the first screen."""
-    for each in views:
-        yield Picture((rank,), each.plot, SectionPlace(each.anchor, each.title))
+    for view in views:
+        yield Picture((rank,), view.plot, SectionPlace(view.anchor, view.title))
 
 
 def title_from(source: str, title: str) -> str:
@@ -37,12 +37,12 @@ def title_from(source: str, title: str) -> str:
 
 def describe_partly_known(orbits: Orbits, lost: Orbits, looks: str) -> str:
     """Return how many orbits are known for a part of the time only, and for how long at least."""
-    first = min(orbit.known for orbit in lost)
+    least = min(orbit.known for orbit in lost)
     many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
     part = "is known for a part" if len(lost) == 1 else "are known for a part"
-    return f"{many} {part} of the time alone, at least for {whole(first)} {looks}"
+    return f"{many} {part} of the time alone, at least for {whole(least)} {looks}"
 
 
 def describe_escape(orbit: PoincareOrbit | StroboscopicOrbit) -> str:
-    """Return a note that the orbit left every range; "" where it did not."""
+    """Return a note that the orbit left every range; "" if it did not."""
     return "it leaves every range" if orbit.left else ""

@@ -2,7 +2,7 @@
 
 A file `NAME.py` in `page/`, `scene/` or `scheme/` defines `SECTION`; what it shows is set by the
 template `LEVEL/NAME.html`, as the page and as Markdown. Adding a section is adding these two, and
-a file in `verify/pages/figures/` where it draws.
+a file in `verify/pages/figures/` if it draws.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from verify.discovery import Catalogue
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.sections.by_key import by_key
+from verify.pages.sections.table_rows import by_key
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
@@ -29,7 +29,7 @@ class SectionPlace:
 
 
 @dataclass(frozen=True)
-class Entry:
+class ContentsEntry:
     """A place in the contents: verdicts counted in it, and the places within.
 
     `is_numbered`: these are listed by their numbers alone, in a line.
@@ -38,7 +38,7 @@ class Entry:
     anchor: str
     title: str | Markup
     counts: Counts = ()
-    inner: tuple["Entry", ...] = ()
+    inner: tuple["ContentsEntry", ...] = ()
     is_numbered: bool = False
 
 
@@ -56,7 +56,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Tile:
-    """A tile; `weight`: its share of the bar below the tiles, 0 where the tiles are no counts."""
+    """A tile; `weight`: its share of the bar below the tiles, 0 if the tiles are no counts."""
 
     verdict: Verdict
     sign: str
@@ -71,11 +71,11 @@ def _nothing(*_: object) -> tuple[()]:
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A section by its functions, of which `view` alone is required.
 
     `view` takes the subject of its level (`PageContents` on the page; scene and anchor; scene,
-    proof and anchor) and returns the object that the template shows, or None or an empty one where
+    proof and anchor) and returns the object that the template shows, or None or an empty one if
     there is nothing to show. All other functions take the view.
     """
 
@@ -83,7 +83,7 @@ class Section:
     view: Callable[..., Any]
     title: str = ""  # its heading, and its name in the contents; "": its template has its own
     anchor: str = ""  # where the page's contents and links lead, with that of its scene
-    entries: Callable[[Any], Iterable[Entry]] = _nothing  # within its own; or in its place
+    entries: Callable[[Any], Iterable[ContentsEntry]] = _nothing  # within its own; or in its place
     is_numbered: bool = False  # its entries are numbers
     inner: Callable[[Any], Iterable["VisibleSection"]] = _nothing  # the sections within it
     pictures: Callable[[Any], Iterable[Picture]] = _nothing
@@ -103,14 +103,14 @@ class Section:
 class VisibleSection:
     """A section that has something to show; `place`: that of its page, scene or scheme."""
 
-    section: Section
+    section: ReportSection
     template: str
     view: Any
     place: SectionPlace
 
     @property
     def anchor(self) -> str:
-        """The anchor of the section; "" where it has no place of its own."""
+        """The anchor of the section; "" if it has no place of its own."""
         section_anchor, place_anchor = self.section.anchor, self.place.anchor
         return (
             f"{section_anchor}-of-{place_anchor}"
@@ -129,29 +129,29 @@ class VisibleSection:
         return f"{self.section.title}, {self.place.name}" if self.place.name else self.section.title
 
     @property
-    def entries(self) -> tuple[Entry, ...]:
-        """Its entry in the contents with the inner ones; these alone where it has no title."""
+    def entries(self) -> tuple[ContentsEntry, ...]:
+        """Its entry in the contents with the inner ones; these alone if it has no title."""
         inner = tuple(self.section.entries(self.view))
         if not (self.section.title and self.anchor):
             return inner
         numbered = self.section.is_numbered
-        return (Entry(self.anchor, self.section.title, inner=inner, is_numbered=numbered),)
+        return (ContentsEntry(self.anchor, self.section.title, inner=inner, is_numbered=numbered),)
 
     @property
     def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, SectionPlace]]:
         """Its pictures for the first screen, each with its rank and the place that says more."""
         place = SectionPlace(self.anchor, self.place.name) if self.anchor else self.place
-        for each in self.section.pictures(self.view):
-            yield each.rank, each.plot, each.place or place
+        for picture in self.section.pictures(self.view):
+            yield picture.rank, picture.plot, picture.place or place
 
 
-def sections(files: Catalogue) -> list[tuple[str, Section]]:
+def sections(files: Catalogue) -> list[tuple[str, ReportSection]]:
     """Return the sections in these files with the names of their templates, in their order."""
     templates = [
         (f"{files.folder(name)}/{name.replace('-', '_')}.html", files.module(name).SECTION)
         for name in files.names
     ]
-    return sorted(templates, key=lambda each: each[1].order)
+    return sorted(templates, key=lambda template_and_section: template_and_section[1].order)
 
 
 def select_sections(
@@ -164,9 +164,9 @@ def select_sections(
 
 def walk(visible: Iterable[VisibleSection]) -> Iterator[VisibleSection]:
     """Yield each section, and after it those within it."""
-    for each in visible:
-        yield each
-        yield from walk(each.section.inner(each.view))
+    for section in visible:
+        yield section
+        yield from walk(section.section.inner(section.view))
 
 
 def terms(visible: Iterable[VisibleSection]) -> dict[str, Markup]:
@@ -174,8 +174,8 @@ def terms(visible: Iterable[VisibleSection]) -> dict[str, Markup]:
     return {
         term: meaning
         # A section may be visible in several scenes; its terms are explained once.
-        for same_template in by_key(walk(visible), lambda each: each.template).values()
+        for same_template in by_key(walk(visible), lambda section: section.template).values()
         for term, meaning in same_template[0]
-        .section.terms([each.view for each in same_template])
+        .section.terms([section.view for section in same_template])
         .items()
     }

@@ -1,6 +1,6 @@
 """MathML within a line, with fractions in one row, as stacked letters would be too small.
 
-`h³/2 · p` becomes ½h³p, where the fraction has a character of its own, else (h³/24) p; a quotient
+`h³/2 · p` becomes ½h³p, if the fraction has a character of its own, else (h³/24) p; a quotient
 becomes p/(2q).
 """
 
@@ -51,8 +51,8 @@ def _set_in_a_row(numerator: Element, denominator: Element, *, alone: bool) -> E
         # A fraction with a character of its own, such as ½, needs neither slash nor brackets.
         sign = _CHARACTERS.get(Fraction(top, int(denominator.text or 1)))
         if sign:
-            others = factors[1:] if head.tag == "mn" else [_element("mo", _TIMES), *factors]
-            return _row([_element("mn", sign), *others])
+            other_factors = factors[1:] if head.tag == "mn" else [_element("mo", _TIMES), *factors]
+            return _row([_element("mn", sign), *other_factors])
     top_alone = numerator.tag != "mrow" or all(map(_is_factor, factors))
     slash = _element("mo", "/", lspace="0", rspace="0")
     row = _row(

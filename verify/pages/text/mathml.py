@@ -2,16 +2,15 @@
 
 The text is read by the whitelist parser and never evaluated. A text that the parser refuses (such
 as a formula longer than its limit) is shown as it is written. The order of terms and factors is
-defined in `verify.pages.text.terms`.
+defined in `verify.pages.text.formula_parts`.
 
 sympy's own printers, to MathML and to LaTeX, order sums and factors by sympy's rules (3δq² + 1,
-δh³), put every argument in growing brackets, and the first writes a minus as a hyphen.
-latex2mathml, over the second, keeps that order, and sets the index of k_max as three letters.
+δh³), put every argument in growing brackets, and the first writes a minus as a hyphen. latex2mathml
+over the second keeps that order, and sets the index of k_max as three letters.
 """
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias
 
 import sympy
 from markupsafe import Markup, escape
@@ -20,10 +19,8 @@ from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
 from verify.functions import by_name
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
+from verify.pages.text.formula_parts import Expr, FormulaTerm, factor_key, split_name, terms_of
 from verify.pages.text.inline_math import flatten_fractions
-from verify.pages.text.terms import Term, factor_key, terms_of
-
-Expr: TypeAlias = sympy.Expr
 
 # Characters of a formula that is shown as plain text; the rest is cut off.
 LONGEST_SHOWN = 600
@@ -31,21 +28,12 @@ LONGEST_SHOWN = 600
 _MIN_STACKED = 4
 # Signs and names of a sum that fits on one line.
 _MAX_LINE = 40
-
-# sympy's names; `lamda` is written so since `lambda` is a keyword of Python.
-GREEK = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
-    "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
-    "xi": "ξ", "omicron": "ο", "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ",
-    "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
-    "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω",
-}  # fmt: skip
 _TAGS = re.compile("<[^>]*>")
 _TIMES = "<mo>\u2062</mo>"
 # A thin space stands before a function's name, as in p sin q.
 _TIMES_THIN = '<mo lspace="0.17em" rspace="0">\u2062</mo>'
 _APPLY = '<mo lspace="0" rspace="0">\u2061</mo>'
-# A thin space stands after a function's name where no parenthesis follows, as in sin q.
+# A thin space stands after a function's name if no parenthesis follows, as in sin q.
 _APPLY_THIN = '<mo lspace="0" rspace="0.17em">\u2061</mo>'
 _OPEN, _CLOSE = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
 _SLASH = '<mo lspace="0" rspace="0">/</mo>'
@@ -84,7 +72,7 @@ def equation(left: str, text: str) -> Markup:
 
 
 def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
-    """Return `left` = matrix of formulas as a display; None where an entry cannot be read."""
+    """Return `left` = matrix of formulas as a display; None if an entry cannot be read."""
     expressions = [[read(entry) for entry in row] for row in rows]
     if any(entry is None for row in expressions for entry in row):
         return None
@@ -142,7 +130,7 @@ def hamiltonian(text: str) -> Markup:
 
 
 def read(text: str) -> Expr | None:
-    """Return the expression, or None where the whitelist parser refuses the text."""
+    """Return the expression, or None if the whitelist parser refuses the text."""
     try:
         return parse(text, {n for n in _identifiers(text) if n not in FUNCTIONS})
     except InputError:
@@ -150,7 +138,7 @@ def read(text: str) -> Expr | None:
 
 
 def plain(text: str) -> Markup:
-    """Return a formula as plain text, cut where it is too long for any reader."""
+    """Return a formula as plain text, cut if it is too long for any reader."""
     if len(text) > LONGEST_SHOWN:
         beginning = text[:LONGEST_SHOWN]
         return Markup("<code>{}</code>… ({:,} characters; all of them in results.json)").format(
@@ -182,7 +170,7 @@ def _sum(expression: Expr) -> str:
     return _row("".join(parts)) if len(parts) > 2 or parts[0] else parts[1]
 
 
-def _sign(term: Term, *, first: bool) -> str:
+def _sign(term: FormulaTerm, *, first: bool) -> str:
     if term.is_negative:
         return "<mo>−</mo>"
     return "" if first else "<mo>+</mo>"
@@ -191,7 +179,7 @@ def _sign(term: Term, *, first: bool) -> str:
 # -- products -------------------------------------------------------------------------------------
 
 
-def _product(term: Term) -> str:
+def _product(term: FormulaTerm) -> str:
     """Return the term without its sign."""
     size = abs(term.coefficient)
     factors = sorted(term.factors, key=factor_key)
@@ -203,13 +191,13 @@ def _product(term: Term) -> str:
     # Over a bare number stand the powers of h, else those of all symbols: (h³/2) p sin q, δq⁴/4.
     numerator = [f for f in factors if str(f.as_base_exp()[0]) == "h"]
     numerator = numerator or [f for f in factors if f.as_base_exp()[0].is_Symbol]
-    others = [f for f in factors if f not in numerator]
+    other_factors = [f for f in factors if f not in numerator]
     fraction = f"<mfrac>{_join_factors(size.p, numerator)}<mn>{size.q}</mn></mfrac>"
-    return _join_factors(1, others, before=fraction)
+    return _join_factors(1, other_factors, before=fraction)
 
 
 def _join_factors(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
-    """Return number · factors in a row, without the number where it is 1 and something follows."""
+    """Return number · factors in a row, without the number if it is 1 and something follows."""
     factors = list(factors)
     is_alone = number == 1 and len(factors) == 1 and not before
     parts = [before] if before else []
@@ -292,15 +280,11 @@ def identifier(text: str, power: str = "") -> str:
 
     `power`: markup that stands above the subscript.
     """
-    stem, index_text = _parts(text)
-    letter = _word(GREEK.get(stem, stem))
+    letter_text, index_text = split_name(text)
+    letter = _word(letter_text)
     if not index_text:
         return f"<msup>{letter}{power}</msup>" if power else letter
-    index = (
-        f"<mn>{index_text}</mn>"
-        if index_text.isdigit()
-        else _word(GREEK.get(index_text, index_text))
-    )
+    index = f"<mn>{index_text}</mn>" if index_text.isdigit() else _word(index_text)
     if power:
         return f"<msubsup>{letter}{index}{power}</msubsup>"
     return f"<msub>{letter}{index}</msub>"
@@ -310,9 +294,3 @@ def _word(text: str) -> str:
     """Return a name as markup; a letter is slanted, a word upright (see the style sheet)."""
     upright = ' mathvariant="normal"' if len(text) > 1 else ""
     return f"<mi{upright}>{escape(text)}</mi>"
-
-
-def _parts(text: str) -> tuple[str, str]:
-    """Return a name's letter and its index: omega0 → omega, 0; k_max → k, max."""
-    match = re.fullmatch(r"([A-Za-z]+)_?([0-9]+)|([A-Za-z]+)_([A-Za-z0-9]+)", text)
-    return (match[1] or match[3], match[2] or match[4]) if match else (text, "")

@@ -28,7 +28,7 @@ class Piece:
 
 
 def attach_scripts(base: str, lower: str, upper: str, *, below: bool) -> str:
-    """Return the base with its lower and upper scripts, where there are any."""
+    """Return the base with its lower and upper scripts, if there are any."""
     if not (lower or upper):
         return base
     tag = {(True, True): "subsup", (True, False): "sub", (False, True): "sup"}[
@@ -85,13 +85,13 @@ def _needs_space(before: Piece | None, item: Piece) -> bool:
 def split_rows(items: list[Piece]) -> list[list[Piece]]:
     """Split a formula that is too long for one row.
 
-    It is cut before each relation but the first, then, where a row is still too long, before each
+    It is cut before each relation but the first, then, if a row is still too long, before each
     term, and then before the first relation.
     """
     rows = [items]
-    for places in (_later_relations, _terms, _relations):
+    for find_cuts in (_later_relations, _terms, _relations):
         rows = [
-            part for row in rows for part in (_cut(row, places(row)) if _is_long(row) else [row])
+            part for row in rows for part in (_cut(row, find_cuts(row)) if _is_long(row) else [row])
         ]
     return rows
 
@@ -109,8 +109,8 @@ def _terms(row: list[Piece]) -> list[int]:
     return [k for k, item in enumerate(row) if item.is_sign and before[k] in ("operand", "word")]
 
 
-def _cut(items: list[Piece], places: list[int]) -> list[list[Piece]]:
-    return [items[a:b] for a, b in zip([0, *places], [*places, len(items)], strict=True)]
+def _cut(items: list[Piece], cuts: list[int]) -> list[list[Piece]]:
+    return [items[a:b] for a, b in zip([0, *cuts], [*cuts, len(items)], strict=True)]
 
 
 def _is_long(items: list[Piece]) -> bool:

@@ -82,18 +82,18 @@ def whole(n: int) -> str:
     return f"{n:,}"
 
 
-def count_noun(n: int, one: str, many: str = "") -> str:
-    """Return `1 run` or `1,200 runs`; `many`: the plural where it is not `one` with an s."""
-    return f"1 {one}" if n == 1 else f"{whole(n)} {many or one + 's'}"
+def count_noun(n: int, singular: str, many: str = "") -> str:
+    """Return `1 run` or `1,200 runs`; `many`: the plural if it is not `singular` with an s."""
+    return f"1 {singular}" if n == 1 else f"{whole(n)} {many or singular + 's'}"
 
 
-def every(n: int, one: str, many: str = "") -> str:
+def every(n: int, singular: str, many: str = "") -> str:
     """Return `the one run` or `all 1,200 runs`."""
-    return f"the one {one}" if n == 1 else f"all {count_noun(n, one, many)}"
+    return f"the one {singular}" if n == 1 else f"all {count_noun(n, singular, many)}"
 
 
 def between(low: str, high: str, to: str = " to ") -> str:
-    """Return the two ends of a range; one of them where they are the same."""
+    """Return the two ends of a range; one of them if they are the same."""
     return low if low == high else f"{low}{to}{high}"
 
 
@@ -137,7 +137,7 @@ def group_digits(text: str) -> Markup:
 def start(
     run: RunResult | Separation | AverageResult | WorkPrecisionResult,
 ) -> str:
-    """Return a run's initial value, and the time at which it starts where that is not 0."""
+    """Return a run's initial value, and the time at which it starts if that is not 0."""
     t0 = getattr(run, "t0", "0")
     texts = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})
     return ", ".join(f"{name}{IS}{coordinates(x)}" for name, x in texts.items())

@@ -18,12 +18,11 @@ import sympy
 from verify.algebra.symbols import H_STEP, P
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.papers.argument import Argument, proof, step
-from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
-from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, areas, map_from_texts
+from verify.papers.argument import BALLS, NUMBERS, Argument, Check, proof, step, vanishes
+from verify.papers.differential_polynomials import Differential, Poly, flow_of_every_hamiltonian
+from verify.papers.exact_maps import RationalPoint, areas, map_from_texts
 from verify.papers.lie_derivative_scheme.examples import enclosures, oscillator
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -128,8 +127,8 @@ def enclosed_growth(h: Fraction) -> tuple[bool, str]:
 
 def _over_time(h: Fraction) -> Check:
     holds, lam = enclosed_growth(h)
-    what = f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ `e^(Th)`"
-    return Check(what, holds, f"Λ = {lam}", BALLS)
+    statement = f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ `e^(Th)`"
+    return Check(statement, holds, f"Λ = {lam}", BALLS)
 
 
 # -- without it ------------------------------------------------------------------------------------
@@ -227,7 +226,7 @@ def _run_is_as_stated(step_map: StepMap, steps: int) -> bool:
     """Return True if all ΔJ_k are h exactly; False also for a run that is not rational."""
     h = Fraction(1, steps)
     try:
-        run = areas(step_map, Point(Fraction(0), Fraction(0)), h, steps)
+        run = areas(step_map, RationalPoint(Fraction(0), Fraction(0)), h, steps)
     except ValueError:
         return False
     return set(run.delta_j) == {h} and run.lam == (1 + h) ** steps - 1 >= 1

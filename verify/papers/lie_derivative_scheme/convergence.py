@@ -9,12 +9,11 @@ import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.arb import rational_ball
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import BALLS, Check, same
-from verify.papers.checks.sums import geometric
+from verify.papers.argument import BALLS, Argument, Check, proof, refutation, same, step
+from verify.papers.elementary_identities import geometric
 from verify.papers.lie_derivative_scheme import examples
-from verify.proof.assistant.stated import ShippedTheorem
-from verify.proof.order import convergence_of
+from verify.proof.assistant.shipped_theory import ShippedTheorem
+from verify.proof.order_for_one_h import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
 
 ETAS = range(1, 5)
@@ -173,5 +172,5 @@ def _length_grows(eta: int = 1) -> Check:
     gap = step_map.p_next**2 + step_map.q_next**2 - (1 + H_STEP**2) * square
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))
     derivative = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
-    what = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
-    return same(what, [gap, derivative], ("p", "q", "h"))
+    statement = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
+    return same(statement, [gap, derivative], ("p", "q", "h"))

@@ -8,12 +8,11 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import Check, same
-from verify.papers.checks.matrices import derivative_at_rest, derivative_of_the_field
+from verify.papers.argument import Argument, Check, proof, refutation, same, step
+from verify.papers.elementary_identities import derivative_at_rest, derivative_of_the_field
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
-from verify.proof.order import convergence_of, prove
+from verify.proof.order_for_one_h import convergence_of, prove
 from verify.schemes.methods.taylor.lie import lie_map
 
 ETAS = range(1, 6)
@@ -62,17 +61,17 @@ def _last_coefficients(sign: int = -1) -> Check:
     mu, h, d = sympy.symbols("mu h D")
     gaps = []
     for eta in ETAS:
-        both = [
+        factors = [
             sum((s * h * mu) ** n / sympy.factorial(n) for n in range(eta + 1)) for s in (1, -1)
         ]
-        top = sympy.expand(both[0] * both[1]).coeff(h, 2 * eta)
+        top = sympy.expand(factors[0] * factors[1]).coeff(h, 2 * eta)
         # μ^(2η) is replaced as one power, by (−D)^η, or with another sign as a control.
         substituted = top.subs(mu, sympy.Symbol("x")).subs(
             sympy.Symbol("x") ** (2 * eta), (sign * d) ** eta
         )
         gaps.append(substituted - d**eta / sympy.factorial(eta) ** 2)
-    what = "the coefficient of `h^(2η)` in R(hμ) R(−hμ) less `D^η`/(η!)², η = 1 … 5"
-    return same(what, gaps, ("D",))
+    statement = "the coefficient of `h^(2η)` in R(hμ) R(−hμ) less `D^η`/(η!)², η = 1 … 5"
+    return same(statement, gaps, ("D",))
 
 
 def _check_at_rest(name: str, eta: int) -> Check:
@@ -94,7 +93,7 @@ def _check_at_rest(name: str, eta: int) -> Check:
 
 def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
     """Refute det J ≠ 1 for every H, by H with det J ≡ 1 and a truncation error."""
-    first, *others = map(area_is_preserved, formulas)
+    triangular, *powers_of_forms = map(area_is_preserved, formulas)
     return refutation(
         "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
         "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
@@ -103,7 +102,7 @@ def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
                 "For H = p³/6 + q one has ``p' = p − h, q' = q + h p^2/2 − h^2 p/2``, while the "
                 "exact flow has another h³/6 in q: the local truncation error is not 0. J is "
                 "triangular with ones on its diagonal, so det J = 1 for all p, q and h.",
-                first,
+                triangular,
             ),
             step(
                 "For H = `(p² + q²)^(3/4)` away from the origin write I = (p² + q²)/2: the flow "
@@ -116,7 +115,7 @@ def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
                 "In the coordinates (I, angle), in which areas are dI dφ, that has determinant 1: "
                 "lie2 preserves area exactly, although the energy grows in every step. A "
                 "truncation error is thus no reason for det J ≠ 1.",
-                *others,
+                *powers_of_forms,
             ),
             step(
                 "In general, with D = det Hess H and `T_ij` = `Σ_k` `∂_j` adj`(Hess H)_ik` `∂_k` "
@@ -141,9 +140,11 @@ def _spirals(power: int = 4) -> Check:
     x, amount, h, k = sympy.symbols("x I h k")  # x = hΩ
     growth_gap = (1 - x**2 / 2) ** 2 + x**2 - (1 + x**power / 4)
     next_amount = amount * (1 + h**4 * (k / amount) / 4)  # Ω⁴ = k/I
-    what = "(1 − x²/2)² + x² − (1 + x⁴/4), x = hΩ; and d/dI [I (1 + h⁴Ω⁴/4)] − 1 for Ω⁴ = k/I"
+    statement = "(1 − x²/2)² + x² − (1 + x⁴/4), x = hΩ; and d/dI [I (1 + h⁴Ω⁴/4)] − 1 for Ω⁴ = k/I"
     return same(
-        what, [growth_gap, sympy.diff(sympy.expand(next_amount), amount) - 1], ("x", "I", "h", "k")
+        statement,
+        [growth_gap, sympy.diff(sympy.expand(next_amount), amount) - 1],
+        ("x", "I", "h", "k"),
     )
 
 

@@ -4,8 +4,13 @@ A function with det Hess = 0 and Hess ≠ 0 has a gradient (a(s), b(s)) that is 
 lines; see `families` for the notation.
 """
 
-from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import Differential, Flow, Poly, free_variables
+from verify.papers.argument import Check, vanishes
+from verify.papers.differential_polynomials import (
+    Differential,
+    DifferentialFlow,
+    Poly,
+    free_variables,
+)
 
 
 def adjugate_identity() -> Check:
@@ -150,7 +155,7 @@ def developable() -> Check:
     ring.set_gradient("W", **slope)
     ring.set_gradient("V", **{z: -v * v * slope[z] for z in s})
     ring.set_coordinates()
-    flow = Flow(ring, a, b)
+    flow = DifferentialFlow(ring, a, b)
     omega, kappa = a1 * b - a * b1, a1 * b2 - a2 * b1
     gaps = flow.delta_j_gaps(2, h4=-(omega**2) * kappa**2 * v**4 / 4)
     return vanishes(

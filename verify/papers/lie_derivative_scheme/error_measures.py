@@ -6,17 +6,27 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.papers.argument import Argument, Step, proof, refutation, step
-from verify.papers.checks.check import NUMBERS, Check, vanishes
-from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.papers.checks.matrices import product_of_determinants
-from verify.papers.exact_maps import Point, areas, jacobian, next_point, run_symbolically, value
-from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
-from verify.papers.lie_derivative_scheme.examples import duffing_step
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.papers.argument import NUMBERS, Argument, Check, Step, proof, refutation, step, vanishes
+from verify.papers.differential_polynomials import flow_of_every_hamiltonian
+from verify.papers.elementary_identities import product_of_determinants
+from verify.papers.exact_maps import (
+    RationalPoint,
+    areas,
+    jacobian,
+    next_point,
+    run_symbolically,
+    value,
+)
+from verify.papers.lie_derivative_scheme.examples import (
+    FRICTION,
+    TO_AND_FRO,
+    ExampleMap,
+    duffing_step,
+)
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _H = Fraction(1, 10)
-_START = Point(Fraction(1, 2), Fraction(1))
+_START = RationalPoint(Fraction(1, 2), Fraction(1))
 _FLOW = ShippedTheorem("Taylor", "flow_has_no_defect")
 CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
 
@@ -188,11 +198,11 @@ def smaller_lambda_each_step(
     to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
 ) -> Argument:
     """Refute that a smaller |Λ| means smaller changes of area in every step."""
-    both = [(one.run(n), other.run(n)) for n in to_and_fro.steps
+    pairs = [(one.run(n), other.run(n)) for n in to_and_fro.steps
             for one, other in [(to_and_fro, friction)]]  # fmt: skip
     worse = [
         abs(a.lam) < abs(b.lam) and min(map(abs, a.delta_j)) > b.largest and a.mse > b.mse
-        for a, b in both
+        for a, b in pairs
     ]
     compared = Check(
         f"N = {', '.join(map(str, to_and_fro.steps))}: |Λ| is smaller, the least |`ΔJ_k`| and the "

@@ -1,7 +1,7 @@
 """Eq. 6–8, 10 and 11 apart from Eq. 9: the definitions of the errors, and their recursion.
 
 Eq. 10 and 11 in one norm of the plane; by components:
-`verify.papers.lie_derivative_scheme.by_components`.
+`verify.papers.lie_derivative_scheme.components`.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,15 +13,22 @@ from verify.algebra.symbols import P, Q
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
-from verify.papers.checks.differential import free_variables
-from verify.papers.checks.sums import bound_of_eq_11, geometric
-from verify.papers.checks.triangle import difference, triangle
-from verify.papers.exact_maps import Point, next_point
+from verify.papers.argument import (
+    BALLS,
+    NUMBERS,
+    Argument,
+    Check,
+    proof,
+    refutation,
+    step,
+    vanishes,
+)
+from verify.papers.differential_polynomials import free_variables
+from verify.papers.elementary_identities import bound_of_eq_11, difference, geometric, triangle
+from verify.papers.exact_maps import RationalPoint, next_point
 from verify.papers.lie_derivative_scheme.convergence import STEPS, local_orders
 from verify.papers.lie_derivative_scheme.examples import enclosures
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L
@@ -84,9 +91,9 @@ def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
     """Check Eq. 7 and the global error in q, on the solution p = −t, q = −t²/2 of H = p²/2 + q."""
     hamiltonian = Hamiltonian.parse(formula)
     scheme, h = lie_map(hamiltonian, 1), Fraction(1, 10)
-    errors, point = [], Point(Fraction(0), Fraction(0))
+    errors, point = [], RationalPoint(Fraction(0), Fraction(0))
     for n in range(max(steps)):
-        exact = [Point(-t, -t * t / 2) for t in (n * h, (n + 1) * h)]
+        exact = [RationalPoint(-t, -t * t / 2) for t in (n * h, (n + 1) * h)]
         # Eq. 7 compares the step from the exact point with the numerical one, the global error the
         # exact point itself.
         from_exact, point = next_point(scheme, exact[0], h), next_point(scheme, point, h)
@@ -244,17 +251,19 @@ def _worst_sequence(rate: Fraction, power: Callable[[Fraction, int], Fraction]) 
     holds, counts = True, (1, 4, 16)
     for count in counts:
         h = Fraction(1, count)
-        each = [Fraction(1 + (3 * m) % 5, 5) for m in range(1, count + 1)]  # |C_m|
-        error, unit = each[0] * h ** (_ORDER + 1), h ** (_ORDER + 1)
+        coefficients = [Fraction(1 + (3 * m) % 5, 5) for m in range(1, count + 1)]  # |C_m|
+        error, unit = coefficients[0] * h ** (_ORDER + 1), h ** (_ORDER + 1)
         first = error
         # Equality in every step of the recursion: no sequence that satisfies it is greater.
-        for c in each[1:]:
+        for c in coefficients[1:]:
             error = (1 + h * rate) * error + c * unit
         factor = 1 + h * rate
-        total = sum((power(factor, count - m) * c for m, c in enumerate(each, 1)), Fraction(0))
+        total = sum(
+            (power(factor, count - m) * c for m, c in enumerate(coefficients, 1)), Fraction(0)
+        )
         bound = power(factor, count - 1) * first + total * unit
         # e^(LT) stands above (1 + hL)^N; the power is used, so that the comparison is exact.
-        limit = max(each) * h**_ORDER * ((factor**count - 1) / rate + h * factor**count)
+        limit = max(coefficients) * h**_ORDER * ((factor**count - 1) / rate + h * factor**count)
         holds = holds and error <= bound <= limit
     return Check(
         f"L = {text(rate)}, T = 1, N = {', '.join(map(str, counts))}: the greatest sequence of the "

@@ -4,10 +4,10 @@ Notation: w = ∇H = (H_p, H_q), D = det Hess H, N = −X²z, the negative of th
 the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p)'.
 """
 
-from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import (
+from verify.papers.argument import Check, vanishes
+from verify.papers.differential_polynomials import (
     Differential,
-    Flow,
+    DifferentialFlow,
     flow_of_every_hamiltonian,
     flow_of_one_function,
 )
@@ -24,10 +24,12 @@ def family(name: str, u: str, rest: str) -> Check:
 
 
 def linear() -> Check:
+    """Check that ΔJ of lie2 is zero for H = F(ℓ) + m, ℓ and m linear."""
     return family("H = F(ap + bq) + cp + dq", *LINEAR)
 
 
 def parabolic() -> Check:
+    """Check that ΔJ of lie2 is zero for H = F(ℓ + m²/2), ℓ and m linear."""
     return family("H = F(ap + bq + (cp + dq)²/2)", *PARABOLIC)
 
 
@@ -70,7 +72,7 @@ def separable() -> Check:
         ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=ring.zero)
         ring.set_gradient(f"V{k}", p=ring.zero, q=ring[f"V{k + 1}"])
     t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
-    gaps = Flow(ring, t1, v1).delta_j_gaps(
+    gaps = DifferentialFlow(ring, t1, v1).delta_j_gaps(
         2,
         h3=(t1 * t2 * v3 - v1 * v2 * t3) / 2,
         h4=(t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4,

@@ -7,18 +7,17 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import Check, same, vanishes
-from verify.papers.checks.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.papers.argument import Argument, Check, proof, refutation, same, step, vanishes
+from verify.papers.differential_polynomials import DifferentialFlow, Poly, flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction
-Recursion = Callable[[Flow, Poly], Poly]
+Recursion = Callable[[DifferentialFlow, Poly], Poly]
 
 
-def eq_4(flow: Flow, y: Poly) -> Poly:
+def eq_4(flow: DifferentialFlow, y: Poly) -> Poly:
     """Return Lⁿ from y = Lⁿ⁻¹ by Eq. 4, with both operators as Eq. 5 defines them."""
     along_q = flow.h_p * flow.ring.diff(y, "q")
     along_p = -flow.h_q * flow.ring.diff(y, "p")
@@ -29,14 +28,14 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
     """Return p', q' by Eq. 2, 4 and 5 with sympy's derivatives, from L q = H_p, L p = −H_q."""
     h_p, h_q = (sympy.diff(hamiltonian.expression, z) for z in (P, Q))
     # Plain sympy derivatives share no code with the step map with which this is compared.
-    both = []
+    images = []
     for start, first in ((P, -h_q), (Q, h_p)):
         total, power = start, first
         for n in range(1, eta + 1):
             total += H_STEP**n / sympy.factorial(n) * power
             power = h_p * sympy.diff(power, Q) - h_q * sympy.diff(power, P)
-        both.append(total)
-    return both[0], both[1]
+        images.append(total)
+    return images[0], images[1]
 
 
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
@@ -106,8 +105,8 @@ def _same(name: str, hamiltonian: Hamiltonian, eta: int) -> Check:
     step_map = lie_map(hamiltonian, eta)
     printed = printed_step(hamiltonian, eta)
     gaps = [x - y for x, y in zip(printed, (step_map.p_next, step_map.q_next), strict=True)]
-    what = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
-    return same(what, gaps, ("p", "q", "h", *hamiltonian.parameters), "the same")
+    statement = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
+    return same(statement, gaps, ("p", "q", "h", *hamiltonian.parameters), "the same")
 
 
 def eq_3(coordinate: str = "p") -> Argument:
@@ -162,7 +161,7 @@ def eq_3(coordinate: str = "p") -> Argument:
     )
 
 
-def _holds_as_meant(flow: Flow, coordinate: str) -> Check:
+def _holds_as_meant(flow: DifferentialFlow, coordinate: str) -> Check:
     diff = flow.ring.diff
     return vanishes(
         f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
@@ -199,7 +198,10 @@ def eq_3_meant(coordinate: str = "q") -> Argument:
             ),
             step(
                 "They are the first terms of Eq. 2, by which Eq. 19 and 27 are right.",
-                *(_same(name, each, 2) for name, each in zip(SYSTEMS, hamiltonians, strict=True)),
+                *(
+                    _same(name, hamiltonian, 2)
+                    for name, hamiltonian in zip(SYSTEMS, hamiltonians, strict=True)
+                ),
             ),
         ],
     )

@@ -9,19 +9,28 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
-from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, jacobian, next_point, squared_distance
+from verify.papers.argument import (
+    BALLS,
+    NUMBERS,
+    Argument,
+    Check,
+    proof,
+    refutation,
+    same,
+    step,
+    vanishes,
+)
+from verify.papers.differential_polynomials import flow_of_every_hamiltonian
+from verify.papers.exact_maps import RationalPoint, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, enclosures, errors, factor
 
-PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))
+PAIR = (RationalPoint(p=Fraction(0), q=Fraction(0)), RationalPoint(p=Fraction(0), q=Fraction(1)))
 STEP_SIZES = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
 LATEST = 4  # runs are looked at up to this time
 MIXED = "a*p*q + b*p + c*q"  # H_pp = H_qq = 0
 
 
-def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
+def eq_9(pair: tuple[RationalPoint, RationalPoint] = PAIR, mixed: str = MIXED) -> Argument:
     """Refute Eq. 9 by a pair of points with equal p, and along a run of the oscillator.
 
     `mixed`: an H for which both components decouple.
@@ -38,10 +47,10 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
         f"{text(right)} and {text(left)}",
         NUMBERS,
     )
-    both = [step_map.p_next.subs({P: z.p, Q: z.q}, simultaneous=True) for z in pair]
+    images_of_p = [step_map.p_next.subs({P: z.p, Q: z.q}, simultaneous=True) for z in pair]
     for_every_h = same(
         f"the same for every h: p' from {pair[0]} less p' from {pair[1]}, less 2h",
-        [both[0] - both[1] - 2 * H_STEP],
+        [images_of_p[0] - images_of_p[1] - 2 * H_STEP],
         ("h",),
     )
     return refutation(
@@ -171,7 +180,7 @@ def _stretch(h: Fraction, norm: float) -> Check:
     Every entry of ψ' is largest in size at a corner, and ‖ψ'‖² is at most the sum of their squares.
     """
     scheme, bound = duffing_step(), Fraction(norm) * 5
-    corners = [Point(Fraction(a), Fraction(b)) for a in (-1, 1) for b in (-1, 1)]
+    corners = [RationalPoint(Fraction(a), Fraction(b)) for a in (-1, 1) for b in (-1, 1)]
     images = [next_point(scheme, z, h) for z in corners]
     pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
     worst = max(
@@ -180,7 +189,9 @@ def _stretch(h: Fraction, norm: float) -> Check:
     )
     slopes = [zip(jacobian(scheme, z, h), (1, 0, 0, 1), strict=True) for z in corners]
     # Frobenius' norm bounds the 2-norm from above, and is a polynomial in the entries.
-    squares = max(sum((((x - unit) / h) ** 2 for x, unit in each), Fraction(0)) for each in slopes)
+    squares = max(
+        sum((((x - unit) / h) ** 2 for x, unit in entries), Fraction(0)) for entries in slopes
+    )
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, on |p|, |q| ≤ 1: ‖(J − 1)/h‖² ≤ L² with L = "
         f"{text(bound)}, and |Φ(z̄) − Φ(z)|²/|z̄ − z|² ≤ (1 + hL)² for the pairs of its corners",

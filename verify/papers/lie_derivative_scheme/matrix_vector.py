@@ -7,20 +7,23 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import NUMBERS, Check, same, vanishes
-from verify.papers.checks.differential import Differential, Flow, flow_of_every_hamiltonian
-from verify.papers.exact_maps import Point, areas, jacobian, map_from_texts, next_point
+from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, step, vanishes
+from verify.papers.differential_polynomials import (
+    Differential,
+    DifferentialFlow,
+    flow_of_every_hamiltonian,
+)
+from verify.papers.exact_maps import RationalPoint, areas, jacobian, map_from_texts, next_point
 from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
 H = Fraction(1, 10)
-POINT = Point(p=Fraction(0), q=Fraction(1))
+POINT = RationalPoint(p=Fraction(0), q=Fraction(1))
 
 
-def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argument:
+def eq_12(hamiltonian: Hamiltonian | None = None, point: RationalPoint = POINT) -> Argument:
     """Refute z_{k+1} = J_k z_k at one rational point, by default for the Duffing oscillator."""
     step_map = lie_map(hamiltonian or duffing(), 2)
     product, image = _product(step_map, point), next_point(step_map, point, H)
@@ -64,9 +67,9 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
     )
 
 
-def _product(step_map: StepMap, point: Point) -> Point:
+def _product(step_map: StepMap, point: RationalPoint) -> RationalPoint:
     a, b, c, d = jacobian(step_map, point, H)
-    return Point(a * point.p + b * point.q, c * point.p + d * point.q)
+    return RationalPoint(a * point.p + b * point.q, c * point.p + d * point.q)
 
 
 def _check_quadratic_form() -> Check:
@@ -74,14 +77,14 @@ def _check_quadratic_form() -> Check:
     gaps = step_map.jacobian * sympy.Matrix([P, Q]) - sympy.Matrix(
         [step_map.p_next, step_map.q_next]
     )
-    what = "H = a p²/2 + b pq + c q²/2, lie2: J z = z' for all p, q, h, a, b, c"
-    return same(what, list(gaps), ("p", "q", "h", "a", "b", "c"), "holds exactly")
+    statement = "H = a p²/2 + b pq + c q²/2, lie2: J z = z' for all p, q, h, a, b, c"
+    return same(statement, list(gaps), ("p", "q", "h", "a", "b", "c"), "holds exactly")
 
 
 def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
     """Prove δz_{k+1} = J_k δz_k: Φ(z + sv) − Φ(z) − s J v = O(s²); `stray` is added to J."""
     step_map = duffing_step()
-    directions = [Point(Fraction(1), Fraction(0)), Point(Fraction(0), Fraction(1))]
+    directions = [RationalPoint(Fraction(1), Fraction(0)), RationalPoint(Fraction(0), Fraction(1))]
     sizes = [Fraction(1, 10**n) for n in (1, 2, 3)]
     gaps = [[_gap(step_map, v, s, stray) / s**2 for s in sizes] for v in directions]
     # The quotients stay bounded as s falls by powers of ten if the remainder is O(s²).
@@ -115,9 +118,9 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
     )
 
 
-def _gap(step_map: StepMap, v: Point, s: Fraction, stray: Fraction) -> Fraction:
+def _gap(step_map: StepMap, v: RationalPoint, s: Fraction, stray: Fraction) -> Fraction:
     a, b, c, d = (x + stray for x in jacobian(step_map, POINT, H))
-    moved_image = next_point(step_map, Point(POINT.p + s * v.p, POINT.q + s * v.q), H)
+    moved_image = next_point(step_map, RationalPoint(POINT.p + s * v.p, POINT.q + s * v.q), H)
     image = next_point(step_map, POINT, H)
     # The 1-norm: any norm of the plane will do, and this one keeps rational numbers rational.
     gap_p = moved_image.p - image.p - s * (a * v.p + b * v.q)
@@ -163,7 +166,7 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
     delta_j = [areas(step_map, POINT, h, 4).largest for h in sizes]
     images = [next_point(step_map, POINT, h) for h in sizes]
     # A distance of at least 1 for every h excludes any limit z + O(h).
-    far = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in images]
+    distances = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in images]
     for_every_h = same(
         f"p' = `{p_next}`, q' = `{q_next}`: ΔJ is the zero function",
         [step_map.delta_j],
@@ -177,7 +180,7 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
     )
     moves = Check(
         f"the same map takes (p, q) = {POINT} to a point that does not tend to it",
-        all(x >= 1 for x in far),
+        all(x >= 1 for x in distances),
         ", ".join(map(str, images)),
         NUMBERS,
     )
@@ -222,7 +225,7 @@ def stays_linear(bent: int = 0) -> Check:
     ring = Differential(names)
     p, q, a, b, c, alpha, beta = (ring[name] for name in names)
     ring.set_coordinates()
-    flow = Flow(ring, a * p + b * q, b * p + c * q)
+    flow = DifferentialFlow(ring, a * p + b * q, b * p + c * q)
     # f = (−H_q, H_p) is linear for a quadratic H, and a derivative along it keeps the degree.
     derivative = flow.derive(alpha * p + beta * q + bent * p * p)
     linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q

@@ -7,10 +7,9 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
 from verify.algebra.symbols import P, Q
-from verify.papers.argument import Argument, proof, step
-from verify.papers.checks.check import same, vanishes
-from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.papers.argument import Argument, proof, same, step, vanishes
+from verify.papers.differential_polynomials import flow_of_every_hamiltonian
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 DUFFING = ("p**2/2 + q**2/2 + delta*q**4/4", "q + delta*q**3")  # H, and q'' less its sign
 PENDULUM = ("p**2/2 - cos(q)", "sin(q)")

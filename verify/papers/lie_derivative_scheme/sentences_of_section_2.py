@@ -4,9 +4,8 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import flow_of_every_hamiltonian
+from verify.papers.argument import Argument, Check, proof, refutation, step, vanishes
+from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.lie_series import eq_4, powers_of
 
 

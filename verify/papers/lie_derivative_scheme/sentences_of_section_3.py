@@ -10,19 +10,28 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import decimal, text
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
-from verify.papers.checks.differential import flow_of_every_hamiltonian
-from verify.papers.exact_maps import Areas, Point, areas, map_from_texts, next_point, value
+from verify.papers.argument import (
+    BALLS,
+    NUMBERS,
+    Argument,
+    Check,
+    proof,
+    refutation,
+    same,
+    step,
+    vanishes,
+)
+from verify.papers.differential_polynomials import flow_of_every_hamiltonian
+from verify.papers.exact_maps import Areas, RationalPoint, areas, map_from_texts, next_point, value
 from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.convergence import STEPS
 from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
 
 EULER = ("p - h*q", "q + h*p - h**2*q")  # symplectic Euler for H = (p² + q²)/2
 UNEVEN = ("-p*(1 + (q + 1/20)/10**11)", "-q")  # its ΔJ is 10⁻¹¹ (q + 1/20), whatever h is
-START = Point(p=Fraction(1), q=Fraction(-1, 20))
+START = RationalPoint(p=Fraction(1), q=Fraction(-1, 20))
 _POINT_ONE = Fraction(1, 10)
 
 
@@ -48,7 +57,7 @@ def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
     errors = [_error_at_1(formulas, n) for n in STEPS]
     return refutation(
         "symplectic Euler has det `J_k` = 1 and MSE = 0 whatever h is, while its solution is off "
-        f"by {', '.join(each.value for each in errors)} at t = 1 for the oscillator with h = "
+        f"by {', '.join(error.value for error in errors)} at t = 1 for the oscillator with h = "
         f"{', '.join(text(Fraction(1, n)) for n in STEPS)}",
         [
             step("For symplectic Euler (Eq. 24, 32) ΔJ = 0 at every point, so MSE = 0.", zero),
@@ -65,15 +74,15 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
     """Check the error after N steps of 1/N, in balls; the map is linear."""
     jacobian = map_from_texts(*formulas).jacobian
     h = Fraction(1, steps)
-    a, b, c, d = (value(x, Point(Fraction(0), Fraction(0)), h) for x in jacobian)
+    a, b, c, d = (value(x, RationalPoint(Fraction(0), Fraction(0)), h) for x in jacobian)
     with examples.enclosures():
         entries = [rational_ball(x) for x in (a, b, c, d)]
         matrix = flint.arb_mat(2, 2, entries) ** steps
         p, q = matrix[0, 1], matrix[1, 1]  # from (p, q) = (0, 1)
         one = flint.arb(1)
-        off = ((p + one.sin()) ** 2 + (q - one.cos()) ** 2).sqrt()
-        share = off * steps
-        holds, texts = bool(share > 0.4) and bool(share < 0.5), off.mid().str(3, radius=False)
+        error = ((p + one.sin()) ** 2 + (q - one.cos()) ** 2).sqrt()
+        share = error * steps
+        holds, texts = bool(share > 0.4) and bool(share < 0.5), error.mid().str(3, radius=False)
     return Check(
         f"symplectic Euler, oscillator, h = {text(h)}: the error at t = 1 lies between 0.4 h and "
         "0.5 h",
@@ -137,12 +146,12 @@ def duffing_criteria_inference(
 ) -> Argument:
     """Refute the inference by a map with the numbers of Figure 3 that fails both criteria."""
     step_map = map_from_texts(*formulas)
-    points = [Point(Fraction(0), Fraction(1))]
+    points = [RationalPoint(Fraction(0), Fraction(1))]
     points += [next_point(step_map, points[0], _POINT_ONE)]
-    both = [value(step_map.delta_j, point, _POINT_ONE) for point in points]
+    defects = [value(step_map.delta_j, point, _POINT_ONE) for point in points]
     # The map has period 2 in z, so that Λ after N steps is a power of the ΔJ of two steps.
-    again = next_point(step_map, points[1], _POINT_ONE) == points[0]
-    size, pair = max(map(abs, both)), (1 + both[0]) * (1 + both[1]) - 1
+    returns = next_point(step_map, points[1], _POINT_ONE) == points[0]
+    size, pair = max(map(abs, defects)), (1 + defects[0]) * (1 + defects[1]) - 1
     with examples.enclosures():
         growth = (1 + rational_ball(pair)) ** (steps // 2) - 1
         near = bool(growth > 5e-6) and bool(growth < 2e-5)
@@ -157,7 +166,9 @@ def duffing_criteria_inference(
                 "two ΔJ, about ±10⁻¹¹, whatever h is: |ΔJ| is about 10⁻¹¹ and no o(h).",
                 Check(
                     "the map: it returns after two steps, and max |ΔJ|",
-                    again and H_STEP not in step_map.delta_j.free_symbols and 5e-12 < size < 2e-11,
+                    returns
+                    and H_STEP not in step_map.delta_j.free_symbols
+                    and 5e-12 < size < 2e-11,
                     f"`{decimal(size, 3)}`",
                     NUMBERS,
                 ),
@@ -181,7 +192,7 @@ def duffing_criteria_inference(
 
 
 def total_error_increases(
-    start: Point = START, h: Fraction = Fraction(1, 10), steps: int = 3
+    start: RationalPoint = START, h: Fraction = Fraction(1, 10), steps: int = 3
 ) -> Argument:
     """Refute that |Λ| increases with the steps, for the Duffing oscillator and every even η."""
     delta_j = areas(examples.duffing_step(), start, h, steps).delta_j

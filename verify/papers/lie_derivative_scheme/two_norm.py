@@ -7,20 +7,19 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import NUMBERS, Check, same
-from verify.papers.checks.matrices import stretching
-from verify.papers.exact_maps import Point, jacobian, next_point, squared_distance
+from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, step
+from verify.papers.elementary_identities import stretching
+from verify.papers.exact_maps import RationalPoint, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, with_symbols
 from verify.papers.lie_derivative_scheme.lipschitz import PAIR
 
 _EDGE = Fraction(2, 3)  # of |δ|q²
-STRETCHED = Point(p=Fraction(0), q=Fraction(2))
+STRETCHED = RationalPoint(p=Fraction(0), q=Fraction(2))
 _BESIDE = ((1, 10), (1, 2), (80, 100), (83, 100), (3, 2))  # q, on both sides of √(2/3)
 _STRETCHES = {"duffing": "3*delta*q**2/2", "pendulum": "(1 - cos(q))/2"}
 
 
-def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argument:
+def two_norm(point: RationalPoint = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argument:
     """Refute L_p = ‖J_k‖₂ in Eq. 9, at a point where ‖J‖₂ > 1 + h ‖J‖₂ holds exactly."""
     a, b, c, d = jacobian(duffing_step(), point, h)
     # With |Jv| ≤ ‖J‖₂ |v| for v = (1, −1), ‖J‖₂ (1 − h) > 1 follows from |Jv|² (1 − h)² > |v|².
@@ -76,7 +75,7 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
 
 def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _EDGE) -> Check:
     """Check that ‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing, δ = 1, at p = 0 exactly where q² < `edge`."""
-    a, b, c, d = jacobian(duffing_step(), Point(Fraction(0), q), h)
+    a, b, c, d = jacobian(duffing_step(), RationalPoint(Fraction(0), q), h)
     # ‖J‖₂² is the greater zero of x² − (tr JᵀJ) x + (det J)², so that no root is needed.
     trace, square = a * a + b * b + c * c + d * d, (a * d - b * c) ** 2
     limit = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
@@ -109,7 +108,7 @@ def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
     images = [next_point(step_map, z, h) for z in ends]
     stretch = squared_distance(*images) / squared_distance(*ends)
     # The segment between the two points, on which the mean value theorem takes the maximum.
-    between = [Point(Fraction(0), Fraction(k, 8)) for k in range(9)]
+    between = [RationalPoint(Fraction(0), Fraction(k, 8)) for k in range(9)]
     norms = [_norm_squared(jacobian(step_map, z, h)) for z in between]
     example = Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}: |Φ(z̄) − Φ(z)|²/|z̄ − z|² for (p, q) = "

@@ -4,7 +4,7 @@ The relations are those of the theory, one for each function: sin² + cos² = 1 
 residuals are the theory's too (`Identities.v`), in its order. The cofactors in the certificate are
 for other residuals, in which D is applied to a coordinate repeatedly.
 
-Polynomials as sums of multiples of relations: by dividing, and where that is not enough, by a
+Polynomials as sums of multiples of relations: by dividing, and if that is not enough, by a
 Gröbner basis whose elements are known as such sums themselves (Buchberger's algorithm).
 """
 
@@ -16,22 +16,25 @@ from typing import NamedTuple
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.proof.certificates.by_coefficients import polynomial
 from verify.proof.certificates.checker import Identities
+from verify.proof.certificates.coefficient_entries import polynomial_in
 from verify.proof.certificates.entries import Expansion
 from verify.proof.certificates.readers import Poly
 
 _MOST_PAIRS = 2000  # S-polynomials that are examined
 _MOST_TERMS = 20_000  # of a factor
-
 Sum = dict[int, fmpq_mpoly]  # factors, by the numbers of their relations
+Factors = list[tuple[int, Poly]]  # each with the number of its relation
+
+
+# -- sums of multiples of relations ---------------------------------------------------------------
 
 
 class _Element(NamedTuple):
     """A polynomial, and its factors as a sum of multiples of the relations."""
 
     poly: fmpq_mpoly
-    by: Sum
+    factors: Sum
 
 
 class Basis:
@@ -39,12 +42,12 @@ class Basis:
 
     def __init__(self, ring: fmpq_mpoly_ctx, relations: Iterable[tuple[int, fmpq_mpoly]]) -> None:
         self.ring = ring
-        one = ring.constant(1)
-        self.elements = [_Element(x, {number: one}) for number, x in relations if x]
+        unity = ring.constant(1)
+        self.elements = [_Element(x, {number: unity}) for number, x in relations if x]
         self.complete = False
 
     def find_sum(self, x: fmpq_mpoly) -> Sum | None:
-        """Write the polynomial as a sum of multiples of the relations; None where none is found."""
+        """Write the polynomial as a sum of multiples of the relations; None if none is found."""
         remainder, factors = self._divide(x)
         if remainder and not self.complete:
             self._complete()
@@ -61,7 +64,7 @@ class Basis:
                 quotient, x = divmod(x, element.poly)
                 if quotient:
                     has_changed = True
-                    self._add(factors, quotient, element.by)
+                    self._add(factors, quotient, element.factors)
         return x, factors
 
     def _complete(self) -> None:
@@ -77,36 +80,36 @@ class Basis:
                 continue
             remainder, factors = self._divide(difference.poly)
             if remainder:
-                self._add(difference.by, self.ring.constant(-1), factors)
-                if sum(map(len, difference.by.values())) > _MOST_TERMS:
+                self._add(difference.factors, self.ring.constant(-1), factors)
+                if sum(map(len, difference.factors.values())) > _MOST_TERMS:
                     return
                 pairs += [(k, len(self.elements)) for k in range(len(self.elements))]
-                self.elements.append(_Element(remainder, difference.by))
+                self.elements.append(_Element(remainder, difference.factors))
 
     def _s_polynomial(self, x: _Element, y: _Element) -> _Element | None:
         """Return the difference of multiples with equal leading terms (the S-polynomial).
 
-        None where it is a sum of multiples anyway, by Buchberger's first criterion.
+        None if it is a sum of multiples anyway, by Buchberger's first criterion.
         """
         a, b = x.poly.monoms()[0], y.poly.monoms()[0]
         common = [max(m, n) for m, n in zip(a, b, strict=True)]
         if all(m == 0 or n == 0 for m, n in zip(a, b, strict=True)):
             return None
-        by: Sum = {}
+        factors: Sum = {}
         poly = self.ring.from_dict({})
         for element, leading, sign in ((x, a, 1), (y, b, -1)):
             power = tuple(m - n for m, n in zip(common, leading, strict=True))
             factor = self.ring.from_dict({power: sign / element.poly.coeffs()[0]})
             poly += factor * element.poly
-            self._add(by, factor, element.by)
-        return _Element(poly, by)
+            self._add(factors, factor, element.factors)
+        return _Element(poly, factors)
 
-    def _add(self, to: Sum, factor: fmpq_mpoly, by: Sum) -> None:
-        for number, x in by.items():
-            to[number] = to.get(number, self.ring.from_dict({})) + factor * x
+    def _add(self, total: Sum, factor: fmpq_mpoly, factors: Sum) -> None:
+        for number, x in factors.items():
+            total[number] = total.get(number, self.ring.from_dict({})) + factor * x
 
 
-Factors = list[tuple[int, Poly]]  # each with the number of its relation
+# -- residuals of a certificate -------------------------------------------------------------------
 
 
 def last_checked_power(entries: Expansion) -> int:
@@ -119,7 +122,7 @@ def last_checked_power(entries: Expansion) -> int:
 def factors_of(entries: Expansion) -> list[Factors]:
     """Return the factors of each residual, in order; none for a residual that is 0 as it stands.
 
-    Raises InputError where a residual is not shown to be 0.
+    Raises InputError if a residual is not shown to be 0.
     """
     functions = [function.name for function in entries.functions]
     # Outer functions first: they bring inner ones, which do not bring outer ones.
@@ -135,9 +138,9 @@ def factors_of(entries: Expansion) -> list[Factors]:
 def _residuals(identities: Identities) -> Iterator[Poly]:
     """Yield what must be 0 in the theory, where Xⁿz/n! comes from the coefficient before it."""
     entries, add = identities.entries, identities.add
-    for by, series in zip(entries.coordinates, entries.after, strict=True):
+    for coordinate, series in zip(entries.coordinates, entries.after, strict=True):
         coefficients = [*series, *({} for _ in range(entries.convergence_order + 1))]
-        yield add(coefficients[0], {(by,): Fraction(1)}, -1)
+        yield add(coefficients[0], {(coordinate,): Fraction(1)}, -1)
         for k in range(entries.convergence_order):
             scaled = {names: (k + 1) * c for names, c in coefficients[k + 1].items()}
             yield add(scaled, identities.along_flow(coefficients[k]), -1)
@@ -162,12 +165,12 @@ class Reducer:
         self.basis = Basis(self.ring, [(number, self.element(x)) for number, x in relations])
 
     def all_factors(self, residuals: Iterable[Poly]) -> list[Factors]:
-        """Return the factors of each residual; InputError where one is not shown to be 0."""
+        """Return the factors of each residual; InputError if one is not shown to be 0."""
         return [self.factors(residual) for residual in residuals]
 
     def element(self, x: Poly) -> fmpq_mpoly:
         """Return the polynomial as an element of the ring."""
-        return polynomial(self.ring, self.places, x)
+        return polynomial_in(self.ring, self.places, x)
 
     def poly(self, x: fmpq_mpoly) -> Poly:
         """Return the element as a polynomial in the names."""
@@ -178,7 +181,7 @@ class Reducer:
         return total
 
     def factors(self, residual: Poly) -> Factors:
-        """Return the factors of this residual; InputError where it is not shown to be 0."""
+        """Return the factors of this residual; InputError if it is not shown to be 0."""
         sum_of_multiples = self.basis.find_sum(self.element(residual))
         if sum_of_multiples is None:
             raise InputError("certificate", NOT_GIVEN, "an identity is not seen by reducing")

@@ -10,9 +10,9 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from verify.proof.assistant.formulas import lines
-from verify.proof.assistant.shipped import format_modules, import_line
-from verify.proof.certificates.established import EstablishedStatement
+from verify.proof.assistant.rocq_formulas import lines
+from verify.proof.assistant.shipped_theory import format_modules, import_line
+from verify.proof.certificates.established_statement import EstablishedStatement
 
 _LONGEST = 2000  # characters of a formula in the words
 _WIDTH = 88
@@ -57,7 +57,7 @@ def render_file(export: Export, facts: EstablishedStatement, *, stands_alone: bo
     head = _environment().get_template("head.jinja").render(words)
     # The theory is reduced to what the body names, so the body is rendered first.
     body = body_of(export)
-    theory = format_modules(export.needs, by=body) if stands_alone else import_line(export.needs)
+    theory = format_modules(export.needs, body) if stands_alone else import_line(export.needs)
     assumptions = _print_assumptions(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
     return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{assumptions}")
 

@@ -1,6 +1,6 @@
 """Balls of rational numbers: a midpoint and a radius, rounded outwards to a bounded length.
 
-A ball contains the number that it encloses. ValueError where a number is too large to be of use.
+A ball contains the number that it encloses. ValueError if a number is too large to be of use.
 """
 
 from fractions import Fraction
@@ -26,7 +26,7 @@ def times(x: Ball, y: Ball) -> Ball:
 
 
 def function(kind: str, x: Ball) -> Ball:
-    """Enclose sin, cos or exp of x, or 1/x (`inverse`); ValueError where x may be 0."""
+    """Enclose sin, cos or exp of x, or 1/x (`inverse`); ValueError if x may be 0."""
     midpoint, radius = x
     if kind == "inverse":
         need(abs(midpoint) > radius, "a denominator may be 0 at the witness")

@@ -46,8 +46,8 @@ point they take any values. With t as a coordinate, t' = 1, the flow is that of 
 is Σ_i (p_i',a q_i',b − p_i',b q_i',a) less that of Ω; in the plane its one entry is det J − 1, and
 the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq. For stages and tableaux see
 `verify.proof.certificates.coefficients`: at its own time the H of each stage is a function of p and
-q. That each number is one, and one alone, `verify.proof.certificates.numbers` shows; a polynomial
-in them that is a sum of multiples of their own polynomials has the value 0.
+q. That each number is one, and one alone, `verify.proof.certificates.named_numbers` shows; a
+polynomial in them that is a sum of multiples of their own polynomials has the value 0.
 """
 
 from collections.abc import Iterable, Iterator
@@ -56,7 +56,7 @@ from itertools import combinations
 from math import factorial
 
 from verify.proof.certificates.balls import Ball, function, plus, times
-from verify.proof.certificates.coefficients import ONE, Stages, Tableau, check_coefficients
+from verify.proof.certificates.coefficients import ONE, ButcherTableau, Stages, check_coefficients
 from verify.proof.certificates.entries import Expansion, derived_by, read
 from verify.proof.certificates.readers import Monomial, Poly, bits_of, collect_terms, need
 
@@ -64,7 +64,7 @@ Term = tuple[Monomial, Fraction]
 _MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
 
 
-def check(data: object) -> Stages | Tableau | Expansion:
+def check(data: object) -> Stages | ButcherTableau | Expansion:
     """Check a certificate and return its entries; ValueError names the identity that fails."""
     entries = read(data)
     if isinstance(entries, Expansion):
@@ -116,9 +116,9 @@ class Identities:
             self.relations[name] = self.add(self.mul(itself, u), ONE, -1)
             return self.mul(itself, itself, -1)
         partner = {"sin": "cos", "cos": "sin"}[kind]
-        same = [f.name for f in self.entries.functions if (f.kind, f.argument) == (partner, u)]
-        need(same, f"{name}: there is no {partner} of its argument")
-        side = single(same[0])
+        partners = [f.name for f in self.entries.functions if (f.kind, f.argument) == (partner, u)]
+        need(partners, f"{name}: there is no {partner} of its argument")
+        side = single(partners[0])
         squares = self.add(self.mul(itself, itself), self.mul(side, side))
         self.relations[name] = self.add(squares, ONE, -1)
         return self.add({}, side, 1 if kind == "sin" else -1)
@@ -171,11 +171,11 @@ class Identities:
         need((entries.order is None) == (not entries.leading), problem)
         fits = entries.last is None or entries.length <= entries.last + 1
         need(fits, f"{entries.layout.maps}: are longer than is said of them")
-        for what, residual in self.residuals():
-            for name, cofactor in self.cofactors.pop(what, {}).items():
-                need(name in self.relations, f"cofactors of {what}: {name!a} has no relation")
+        for identity, residual in self.residuals():
+            for name, cofactor in self.cofactors.pop(identity, {}).items():
+                need(name in self.relations, f"cofactors of {identity}: {name!a} has no relation")
                 residual = self.add(residual, self.mul(cofactor, self.relations[name]), -1)
-            need(not residual, f"{what} is not zero")
+            need(not residual, f"{identity} is not zero")
         # A cofactor that is not used may be a misspelled name: nothing in the file goes unread.
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
@@ -188,13 +188,13 @@ class Identities:
         yield from self.residuals_of_potential()
 
     def residuals_of_flow(self) -> Iterator[tuple[str, Poly]]:
-        for by, series in zip(self.entries.coordinates, self.entries.after, strict=True):
-            flow = single(by)
+        for coordinate, series in zip(self.entries.coordinates, self.entries.after, strict=True):
+            flow = single(coordinate)
             for n in range(self.entries.convergence_order + 1):
                 if n:
                     flow = self.along_flow(flow)
                 coefficient = series[n] if n < len(series) else {}
-                yield f"{by} {n}", self.add(coefficient, flow, Fraction(-1, factorial(n)))
+                yield f"{coordinate} {n}", self.add(coefficient, flow, Fraction(-1, factorial(n)))
 
     def residuals_of_defect(self, last: int) -> Iterator[tuple[str, Poly]]:
         """Yield the residuals of S up to h^last; none at h⁰, where the map is the identity."""
@@ -210,8 +210,8 @@ class Identities:
                 expected = entries.leading.get((a, b), {}) if n == entries.order else {}
                 residual = self.add({}, expected, -1)
                 for p, q in self.pairs:
-                    both = (slopes[p, a], slopes[q, b]), (slopes[p, b], slopes[q, a])
-                    for (x, y), sign in zip(both, (1, -1), strict=True):
+                    products = (slopes[p, a], slopes[q, b]), (slopes[p, b], slopes[q, a])
+                    for (x, y), sign in zip(products, (1, -1), strict=True):
                         # The coefficient of hⁿ in a product of two series, as far as both have
                         # coefficients.
                         for k in range(max(0, n - len(y) + 1), min(n + 1, len(x))):
@@ -233,8 +233,8 @@ class Identities:
         for a, b in combinations(entries.coordinates, 2):
             residual = self.add(self.along_flow(entry(a, b)), entries.leading.get((a, b), {}), -1)
             # f_a,a + f_b,b is 0 of a pair, and so of all that there is in the plane.
-            both = self.add(self.diff(field[a], a), self.diff(field[b], b))
-            residual = self.add(residual, self.mul(both, entry(a, b)))
+            divergence = self.add(self.diff(field[a], a), self.diff(field[b], b))
+            residual = self.add(residual, self.mul(divergence, entry(a, b)))
             for c in (x for x in entries.coordinates if x not in (a, b)):
                 residual = self.add(residual, self.mul(self.diff(field[c], a), entry(c, b)))
                 residual = self.add(residual, self.mul(entry(a, c), self.diff(field[c], b)))

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
 
-from verify.proof.certificates.numbers import Number, Residues, read_numbers
+from verify.proof.certificates.named_numbers import AlgebraicNumber, QuotientRing, read_numbers
 from verify.proof.certificates.readers import (
-    Layout,
+    CoordinateLayout,
     Poly,
     UnreadEntries,
     array_of,
@@ -30,45 +30,45 @@ _MOST_STAGES = 32  # of a tableau
 class Stages:
     """Rows (kick, drift, share of p', share of q') of a scheme for every H.
 
-    `times`: one of each row, in parts of h from the step's start; None where H has no time.
+    `times`: one of each row, in parts of h from the step's start; None if H has no time.
     Coefficients are reduced by the `numbers`.
     """
 
     separable: bool
     rows: tuple[tuple[Poly, Poly, Poly, Poly], ...]
     times: tuple[Poly, ...] | None
-    layout: Layout
-    numbers: tuple[Number, ...]
+    layout: CoordinateLayout
+    numbers: tuple[AlgebraicNumber, ...]
 
 
 @dataclass(frozen=True)
-class Tableau:
+class ButcherTableau:
     """A Runge–Kutta method for every H: a_ij in `rows`, b_i in `weights`; the rest as `Stages`."""
 
     separable: bool
     rows: tuple[tuple[Poly, ...], ...]
     weights: tuple[Poly, ...]
     times: tuple[Poly, ...] | None
-    layout: Layout
-    numbers: tuple[Number, ...]
+    layout: CoordinateLayout
+    numbers: tuple[AlgebraicNumber, ...]
 
 
-def read_coefficients(entries: UnreadEntries, kind: str) -> Stages | Tableau:
+def read_coefficients(entries: UnreadEntries, kind: str) -> Stages | ButcherTableau:
     """Read the scheme under the key `kind`, "stages" or "tableau"."""
     need(entries.take("hamiltonian") == "every", f"{kind}: are those of every hamiltonian")
-    reader = _Reader(entries, kind)
+    reader = _CoefficientReader(entries, kind)
     scheme = reader.stages() if kind == "stages" else reader.tableau()
     unused = min(reader.unused, default=None)
     need(unused is None, f"numbers: nothing asks for {unused}")
     return scheme
 
 
-class _Reader:
+class _CoefficientReader:
     def __init__(self, entries: UnreadEntries, kind: str) -> None:
         self.entries, self.kind = entries, kind
         self.separable = entries.flag("separable")
         self.numbers = read_numbers(entries.take("numbers")) if "numbers" in entries.unread else ()
-        self.residues = Residues(self.numbers)
+        self.ring = QuotientRing(self.numbers)
         self.unused = {number.name for number in self.numbers}
 
     def stages(self) -> Stages:
@@ -82,7 +82,7 @@ class _Reader:
         clock = tuple(times) if self.entries.timed else None
         return Stages(self.separable, tuple(coefficients), clock, self.entries.layout, self.numbers)
 
-    def tableau(self) -> Tableau:
+    def tableau(self) -> ButcherTableau:
         entries = dict(object_of(self.entries.take("tableau"), "tableau"))
         keys = ("a", "b", *("c",) * self.entries.timed)
         need(set(entries) == set(keys), f"tableau: has {', '.join(keys)}")
@@ -91,7 +91,7 @@ class _Reader:
         coefficients = tuple(self.row(row, len(rows)) for row in rows)
         weights = self.row(entries["b"], len(rows))
         times = self.row(entries["c"], len(rows)) if self.entries.timed else None
-        return Tableau(
+        return ButcherTableau(
             self.separable, coefficients, weights, times, self.entries.layout, self.numbers
         )
 
@@ -104,7 +104,7 @@ class _Reader:
         if not isinstance(data, list):
             number = number_of(data, self.kind)
             return {(): number} if number else {}
-        return self.residues.reduce(poly_of(data, self.kind, self.use_name))
+        return self.ring.reduce(poly_of(data, self.kind, self.use_name))
 
     def use_name(self, name: str) -> bool:
         # Every number of the certificate must be used in a coefficient; see `read_coefficients`.
@@ -115,17 +115,17 @@ class _Reader:
 # -- conditions of symplecticity ------------------------------------------------------------------
 
 
-def check_coefficients(entries: Stages | Tableau) -> None:
+def check_coefficients(entries: Stages | ButcherTableau) -> None:
     """Check the conditions of symplecticity; ValueError names one that does not hold."""
-    residues = Residues(entries.numbers)
-    if isinstance(entries, Tableau):
-        for name, residual in residuals_of_tableau(entries, residues):
+    ring = QuotientRing(entries.numbers)
+    if isinstance(entries, ButcherTableau):
+        for name, residual in residuals_of_tableau(entries, ring):
             need(not residual, f"tableau: {name} is not zero")
         return
-    need(not any(residuals_of_stages(entries, residues)), "det A is not det B")
+    need(not any(residuals_of_stages(entries, ring)), "det A is not det B")
 
 
-def residuals_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
+def residuals_of_stages(entries: Stages, ring: QuotientRing) -> Iterator[Poly]:
     """Yield k d (1 − s − u) and k − d of each stage; all 0 suffices for det J = 1, and for S = 0.
 
     A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
@@ -137,12 +137,12 @@ def residuals_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
     dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
     """
     for k, d, s, u in entries.rows:
-        rest = residues.sum((1, ONE), (-1, s), (-1, u))
-        yield residues.product(residues.product(k, d), rest)
-        yield {} if entries.separable else residues.sum((1, k), (-1, d))
+        share = ring.sum((1, ONE), (-1, s), (-1, u))
+        yield ring.product(ring.product(k, d), share)
+        yield {} if entries.separable else ring.sum((1, k), (-1, d))
 
 
-def residuals_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
+def residuals_of_tableau(entries: ButcherTableau, ring: QuotientRing) -> Iterator[tuple[str, Poly]]:
     """Yield M_ij = b_i a_ij + b_j a_ji − b_i b_j, with their names; all 0 suffices for S = 0.
 
     With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and
@@ -154,7 +154,7 @@ def residuals_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple
     """
     a, b = entries.rows, entries.weights
     for i, j in combinations_with_replacement(range(len(b)), 2):
-        one, two = residues.product(b[i], a[i][j]), residues.product(b[j], a[j][i])
-        residual = residues.sum((1, one), (1, two), (-1, residues.product(b[i], b[j])))
+        first, second = ring.product(b[i], a[i][j]), ring.product(b[j], a[j][i])
+        residual = ring.sum((1, first), (1, second), (-1, ring.product(b[i], b[j])))
         m, n = i + 1, j + 1
         yield f"b_{m} a_{m}{n} + b_{n} a_{n}{m} - b_{m} b_{n}", residual

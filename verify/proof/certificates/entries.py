@@ -13,13 +13,13 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.proof.certificates.coefficients import Stages, Tableau, read_coefficients
+from verify.proof.certificates.coefficients import ButcherTableau, Stages, read_coefficients
 from verify.proof.certificates.readers import (
     MOST_FACTORS,
     MOST_ORDERS,
     PLANE,
     RESERVED,
-    Layout,
+    CoordinateLayout,
     Poly,
     UnreadEntries,
     array_of,
@@ -41,7 +41,7 @@ _ONE = re.compile("[pq][0-9]*|t")
 
 
 @dataclass(frozen=True)
-class Function:
+class NamedFunction:
     """A name for sin, cos or exp of an argument, or for 1/argument."""
 
     name: str
@@ -57,12 +57,12 @@ class Expansion:
     `hamiltonian` None: every H; `timed`: H depends on t.
     """
 
-    layout: Layout
+    layout: CoordinateLayout
     hamiltonian: Poly | None
     separable: bool
     timed: bool
     parameters: tuple[str, ...]
-    functions: tuple[Function, ...]
+    functions: tuple[NamedFunction, ...]
     after: tuple[tuple[Poly, ...], ...]
     convergence_order: int
     order: int | None
@@ -87,7 +87,7 @@ class Expansion:
         return self.layout.coordinates
 
 
-def read(data: object) -> Stages | Tableau | Expansion:
+def read(data: object) -> Stages | ButcherTableau | Expansion:
     """Read the entries of a certificate; ValueError for what has no meaning."""
     entries = _Entries(data)
     kind = next((kind for kind in ("stages", "tableau") if kind in entries.unread), None)
@@ -136,17 +136,17 @@ class _Entries(UnreadEntries):
 
     def form(self, name: str) -> Form:
         listed, entries = self.take(name), Form()
-        for each in [[*PLANE, listed]] if self.layout.single else array_of(listed, name):
-            three = array_of(each, name)
-            need(len(three) == 3, f"{name}: each entry is two coordinates and a polynomial")
-            a, b = text_of(three[0], name), text_of(three[1], name)
+        for item in [[*PLANE, listed]] if self.layout.single else array_of(listed, name):
+            entry = array_of(item, name)
+            need(len(entry) == 3, f"{name}: each entry is two coordinates and a polynomial")
+            a, b = text_of(entry[0], name), text_of(entry[1], name)
             places = [self.coordinates.index(x) for x in (a, b) if x in self.coordinates]
             problem = f"{name}: {short(a)}, {short(b)} are no two coordinates in their order"
             need(len(places) == 2 and places[0] < places[1], problem)
             # Only entries above the diagonal: a 2-form is antisymmetric, so these determine it.
             need((a, b) not in entries, f"{name}: {short(a)}, {short(b)} stand twice")
-            entries[a, b] = self.poly(three[2], name)
-        return {place: x for place, x in entries.items() if x}
+            entries[a, b] = self.poly(entry[2], name)
+        return {pair: x for pair, x in entries.items() if x}
 
     def after(self) -> tuple[tuple[Poly, ...], ...]:
         if self.layout.single:
@@ -163,16 +163,16 @@ class _Entries(UnreadEntries):
             need(fits and names.count(name) == 1, f"parameters: {short(name)} is no new name")
         return tuple(names)
 
-    def functions(self) -> tuple[Function, ...]:
+    def functions(self) -> tuple[NamedFunction, ...]:
         listed = []
-        for each in array_of(self.take("functions"), "functions"):
-            three = array_of(each, "functions")
-            need(len(three) == 3, "functions: each is a name, a kind and an argument")
-            name, kind = text_of(three[0], "functions"), text_of(three[1], "functions")
+        for item in array_of(self.take("functions"), "functions"):
+            entry = array_of(item, "functions")
+            need(len(entry) == 3, "functions: each is a name, a kind and an argument")
+            name, kind = text_of(entry[0], "functions"), text_of(entry[1], "functions")
             new = re.fullmatch("#[0-9]{1,6}", name) and name not in self.names
             need(new, f"functions: {short(name)} is no new name such as #1")
             need(kind in KINDS, f"functions: {short(kind)} is none of {', '.join(KINDS)}")
-            listed.append(Function(name, kind, self.poly(three[2], name)))
+            listed.append(NamedFunction(name, kind, self.poly(entry[2], name)))
             # Later functions may use this name; earlier ones could not, so arguments have no
             # cycles.
             self.names.add(name)
@@ -181,21 +181,21 @@ class _Entries(UnreadEntries):
     def series(self, data: object, name: str) -> tuple[Poly, ...]:
         listed = array_of(data, name)
         need(len(listed) <= MOST_ORDERS + 1, f"{name}: has more than {MOST_ORDERS + 1} entries")
-        return tuple(self.poly(each, name) for each in listed)
+        return tuple(self.poly(coefficient, name) for coefficient in listed)
 
     def witness(self) -> dict[str, Fraction]:
         point = object_of(self.take("witness"), "witness")
         variables = {name for name in self.names if not name.startswith("#")}
-        both = ", ".join(PLANE) if self.layout.single else "the coordinates"
-        hint = f"witness: gives values to {both} and the parameters: {', '.join(sorted(variables))}"
+        pair = ", ".join(PLANE) if self.layout.single else "the coordinates"
+        hint = f"witness: gives values to {pair} and the parameters: {', '.join(sorted(variables))}"
         need(not point or set(point) == variables, hint)
         return {name: number_of(x, "witness") for name, x in point.items()}
 
     def cofactors(self) -> dict[str, dict[str, Poly]]:
         by_identity = object_of(self.take("cofactors"), "cofactors")
         return {
-            what: {name: self.poly(x, f"cofactors of {short(what)}") for name, x in each.items()}
-            for what, each in ((key, object_of(x, "cofactors")) for key, x in by_identity.items())
+            key: {name: self.poly(x, f"cofactors of {short(key)}") for name, x in sums.items()}
+            for key, sums in ((key, object_of(x, "cofactors")) for key, x in by_identity.items())
         }
 
     def poly(self, data: object, what: str) -> Poly:
@@ -206,13 +206,13 @@ class _Entries(UnreadEntries):
             return True
         if not self.every or len(name) > MOST_FACTORS or not _DERIVATIVE.fullmatch(name):
             return False
-        by = derived_by(name)
+        names = derived_by(name)
         order = [*self.coordinates, *(["t"] if self.timed else [])]
-        if not all(x in order for x in by):
+        if not all(x in order for x in names):
             return False
         # For H = T(p) + V(q) the mixed derivatives are 0 and have no name.
-        mixed = len({x[0] for x in by} & set(PLANE)) == 2
-        return by == sorted(by, key=order.index) and not (self.separable and mixed)
+        mixed = len({x[0] for x in names} & set(PLANE)) == 2
+        return names == sorted(names, key=order.index) and not (self.separable and mixed)
 
 
 def derived_by(name: str) -> list[str]:

@@ -24,7 +24,7 @@ def need(holds: object, what: str) -> None:
 
 
 @dataclass(frozen=True)
-class Layout:
+class CoordinateLayout:
     """The names in a certificate for p and q, or with `degrees` for p1 … pn, q1 … qn.
 
     `single`: a 2-form is its one entry, and else a list. `maps`: the entries of the map; `defect`,
@@ -39,12 +39,12 @@ class Layout:
     potential: str
 
 
-def layout_in(degrees: int | None) -> Layout:
+def layout_in(degrees: int | None) -> CoordinateLayout:
     """Return the layout for so many degrees of freedom; None: for p and q."""
     if degrees is None:
-        return Layout(1, PLANE, True, "p_next, q_next", "det {}", "potential")
+        return CoordinateLayout(1, PLANE, True, "p_next, q_next", "det {}", "potential")
     names = tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
-    return Layout(degrees, names, False, "next", "S {} {} {}", "potential {} {}")
+    return CoordinateLayout(degrees, names, False, "next", "S {} {} {}", "potential {} {}")
 
 
 class UnreadEntries:
@@ -61,7 +61,7 @@ class UnreadEntries:
         self.layout = layout_in(self.whole("degrees", 1, MOST_DEGREES) if several else None)
 
     def take(self, name: str) -> object:
-        """Return the entry and mark it as read; ValueError where it is missing."""
+        """Return the entry and mark it as read; ValueError if it is missing."""
         need(name in self.unread, f"{name} is missing")
         return self.unread.pop(name)
 

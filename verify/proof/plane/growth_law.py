@@ -53,9 +53,9 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import Potential, potential_of
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose
 from verify.schemes import get

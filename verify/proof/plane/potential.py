@@ -18,13 +18,13 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose, points
-from verify.algebra.linear_combination import may_combine, solve_combination
+from verify.algebra.linear_algebra import may_combine, solve_combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import P, Q
 from verify.effort import answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
@@ -43,7 +43,7 @@ class Potential:
 
     @cached_property
     def potential(self) -> sympy.Expr | None:
-        """The potential G as an expression; None where there is none."""
+        """The potential G as an expression; None if there is none."""
         if self.element is None:
             return sympy.S.Zero if self.holds else None
         ring, x = self.element
@@ -51,7 +51,7 @@ class Potential:
 
     @property
     def text(self) -> str | None:
-        """The potential G as a formula; None where there is none."""
+        """The potential G as a formula; None if there is none."""
         if self.element is None:
             return "0" if self.holds else None
         ring, x = self.element
@@ -70,10 +70,10 @@ def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
         return Potential(None, "the leading coefficient is not known")
     field, leading = _in_one_ring(proof)
     # D·G need not vanish where the motion rests: there it is ∂G/∂t.
-    where = None if field.timed else _equilibrium_against(field, leading)
-    if where is not None:
+    equilibrium = None if field.timed else _equilibrium_against(field, leading)
+    if equilibrium is not None:
         return Potential(
-            False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
+            False, f"X·G vanishes at the equilibrium {equilibrium}, for any smooth G; L does not"
         )
     every_h = scheme and scheme.every_h
     if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
@@ -130,8 +130,8 @@ def _rests(force: Sequence[sympy.Expr], point: Mapping[sympy.Expr, sympy.Expr]) 
 
 def _not_zero_at(ring: Ring, x: Poly, p: Fraction, q: Fraction) -> bool:
     names = [n for n in ring.variables if n not in ("p", "q", "h")]
-    for others in islice(points(names), 4):
-        value = enclose(ring, x, {**others, "p": p, "q": q}, 128)
+    for values in islice(points(names), 4):
+        value = enclose(ring, x, {**values, "p": p, "q": q}, 128)
         if value is not None and not value.contains(0):
             return True
     return False
@@ -150,7 +150,7 @@ def among_polynomials(
     """Find a polynomial G of least degree with derive(G) = wanted in normal form.
 
     G is a polynomial in p, q and the generators of the elements `used`; `derive` is linear. None
-    where there is none of moderate degree.
+    if there is none of moderate degree.
     """
     indices = [g.index for g in ring.generators_in(*elements, ring.variable("p"))]
     # h is no function of p and q, and G is a coefficient of a series in h.
@@ -172,10 +172,10 @@ def among_polynomials(
     return None
 
 
-def _by_degree(gens: list[Poly], one: Poly) -> Iterator[list[Poly]]:
+def _by_degree(gens: list[Poly], unity: Poly) -> Iterator[list[Poly]]:
     """Yield the monomials of degree 1, 2, …, until they are too many in all."""
     for degree in range(1, _MOST_DEGREE):
         if math.comb(len(gens) + degree, degree) > _MOST_MONOMIALS:
             return
         chosen = combinations_with_replacement(gens, degree)
-        yield [math.prod(factors, start=one) for factors in chosen]
+        yield [math.prod(factors, start=unity) for factors in chosen]

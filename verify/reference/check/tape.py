@@ -21,7 +21,7 @@ class NotReadError(ValueError):
     """A formula contains something that this module does not support."""
 
 
-class Tape:
+class FormulaTape:
     """Operations in p, q and t, or in other `variables`; each node comes after its operands.
 
     Kinds: const, pi, the variables' names, add, mul, scale (by a Fraction), power (by one), sin,
@@ -40,7 +40,7 @@ class Tape:
     # -- building -------------------------------------------------------------------------------
 
     def node(self, *content: Any) -> int:
-        """Return the node of that kind and those operands, created where it is new."""
+        """Return the node of that kind and those operands, created if it is new."""
         if content not in self._index_of:
             self._index_of[content] = len(self.nodes)
             self.nodes.append(content)
@@ -52,8 +52,8 @@ class Tape:
 
     def value(self, x: int) -> Fraction | None:
         """Return the rational that a node is, or None."""
-        kind, *rest = self.nodes[x]
-        return rest[0] if kind == "const" else None
+        kind, *operands = self.nodes[x]
+        return operands[0] if kind == "const" else None
 
     def add(self, x: int, y: int) -> int:
         """Return x + y."""
@@ -66,23 +66,23 @@ class Tape:
 
     def scale(self, factor: Fraction | int, x: int) -> int:
         """Return factor · x."""
-        kind, *rest = self.nodes[x]
+        kind, *operands = self.nodes[x]
         if kind == "const":
-            return self.const(factor * rest[0])
+            return self.const(factor * operands[0])
         if kind == "scale":
-            return self.scale(factor * rest[0], rest[1])
+            return self.scale(factor * operands[0], operands[1])
         if factor == 0:
             return self.const(0)
         return x if factor == 1 else self.node("scale", Fraction(factor), x)
 
     def mul(self, x: int, y: int) -> int:
         """Return x y."""
-        for one, other in ((x, y), (y, x)):
-            kind, *rest = self.nodes[one]
+        for factor, cofactor in ((x, y), (y, x)):
+            kind, *operands = self.nodes[factor]
             if kind == "const":
-                return self.scale(rest[0], other)
+                return self.scale(operands[0], cofactor)
             if kind == "scale":
-                return self.scale(rest[0], self.mul(rest[1], other))
+                return self.scale(operands[0], self.mul(operands[1], cofactor))
         return self.node("mul", *sorted((x, y)))
 
     def power(self, x: int, exponent: Fraction) -> int:
@@ -200,8 +200,8 @@ class Tape:
             return self.power(args[0], Fraction(-1))
         if kind == "atan":
             return self.power(args[1], Fraction(-1))
-        other = self.function(PAIRS[kind], args[0])
-        return self.scale(-1, other) if kind == "cos" else other
+        partner = self.function(PAIRS[kind], args[0])
+        return self.scale(-1, partner) if kind == "cos" else partner
 
     def nodes_below(self, *roots: int) -> tuple[int, ...]:
         """Return the nodes that the roots are made of, themselves among them, in order."""
@@ -213,5 +213,7 @@ class Tape:
         operations = [
             self.nodes[x] for x in indices
         ]  # of a pair each needs the other's coefficients
-        others = {self._index_of[PAIRS[kind], *args] for kind, *args in operations if kind in PAIRS}
-        return tuple(sorted(indices | others))
+        partners = {
+            self._index_of[PAIRS[kind], *args] for kind, *args in operations if kind in PAIRS
+        }
+        return tuple(sorted(indices | partners))

@@ -12,7 +12,7 @@ from typing import Any
 
 import flint
 
-from verify.reference.check.tape import PAIRS, Tape
+from verify.reference.check.tape import PAIRS, FormulaTape
 
 Number = Any  # flint.arb or flint.arb_series
 _VARIABLE = "variable"  # its first operand is its place among them
@@ -24,11 +24,11 @@ def number(x: Fraction) -> Any:
     return flint.fmpq(x.numerator, x.denominator)
 
 
-class Expansion:
+class TapeExpansion:
     """The coefficients of some nodes along the tape's variables, as far as these have been
     supplied, and along t."""
 
-    def __init__(self, tape: Tape, roots: Sequence[int]) -> None:
+    def __init__(self, tape: FormulaTape, roots: Sequence[int]) -> None:
         self._work: list[Work] = []
         self.c: dict[int, list[Number]] = {}
         for x in tape.nodes_below(*roots):
@@ -117,6 +117,6 @@ def _next_coefficient(
         return (k * u[k] - total) / (k * w[0])
     # exp, sin, cos, sinh and cosh: k v_k = ± Σ j u_j w_(k−j), where w is exp u itself or the other
     # of the pair.
-    other = coefficients if kind == "exp" else c[b]  # v' = ± w u'
-    total = sum((j * (u[j] * other[k - j]) for j in range(1, k)), k * (u[k] * other[0])) / k
+    partner = coefficients if kind == "exp" else c[b]  # v' = ± w u'
+    total = sum((j * (u[j] * partner[k - j]) for j in range(1, k)), k * (u[k] * partner[0])) / k
     return -total if kind == "cos" else total

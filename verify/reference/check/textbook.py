@@ -14,8 +14,8 @@ from itertools import combinations
 
 import flint
 
-from verify.reference.check.tape import Tape
-from verify.reference.check.taylor import Expansion, Number, number
+from verify.reference.check.tape import FormulaTape
+from verify.reference.check.taylor import Number, TapeExpansion, number
 
 Vector = list[Number]
 Matrix = list[Number]  # its entries, row by row
@@ -31,39 +31,43 @@ class Rows:
     """Some rows of f, and the entries of A in them that do not vanish: at a point, or along a
     solution."""
 
-    def __init__(self, tape: Tape, f: dict[int, int], a: Iterable[tuple[int, int, int]]) -> None:
+    def __init__(
+        self, tape: FormulaTape, f: dict[int, int], a: Iterable[tuple[int, int, int]]
+    ) -> None:
         """`f`: nodes by their rows; `a`: row, column and node of each entry."""
         self.f, self.a = list(f.items()), [entry for entry in a if entry[0] in f]
-        self.expansion = Expansion(tape, [*f.values(), *(x for _, _, x in self.a)])
+        self.expansion = TapeExpansion(tape, [*f.values(), *(x for _, _, x in self.a)])
 
 
-class Field:
+class TextbookField:
     """The field f and its derivative A of one Hamiltonian, from its formula alone."""
 
     def __init__(self, formula: str, parameters: dict[str, Fraction], degrees: int) -> None:
         numbers = [""] if degrees == 1 else range(1, degrees + 1)
         self.names = [f"{letter}{k}" for letter in "pq" for k in numbers]
-        self.degrees, self.tape = degrees, Tape(parameters, (*self.names, "t"))
+        self.degrees, self.tape = degrees, FormulaTape(parameters, (*self.names, "t"))
         tape = self.tape
         self.h = h = tape.read(formula)
         momenta, places = self.names[:degrees], self.names[degrees:]
         slopes = [tape.scale(-1, tape.diff(h, q)) for q in places]
         slopes += [tape.diff(h, p) for p in momenta]
         f = dict(enumerate(slopes))
-        every = [(r, c, tape.diff(x, z)) for r, x in f.items() for c, z in enumerate(self.names)]
-        a = [entry for entry in every if tape.value(entry[2]) != 0]
-        # H = T(p, t) + V(q, t) exactly where ∂f/∂z has no entry of p by p, or of q by q.
+        derivatives = [
+            (r, c, tape.diff(x, z)) for r, x in f.items() for c, z in enumerate(self.names)
+        ]
+        a = [entry for entry in derivatives if tape.value(entry[2]) != 0]
+        # H = T(p, t) + V(q, t) exactly if ∂f/∂z has no entry of p by p, or of q by q.
         self.separable = all((row < degrees) != (column < degrees) for row, column, _ in a)
-        self.timed = any(tape.nodes[x] == ("t",) for x in tape.nodes_below(h))
-        self.alone = Expansion(tape, [h])
-        self.slopes, self.all = Rows(tape, f, []), Rows(tape, f, a)
-        self.of_q = Rows(tape, {row: f[row] for row in range(degrees)}, a)
-        self.of_p = Rows(tape, {row: f[row] for row in range(degrees, 2 * degrees)}, a)
+        self.time_dependent = any(tape.nodes[x] == ("t",) for x in tape.nodes_below(h))
+        self.energy_expansion = TapeExpansion(tape, [h])
+        self.slopes, self.all_rows = Rows(tape, f, []), Rows(tape, f, a)
+        self.kick_rows = Rows(tape, {row: f[row] for row in range(degrees)}, a)
+        self.drift_rows = Rows(tape, {row: f[row] for row in range(degrees, 2 * degrees)}, a)
 
     def energy(self, z: Sequence[Number], t: Number) -> Number:
         """Return H(z, t)."""
-        self.alone.begin([*z, t])
-        return self.alone.value(self.h)
+        self.energy_expansion.begin([*z, t])
+        return self.energy_expansion.value(self.h)
 
 
 def identity(size: int) -> Matrix:
@@ -83,7 +87,7 @@ def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
     }
 
 
-def step_of(name: str, field: Field) -> Step:
+def step_of(name: str, field: TextbookField) -> Step:
     """Return the scheme's step. UnknownSchemeError names a scheme that is not recomputed."""
     if match := re.fullmatch(r"lie([0-9]+)", name, re.ASCII):
         return lie(field, int(match[1]))
@@ -113,10 +117,10 @@ def flow_series(rows: Rows, z: Vector, t: Number, order: int) -> list[Vector]:
     return zs
 
 
-def lie(field: Field, eta: int) -> Step:
+def lie(field: TextbookField, eta: int) -> Step:
     """Return the step z' = Σ h^k z_k, with J the same sum for the variational equation M' = A M,
     M_0 = 1."""
-    size, rows = len(field.names), field.all
+    size, rows = len(field.names), field.all_rows
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         zs, ms = flow_series(rows, z, t, eta), [identity(size)]
@@ -134,8 +138,8 @@ def lie(field: Field, eta: int) -> Step:
 
 def polynomials(coefficients: list[Vector], h: Number) -> Vector:
     """Return Σ z_k h^k, of vectors, by Horner's rule."""
-    *rest, total = coefficients
-    for z in reversed(rest):
+    *lower, total = coefficients
+    for z in reversed(lower):
         total = _add_scaled(z, h, total)
     return total
 
@@ -152,7 +156,7 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 }
 
 
-def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
+def runge_kutta(field: TextbookField, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
     """Return the step k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, with J by the variational
     equation."""
     size = len(field.names)
@@ -169,7 +173,7 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
 
         for row in rows:
             slopes.append(
-                _slope(field.all, stage_point(row), t + h * number(sum(row, _F(0))), size)
+                _slope(field.all_rows, stage_point(row), t + h * number(sum(row, _F(0))), size)
             )
         after = stage_point(weights)
         return after[:size], after[size:]
@@ -188,9 +192,9 @@ def _slope(rows: Rows, point: Vector, t: Number, size: int) -> Vector:
     return [*f, *product]
 
 
-def _add_scaled(x: Vector, by: Number, slope: Vector) -> Vector:
+def _add_scaled(x: Vector, factor: Number, slope: Vector) -> Vector:
     """Return x + by · slope."""
-    return [a + by * b for a, b in zip(x, slope, strict=True)]
+    return [a + factor * b for a, b in zip(x, slope, strict=True)]
 
 
 def _add_product(
@@ -231,7 +235,7 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 }
 
 
-def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
+def shears(field: TextbookField, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     """Return the step p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), with J's rows by A
     likewise."""
     size = len(field.names)
@@ -239,7 +243,7 @@ def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         point, clocks = [*z, *identity(size)], {"kick": t, "drift": t}
         for kind, share in parts():
-            rows = field.of_q if kind == "kick" else field.of_p
+            rows = field.kick_rows if kind == "kick" else field.drift_rows
             point = _add_scaled(point, h * share, _slope(rows, point, clocks[kind], size))
             # A part is evaluated at the time that the parts of the other kind have reached: this is
             # the splitting of the extended system in which t is a coordinate.

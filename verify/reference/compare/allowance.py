@@ -1,23 +1,29 @@
 """Bounds of what rounding may do to each number of a run, for programs with a given unit roundoff.
 
 A few roundings of the state in each step happen in any case. What comes from earlier steps is
-followed where a difference is larger (`verify.reference.compare.scatter`). A program that computes
+followed if a difference is larger (`verify.reference.compare.scatter`). A program that computes
 ΔJ as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
+
+Doubles may even overflow on a run on which the reference data do not. They do so if the toolkit's
+own step in doubles does; and another program may if a number of the run, or a product of its
+determinants, is not far from the largest double.
 """
 
 import math
 from fractions import Fraction
+from functools import lru_cache
 
 import flint
 
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import is_representable, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.systems import float64
 from verify.kernels.step.computation import step_map_of
-from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
-from verify.reference.compare.scatter import Scatters
-from verify.reference.make.orbit_points import Bounded
-from verify.runs.start import Start
+from verify.reference.compare.scatter import Scatters, Spread, run_of
+from verify.reference.compare.table_agreement import DOUBLE, SINGLE
+from verify.reference.make.orbit_computation import Bounded
+from verify.runs.run_start import Start
 from verify.schemes.maps.parts import parts_of
 from verify.structures import AREA, SYMPLECTIC
 
@@ -26,6 +32,9 @@ _NOT_AT_ALL = Spread(0, 0)
 _FEW = {AREA: 4, SYMPLECTIC: 8}  # roundings of the state in a step
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
+_LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
+_MOST_STEPS = 20_000  # stepped
+_DOUBLE_DIGITS = 17
 _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
     (SINGLE, Fraction(1, 2**126)),
     (DOUBLE, Fraction(1, 2**1022)),
@@ -44,32 +53,34 @@ class Allowance:
             (x for unit_of_format, x in _UNDERFLOWS if unit >= unit_of_format), Fraction(0)
         )
 
-    def at_once(self, name: str, step: int, bounded: dict[str, Bounded]) -> Fraction:
+    def unavoidable_rounding(self, name: str, step: int, bounded: dict[str, Bounded]) -> Fraction:
         """Return the rounding that may occur in any case.
 
-        `bounded`: the run's numbers after the step, the state among them where `name` is a
+        `bounded`: the run's numbers after the step, the state among them if `name` is a
         coordinate. Products of a Jacobian's entries in n degrees of freedom are followed with the
         errors that are carried.
         """
         # Independent roundings of N steps add up like a random walk, by √N.
-        many, exact = Fraction(1 + math.isqrt(step)), self.orbit.hamiltonian
-        if name in exact.coordinates:
-            size = max(abs(bounded[n][0]) for n in exact.coordinates)
+        many, coordinates = Fraction(1 + math.isqrt(step)), self.orbit.hamiltonian.coordinates
+        if name in coordinates:
+            size = max(abs(bounded[n][0]) for n in coordinates)
             return (self._few * self.unit * size + self._smallest) * many
         size = abs(bounded[name][0])
         if self._of_matrices:
             return self._few * self.unit * size * many
-        one = self._bound_determinant(step, bounded)
+        determinant = self._bound_determinant(step, bounded)
         if name == "lambda":
-            return one * (1 + size) * many
+            return determinant * (1 + size) * many
         if name == "delta_j":
-            return one * (1 + size)
-        return 2 * one * (_square_root(size) + one)
+            return determinant * (1 + size)
+        return 2 * determinant * (_square_root(size) + determinant)
 
-    def after_steps(self, name: str, step: int, bounded: dict[str, Bounded]) -> Spread | None:
-        """Return the rounding that may have accumulated over the steps; None where that may be
+    def accumulated_rounding(
+        self, name: str, step: int, bounded: dict[str, Bounded]
+    ) -> Spread | None:
+        """Return the rounding that may have accumulated over the steps; None if that may be
         everything."""
-        least = self.at_once(name, step, bounded)
+        least = self.unavoidable_rounding(name, step, bounded)
         spreads = self._scatters.spreads_at(self.orbit, step)
         if spreads is None:
             return None
@@ -94,7 +105,7 @@ class Allowance:
 def products(orbit: Start, done: int, bounded: dict[str, Bounded]) -> Fraction:
     """Bound |a d| + |b c| over the substeps of the step after `done` steps; at least 1.
 
-    det J is the difference of these products, so its rounding is relative to them. Returns 1 where
+    det J is the difference of these products, so its rounding is relative to them. Returns 1 if
     no bound is computed, as in n degrees of freedom.
     """
     if not orbit.hamiltonian.planar:
@@ -126,3 +137,30 @@ def products(orbit: Start, done: int, bounded: dict[str, Bounded]) -> Fraction:
 def _square_root(x: Fraction) -> Fraction:
     """Return √x to some digits."""
     return Fraction(math.isqrt(x.numerator * x.denominator << 80), x.denominator << 40)
+
+
+# -- overflow -------------------------------------------------------------------------------------
+
+
+def may_overflow(orbit: Start, step: int, bounded: dict[str, Bounded]) -> bool:
+    """Return True if doubles may overflow within `step` steps or in the next one.
+
+    `bounded`: the run's numbers then, the state among them unless it has left the range of the
+    reference data, too.
+    """
+    # The reference data have no state there: whether doubles overflow is decided by a run of the
+    # toolkit's own.
+    if any(name not in bounded for name in orbit.hamiltonian.coordinates):
+        return _overflows(orbit, step)
+    if any(abs(value) > _LARGE for value, _ in bounded.values()):
+        return True
+    return products(orbit, step, bounded) > _LARGE or _overflows(orbit, step)
+
+
+@lru_cache(maxsize=4096)
+def _overflows(orbit: Start, step: int) -> bool:
+    run = run_of(orbit, min(step, _MOST_STEPS) + 1)
+    try:
+        return not run.implicit and run.run(float64.make(_DOUBLE_DIGITS)).done < run.steps
+    except OverflowError:  # what is given is no double
+        return True

@@ -1,6 +1,6 @@
-"""A diagnosis: which mistakes fit a run of theirs that rounding does not explain.
+"""A diagnosis: which mistakes fit a submitted run that rounding does not explain.
 
-One is named where it fits and the right setting is off by many times more; where several fit,
+One is named if it fits and the right setting is off by many times more; if several fit,
 nothing tells them apart. A mistake of the state is looked for in its columns, where the table has
 them; then what is wrong with the others, such as Λ, in the one setting that fits the state.
 """
@@ -11,24 +11,24 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
-from verify.reference.compare.agreement import chance_of_single, is_single
-from verify.reference.compare.column_meanings import readings
-from verify.reference.compare.findings import (
+from verify.reference.compare.judge import Judge
+from verify.reference.compare.run_mistakes import (
+    Mistake,
+    input_mistakes,
+    state_mistakes,
+    without_synonyms,
+)
+from verify.reference.compare.setting import Setting, readings
+from verify.reference.compare.table_agreement import (
     DOUBLE,
     SINGLE,
     ColumnVerdict,
     Fit,
     NamedMistake,
     RunFindings,
+    chance_of_single,
+    is_single,
 )
-from verify.reference.compare.judge import Judge
-from verify.reference.compare.mistakes import (
-    Mistake,
-    input_mistakes,
-    state_mistakes,
-    without_synonyms,
-)
-from verify.reference.compare.setting import Setting
 
 _FARTHER = 30  # times: the right setting is off by so much more than a mistake that fits
 _BY_CHANCE = 1e-3  # that all numbers are of single precision
@@ -37,23 +37,23 @@ _BY_CHANCE = 1e-3  # that all numbers are of single precision
 class Diagnosis:
     """The diagnosis of one run with these `findings`.
 
-    `only`: names of the mistakes that are tried, None for all.
+    `tried`: names of the mistakes that are tried, None for all.
     """
 
     def __init__(
-        self, judge: Judge, findings: RunFindings, only: frozenset[str] | None = None
+        self, judge: Judge, findings: RunFindings, tried: frozenset[str] | None = None
     ) -> None:
-        self.judge, self.findings, self.only = judge, findings, only
+        self.judge, self.findings, self.tried = judge, findings, tried
 
     def mistakes(self) -> list[list[NamedMistake]]:
         """Return the mistakes that fit: of the state, then of each other column."""
-        names, right = self.judge.names, self.judge.right
+        names, right_setting = self.judge.names, self.judge.right_setting
         states = self.judge.state or names
-        groups, settings = [], [right]
+        groups, settings = [], [right_setting]
         if self._are_off(states) or self._is_finer_than_doubles():
             fitting = without_synonyms(list(self._fitting_mistakes(states)))
             if not fitting and self._are_off(states) and self._is_single(states):
-                fitting = [Mistake("single", "you work with single precision", right)]
+                fitting = [Mistake("single", "you work with single precision", right_setting)]
                 self.findings.unit = SINGLE
             groups.append([(x.name, x.says) for x in fitting])
             settings = [x.setting for x in fitting]
@@ -73,7 +73,7 @@ class Diagnosis:
         """Return True if they worked with single precision."""
         judge = self.judge
         cells = [cell for (_, n), cell in judge.cells.items() if n in judge.state and cell.differs]
-        printed = [(x.theirs, x.unit) for x in cells if x.theirs is not None]
+        printed = [(x.submitted, x.unit) for x in cells if x.submitted is not None]
         single = all(is_single(*x) for x in printed)
         # A few short decimals are single-precision numbers by accident: the product is the
         # probability that all of them are.
@@ -81,7 +81,7 @@ class Diagnosis:
         return (
             single
             and by_chance <= _BY_CHANCE
-            and judge.fit(judge.right, names, SINGLE, wholly=False).fits
+            and judge.fit(judge.right_setting, names, SINGLE, wholly=False).fits
         )
 
     # -- of the state -------------------------------------------------------------------------
@@ -91,27 +91,29 @@ class Diagnosis:
         setting does."""
         judge = self.judge
         for unit in judge.units():
-            right = judge.fit(judge.right, names, unit)
-            if right.fits:
+            right_fit = judge.fit(judge.right_setting, names, unit)
+            if right_fit.fits:
                 return
-            inputs = input_mistakes(judge.right) if unit < DOUBLE else ()
-            tried = [x for x in (*inputs, *state_mistakes(judge.right)) if self._is_tried(x.name)]
-            fitting = [x for x in tried if self._fits_alone(x.setting, right, names, unit)]
+            inputs = input_mistakes(judge.right_setting) if unit < DOUBLE else ()
+            mistakes = [
+                x for x in (*inputs, *state_mistakes(judge.right_setting)) if self._is_tried(x.name)
+            ]
+            fitting = [x for x in mistakes if self._fits_alone(x.setting, right_fit, names, unit)]
             yield from fitting
             if fitting:
                 return
 
     def _is_tried(self, name: str) -> bool:
-        return self.only is None or name in self.only
+        return self.tried is None or name in self.tried
 
     def _fits_alone(
-        self, setting: Setting, right: Fit, names: Sequence[str], unit: Fraction
+        self, setting: Setting, right_fit: Fit, names: Sequence[str], unit: Fraction
     ) -> bool:
         # The cheap test first: most mistakes are excluded by one number.
-        if not self._may_be_nearer(setting, right, unit):
+        if not self._may_be_nearer(setting, right_fit, unit):
             return False
         fit = self.judge.fit(setting, names, unit, wholly=False)
-        return fit.fits and self._is_conclusive(fit) and self._is_nearer(fit, right, unit)
+        return fit.fits and self._is_conclusive(fit) and self._is_nearer(fit, right_fit, unit)
 
     def _is_conclusive(self, fit: Fit) -> bool:
         """Return True if the setting's run is never lost, or more than one step can be compared
@@ -123,31 +125,31 @@ class Diagnosis:
             return True
         return len({step for step, _ in self.judge.cells if 0 < step < fit.lost_from}) > 1
 
-    def _may_be_nearer(self, setting: Setting, right: Fit, unit: Fraction) -> bool:
-        """Return False where `_is_nearer` must fail, which is seen without the scatter that
+    def _may_be_nearer(self, setting: Setting, right_fit: Fit, unit: Fraction) -> bool:
+        """Return False if `_is_nearer` must fail, which is seen without the scatter that
         takes long."""
-        place = right.place
-        if place is None or place not in right.distances:
+        place = right_fit.place
+        if place is None or place not in right_fit.distances:
             return True
         step, name = place
         bounded = self.judge.numbers(setting, step, unit)
         if name not in bounded:
             return True
         value, radius = bounded[name]
-        distance = replace(self.judge.cells[place], ours=value, radius=radius).distance
-        return right.distances[place] >= _FARTHER * distance
+        distance = replace(self.judge.cells[place], published=value, radius=radius).distance
+        return right_fit.distances[place] >= _FARTHER * distance
 
-    def _is_nearer(self, fit: Fit, right: Fit, unit: Fraction) -> bool:
+    def _is_nearer(self, fit: Fit, right_fit: Fit, unit: Fraction) -> bool:
         """Return True if the right setting is off by many times more at the place where it is
         off first."""
-        place = right.place
+        place = right_fit.place
         if place is None or (fit.lost_from is not None and fit.lost_from <= place[0]):
             return False
-        if place not in right.distances:  # nothing is known there of the right one
+        if place not in right_fit.distances:  # nothing is known there of the right one
             return True
-        least = unit * abs(self.judge.cells[place].theirs or Fraction(0))
+        least = unit * abs(self.judge.cells[place].submitted or Fraction(0))
         distance = max(fit.distances.get(place, Fraction(0)), least)
-        return right.distances[place] >= _FARTHER * distance
+        return right_fit.distances[place] >= _FARTHER * distance
 
     # -- of the other columns -----------------------------------------------------------------
 
@@ -160,9 +162,10 @@ class Diagnosis:
         if fit_of_column.fits:
             return []
         digits, matches = judge.digits(unit), []
-        for other, says, read in readings(name):
-            if self._is_tried(other):
-                fit = judge.fit(setting, [name], unit, partial(read, setting, digits), wholly=False)
+        for meaning in readings(name):
+            if self._is_tried(meaning.name):
+                predict = partial(meaning.read, setting, digits)
+                fit = judge.fit(setting, [name], unit, predict, wholly=False)
                 if fit.fits and self._is_nearer(fit, fit_of_column, unit):
-                    matches.append((other, says))
+                    matches.append((meaning.name, meaning.says))
         return matches

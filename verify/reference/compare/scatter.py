@@ -1,22 +1,19 @@
-"""How far rounding scatters runs: many copies of each, pushed a little in every step.
+"""The scatter of runs by rounding: how far copies of them part that are pushed a little.
 
-Each copy starts with h, the parameters and the initial value off by a relative ξ·ε, and after every
-step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1, and so is what a clock counts, as a program's own
-adds up t ← t + h. What becomes of that, divided by ε, is what an arithmetic's unit roundoff is
-multiplied with: as long as errors are small they add up, and so ε is small: an angle of 10⁸ is
-pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as roundings behave; in the
-others it stays what it was at first, the worst that roundings do where they always fall to the same
-side. A program's operations are others than ours, but their results are of the size of p and q or
-smaller.
+In the plane each copy starts with h, the parameters and the initial value off by a relative ξ·ε,
+and after every step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1, and so is what a clock counts, as
+a program's own adds up t ← t + h. What becomes of that, divided by ε, is what an arithmetic's unit
+roundoff is multiplied with: as long as errors are small they add up, and so ε is small: an angle of
+10⁸ is pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as roundings behave; in
+the others it stays what it was at first, the worst that roundings do if they always fall to the
+same side. A program's operations are others than ours, but their results are of the size of p and q
+or smaller.
 
-In n degrees of freedom less is run for it (`CarriedRounding`).
-
-How far rounding is carried in n degrees of freedom, in doubles.
-
-A run is repeated in float64 from points that are off by a little in one coordinate each. What that
-becomes is how far a rounding at the start is carried; those on the way are carried no farther than
-the farthest so far, in any row up to here. A program that finds S, W or Λ from the entries of a
-Jacobian rounds their products, however small they are: the columns of these runs are its entries.
+In n degrees of freedom less is run: a run is repeated in float64 from points that are off by a
+little in one coordinate each. What that becomes is how far a rounding at the start is carried;
+those on the way are carried no farther than the farthest so far, in any row up to here. A program
+that finds S, W or Λ from the entries of a Jacobian rounds their products, however small they are:
+the columns of these runs are its entries.
 """
 
 import math
@@ -32,94 +29,11 @@ from verify.arithmetic.number_system import UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.flows.extrapolation_of_many import arrays
-from verify.kernels.clock import clock_inputs
-from verify.kernels.kernel import kernel_for
+from verify.kernels.kernel import clock_inputs, kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.reference.compare.findings import DOUBLE, Spread, Spreads
-from verify.runs.start import Start
+from verify.reference.compare.table_agreement import DOUBLE
+from verify.runs.run_start import Start
 from verify.structures import AREA, SYMPLECTIC
-
-_OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
-_AT_WORST = 4  # times what is carried, for each step
-_BEYOND_SUMS = Fraction(1, 1000)  # of the orbit's size: beyond it errors do not just add up
-_OBSERVED = ("symplectic_defect_max", "symplectic_defect", "lambda")
-_ZERO = Fraction(0)
-
-
-@dataclass(frozen=True)
-class _Row:
-    """A row: the orbit's size up to it, what a rounding of that size at the start has become, by
-    column, and the greatest of a Jacobian's entries."""
-
-    size: Fraction
-    carried: Mapping[str, Fraction]
-    entry: Fraction
-
-
-class CarriedRounding:
-    """The spreads of one orbit in n degrees of freedom."""
-
-    def __init__(self, orbit: Start) -> None:
-        self._orbit = orbit
-        self._rows: dict[int, _Row | None] = {}
-
-    def spreads_at(self, step: int) -> Spreads | None:
-        """Return the spreads after so many steps; None where rounding may have taken every digit
-        of the state, or where that is not known."""
-        if step not in self._rows:
-            self._rows[step] = self._row(step)
-        row, names = self._rows[step], self._orbit.hamiltonian.coordinates
-        if row is None:
-            return None
-        rows = [x for n, x in self._rows.items() if n <= step and x is not None]
-        carried = {n: max(x.carried.get(n, _ZERO) for x in rows) for n in (*names, *_OBSERVED)}
-        if any(DOUBLE * step * carried[name] > _BEYOND_SUMS * row.size for name in names):
-            return None
-        near_one = Fraction(4 * self._orbit.hamiltonian.degrees)  # a step's Jacobian
-        of_all = max(x.entry for x in rows) ** 2
-        products = dict.fromkeys(names, _ZERO) | {
-            "symplectic_defect_max": near_one, "symplectic_defect": of_all, "lambda": of_all,
-        }  # fmt: skip
-        many = 1 + math.isqrt(step)
-        return {
-            name: Spread(
-                many * (by + products[name]),
-                _AT_WORST * (step + 1) * by + many**2 * products[name] / 2,
-            )
-            for name, by in carried.items()
-        }
-
-    def _row(self, step: int) -> _Row | None:
-        orbit = self._orbit
-        start = orbit.point
-        if step == 0:
-            return _Row(max(map(abs, start.values())), {}, Fraction(1))
-        middle = self._after(start, step) if step <= _MOST_STEPS else None
-        if middle is None:
-            return None
-        size = max(abs(x) for name in start for x in (start[name], middle[name]))
-        off = _OFF * (size or 1)
-        carried, entry = dict.fromkeys(middle, _ZERO), Fraction(1)
-        for name in start:
-            aside = self._after({**start, name: start[name] + off}, step)
-            if aside is None:
-                return None
-            # Difference quotients: the Jacobian of N steps, column by column.
-            slopes = {n: abs(aside[n] - middle[n]) / off for n in middle}
-            entry = max(entry, *(slopes[n] for n in start))
-            carried = {n: x + slopes[n] * size for n, x in carried.items()}
-        return _Row(size, carried, entry)
-
-    def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
-        """Return the numbers after so many steps from a point; None where they cannot be
-        computed."""
-        aside = run_of(replace(self._orbit, point=point), steps, _OBSERVED)
-        try:
-            done = aside.run(float64.make(17))
-        except (InputError, ArithmeticError):
-            return None
-        return dict(done.values) if done.done == steps else None
-
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind
@@ -130,6 +44,26 @@ _BLOCK = 64  # steps whose random numbers are drawn at once
 _TOGETHER = 64  # orbits
 _SUMS = {AREA: frozenset({"mse", "lambda"}), SYMPLECTIC: frozenset({"lambda"})}
 _COUNT = "step"  # what a kernel's clock counts by
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The distance by which rounding moves a number, in units of roundoff or not: usually, and
+    at worst."""
+
+    usual: float | Fraction
+    worst: float | Fraction
+
+
+Spreads = Mapping[str, Spread]  # by the number's column
+
+
+def run_of(orbit: Start, steps: int = 1, observed: Iterable[str] = ()) -> KernelRun:
+    """Return a run of so many steps of the orbit; without `observed`, with Λ and, in the plane,
+    MSE."""
+    hamiltonian = orbit.hamiltonian
+    observables = frozenset(observed) or _SUMS[hamiltonian.structure]
+    return KernelRun(hamiltonian, orbit.scheme, orbit.inputs, steps, observables, 0)
 
 
 class Scatter:
@@ -151,19 +85,21 @@ class Scatter:
         self._pushed = ("p", "q", *([_COUNT] if kernel.timed else []))
         self._shape = len(orbits), _ALL
         clocks = clock_inputs if kernel.timed else lambda *_: {}
-        inputs = [each.inputs(kernel, 0) | clocks(arithmetic, each.start) for each in runs]
-        columns = zip(*(each.values() for each in inputs), strict=True)
+        inputs = [run.inputs(kernel, 0) | clocks(arithmetic, run.start) for run in runs]
+        columns = zip(*(run.values() for run in inputs), strict=True)
         self._inputs = [self._off(column) for column in columns]
-        self._state = {n: self._off([each.point[n] for each in orbits]) for n in ("p", "q")}
-        rest = zip(self._names[2:], kernel.start, strict=True)
-        self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
+        self._state = {n: self._off([run.point[n] for run in orbits]) for n in ("p", "q")}
+        rest_of_state = zip(self._names[2:], kernel.start, strict=True)
+        self._state |= {
+            n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest_of_state
+        }
         self._biased = self._draw(())
         self._ahead: list[Any] = []
         self._done, self._marks = 0, frozenset(marks)
         self._spreads_by_step: dict[int, list[Spreads | None]] = {}
 
     def spreads_at(self, orbit: int, step: int) -> Spreads | None:
-        """Return the spreads of an orbit after so many steps; None where its copies leave every
+        """Return the spreads of an orbit after so many steps; None if its copies leave every
         range, or are far apart by then. Raises ValueError for an earlier step that is no mark."""
         if step not in self._spreads_by_step:
             if self._done > min(step, _MOST_STEPS):
@@ -187,8 +123,8 @@ class Scatter:
         # of roundings to one side.
         push[..., _COPIES:] = self._biased[..., _COPIES:]
         self._state = self._step(self._state)
-        for name, by in zip(self._pushed, push, strict=True):
-            self._state[name] = self._state[name] * by
+        for name, factor in zip(self._pushed, push, strict=True):
+            self._state[name] = self._state[name] * factor
         self._done += 1
 
     def _step(self, state: Mapping[str, Any]) -> dict[str, Any]:
@@ -234,12 +170,91 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: Start, steps: int = 1, observed: Iterable[str] = ()) -> KernelRun:
-    """Return a run of so many steps of the orbit; without `observed`, with Λ and, in the plane,
-    MSE."""
-    exact = orbit.hamiltonian
-    observables = frozenset(observed) or _SUMS[exact.structure]
-    return KernelRun(exact, orbit.scheme, orbit.inputs, steps, observables, 0)
+# -- in n degrees of freedom -----------------------------------------------------------------------
+
+_OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
+_AT_WORST = 4  # times what is carried, for each step
+_BEYOND_SUMS = Fraction(1, 1000)  # of the orbit's size: beyond it errors do not just add up
+_OBSERVED = ("symplectic_defect_max", "symplectic_defect", "lambda")
+_ZERO = Fraction(0)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row: the orbit's size up to it, what a rounding of that size at the start has become, by
+    column, and the greatest of a Jacobian's entries."""
+
+    size: Fraction
+    carried: Mapping[str, Fraction]
+    entry: Fraction
+
+
+class CarriedRounding:
+    """The spreads of one orbit in n degrees of freedom."""
+
+    def __init__(self, orbit: Start) -> None:
+        self._orbit = orbit
+        self._rows: dict[int, _Row | None] = {}
+
+    def spreads_at(self, step: int) -> Spreads | None:
+        """Return the spreads after so many steps; None if rounding may have taken every digit
+        of the state, or if that is not known."""
+        if step not in self._rows:
+            self._rows[step] = self._row(step)
+        row, names = self._rows[step], self._orbit.hamiltonian.coordinates
+        if row is None:
+            return None
+        rows = [x for n, x in self._rows.items() if n <= step and x is not None]
+        carried = {n: max(x.carried.get(n, _ZERO) for x in rows) for n in (*names, *_OBSERVED)}
+        if any(DOUBLE * step * carried[name] > _BEYOND_SUMS * row.size for name in names):
+            return None
+        near_one = Fraction(4 * self._orbit.hamiltonian.degrees)  # a step's Jacobian
+        of_all = max(x.entry for x in rows) ** 2
+        products = dict.fromkeys(names, _ZERO) | {
+            "symplectic_defect_max": near_one, "symplectic_defect": of_all, "lambda": of_all,
+        }  # fmt: skip
+        many = 1 + math.isqrt(step)
+        return {
+            name: Spread(
+                many * (carried_size + products[name]),
+                _AT_WORST * (step + 1) * carried_size + many**2 * products[name] / 2,
+            )
+            for name, carried_size in carried.items()
+        }
+
+    def _row(self, step: int) -> _Row | None:
+        orbit = self._orbit
+        start = orbit.point
+        if step == 0:
+            return _Row(max(map(abs, start.values())), {}, Fraction(1))
+        middle = self._after(start, step) if step <= _MOST_STEPS else None
+        if middle is None:
+            return None
+        size = max(abs(x) for name in start for x in (start[name], middle[name]))
+        offset = _OFF * (size or 1)
+        carried, entry = dict.fromkeys(middle, _ZERO), Fraction(1)
+        for name in start:
+            shifted = self._after({**start, name: start[name] + offset}, step)
+            if shifted is None:
+                return None
+            # Difference quotients: the Jacobian of N steps, column by column.
+            slopes = {n: abs(shifted[n] - middle[n]) / offset for n in middle}
+            entry = max(entry, *(slopes[n] for n in start))
+            carried = {n: x + slopes[n] * size for n, x in carried.items()}
+        return _Row(size, carried, entry)
+
+    def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
+        """Return the numbers after so many steps from a point; None if they cannot be
+        computed."""
+        run = run_of(replace(self._orbit, point=point), steps, _OBSERVED)
+        try:
+            done = run.run(float64.make(17))
+        except (InputError, ArithmeticError):
+            return None
+        return dict(done.values) if done.done == steps else None
+
+
+# -- the scatters of a table -----------------------------------------------------------------------
 
 
 class Scatters:
@@ -265,7 +280,7 @@ class Scatters:
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
     def spreads_at(self, orbit: Start, step: int) -> Spreads | None:
-        """Return the spreads as `Scatter.spreads_at` does, in any order; of no number where the
+        """Return the spreads as `Scatter.spreads_at` does, in any order; of no number if the
         scheme solves equations, unless in n degrees of freedom."""
         if not orbit.hamiltonian.planar:
             return self._carried_by_orbit.setdefault(orbit, CarriedRounding(orbit)).spreads_at(step)

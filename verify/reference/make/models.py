@@ -13,7 +13,7 @@ from pydantic import ConfigDict, Field
 from verify.formats import names_format
 from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.reference.make.columns import start_columns
+from verify.reference.make.row_values import start_columns
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import (
     FlowPoint,
@@ -26,16 +26,12 @@ from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
 DataInDegreesFormat = Literal["areaproof reference data in degrees 1"]
-ManifestFormat = Literal["areaproof reference manifest 1"]
 DATA_FORMAT: DataFormat = "areaproof reference data 1"
 DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degrees 1"
-MANIFEST_FORMAT: ManifestFormat = "areaproof reference manifest 1"
-_SHA256 = r"^[0-9a-f]{64}$"
 _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
 _List = Annotated[tuple[Exact, ...], Field(min_length=2)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
-Digest = Annotated[str, Field(pattern=_SHA256)]
 Digits = Annotated[int, Field(ge=1, description="significant digits of each number")]
 Proved = Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
 ConvergenceOrder = Annotated[
@@ -60,9 +56,9 @@ class WithStart(Frozen):
     def label(self) -> str:
         """The scheme, or that it is the exact flow, and its inputs in words."""
         q, p = (x if isinstance(x, str) else f"({', '.join(x)})" for x in (self.q, self.p))
-        at = f"(q, p) = ({q}, {p})" if isinstance(self.q, str) else f"q = {q}, p = {p}"
+        start = f"(q, p) = ({q}, {p})" if isinstance(self.q, str) else f"q = {q}, p = {p}"
         begins = "" if self.begins is None else f", t0 = {self.begins}"
-        return f"{getattr(self, 'scheme', 'exact flow')}, h = {self.step_size}, {at}{begins}"
+        return f"{getattr(self, 'scheme', 'exact flow')}, h = {self.step_size}, {start}{begins}"
 
     @property
     def begins(self) -> str | None:
@@ -202,14 +198,14 @@ class _SceneData(Frozen):
         """The rows of all tables."""
         fields = dict(self)
         return len(fields["proofs"]) + sum(
-            len(each.rows) for each in (*fields["runs"], *fields["flow"])
+            len(item.rows) for item in (*fields["runs"], *fields["flow"])
         )
 
     @property
-    def timed(self) -> bool:
+    def time_dependent(self) -> bool:
         """True if H depends on time."""
         fields = dict(self)
-        return any(each.begins is not None for each in (*fields["runs"], *fields["flow"]))
+        return any(item.begins is not None for item in (*fields["runs"], *fields["flow"]))
 
 
 class Data(_SceneData):
@@ -277,31 +273,3 @@ def format_at(path: Path) -> str:
     """Return the format of a file of data; the plane's, too, where it names none."""
     several = names_format(path, DATA_IN_DEGREES_FORMAT)
     return DATA_IN_DEGREES_FORMAT if several else DATA_FORMAT
-
-
-class SceneFile(Frozen):
-    """A scene that data were made from."""
-
-    name: Name = Field(description="the scene's name")
-    toml: str = Field(description="the scene as it was written, a TOML text")
-    sha256: Digest = Field(description="SHA-256 of that text in UTF-8")
-
-
-class ListedFile(Frozen):
-    """A file beside the manifest."""
-
-    name: Name = Field(description="its name in the manifest's folder")
-    bytes: int = Field(ge=0, description="its size")
-    sha256: Digest = Field(description="SHA-256 of its content")
-
-
-class Manifest(Frozen):
-    """What made a folder of reference data, and each file that belongs to it."""
-
-    model_config = ConfigDict(title="areaproof reference manifest")
-
-    format: ManifestFormat = Field(description="this format")
-    command: str = Field(description="the command that made the files")
-    versions: dict[str, str] = Field(description="versions of Python and of the libraries that did")
-    scenes: tuple[SceneFile, ...] = Field(description="what was asked for")
-    files: tuple[ListedFile, ...] = Field(description="all files but the manifest itself, by name")

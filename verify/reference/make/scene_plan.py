@@ -1,17 +1,109 @@
-"""A scene's reference sections → the tasks that they need."""
+"""The tasks that a scene's reference sections need: orbits and exact flows, correctly rounded."""
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import product
-from typing import Any
+from typing import Any, Literal
 
+from verify.arithmetic import automatic
+from verify.execution.keeper import Keeper
 from verify.execution.plan import Plan
-from verify.reference.make.columns import orbit_columns
-from verify.reference.make.tasks import OrbitTask, SolutionTask
+from verify.execution.task import HamiltonianTask
+from verify.hamiltonians.run_domain import point_of
+from verify.lockstep import Course, run_alone
+from verify.reference.make.row_values import orbit_columns
+from verify.runs.run_start import Start
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.run_sections import Reference
 from verify.scenes.scene import Scene
+from verify.scenes.values import Coordinates, ExactNumber, StepSize
 from verify.structures import AREA, SYMPLECTIC
-from verify.studies.kinds.proofs import proof_task
-from verify.studies.proofs.one import ProofTask
+from verify.studies.kinds.proofs import ProofTask, proof_task
+
+ROW_COST = 1_000_000  # of a row of reference data, however few its steps
+FLOW_ROW_COST = 10 * ROW_COST
+
+
+class StepsTask(HamiltonianTask):
+    """A request for numbers from an initial value, after each of these numbers of steps."""
+
+    imports = ("verify.reference.make.orbit_computation",)
+    step_size: StepSize
+    q: Coordinates
+    p: Coordinates
+    t0: ExactNumber | None = None
+    digits: int
+    steps: tuple[int, ...]
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """Step size, initial value, t₀ and digits, as the files have them: in several degrees of
+        freedom they have lists, and a t₀ of every H."""
+        names = {"step_size", "q", "p", "t0", "digits"}
+        if isinstance(self.q, Fraction) and self.t0 is None:
+            names.remove("t0")
+        return self.model_dump(include=names)
+
+
+class OrbitTask(StepsTask):
+    """A scheme's orbit after each of these numbers of steps, correctly rounded."""
+
+    result = OrbitResult
+    kind: Literal["orbit"] = "orbit"
+    scheme: str
+
+    @property
+    def cost(self) -> int:
+        return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
+
+    @property
+    def ensemble(self) -> str | None:
+        """Orbits of one scheme's map, whatever the step size and the initial value."""
+        return f"{self.kind} {self.scheme} {self.hamiltonian}"
+
+    @property
+    def orbit(self) -> Start:
+        """The orbit of which these are points."""
+        hamiltonian, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        point = point_of(hamiltonian, self.q, self.p)
+        return Start(hamiltonian, self.scheme, self.step_size, point, t0)
+
+    def compute(self, keeper: Keeper) -> OrbitResult:
+        from verify.reference.make.orbit_computation import orbit_points
+
+        return OrbitResult(points=run_alone(orbit_points(self.orbit, self.steps, self.digits)))
+
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
+        from verify.reference.make.orbit_computation import orbit_points
+
+        points = yield from orbit_points(self.orbit, self.steps, self.digits)
+        return {self.key: OrbitResult(points=points)}
+
+
+class SolutionTask(StepsTask):
+    """The exact flow at the times N·h for each of these N, correctly rounded."""
+
+    result = SolutionResult
+    kind: Literal["solution"] = "solution"
+
+    @property
+    def cost(self) -> int:
+        return FLOW_ROW_COST * len(self.steps)
+
+    def compute(self, keeper: Keeper) -> SolutionResult:
+        from verify.reference.make.orbit_computation import solution_points
+
+        hamiltonian, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        start, times = (
+            point_of(hamiltonian, self.q, self.p),
+            {n: n * self.step_size for n in self.steps},
+        )
+        points = solution_points(hamiltonian, start, t0, times, self.digits)
+        return SolutionResult(points=tuple(points))
+
+
+# -- the tasks of scenes --------------------------------------------------------------------------
 
 _NUMBERS = {AREA: "ΔJ, MSE and Λ", SYMPLECTIC: "H, S, W and Λ"}
 
@@ -46,7 +138,7 @@ def size_of(scene: Scene) -> int:
 
 
 def schemes_of(scene: Scene, section: Reference) -> tuple[str, ...]:
-    """Return the section's schemes; the scene's where it names none."""
+    """Return the section's schemes; the scene's if it names none."""
     return section.schemes or scene.schemes
 
 
@@ -65,7 +157,7 @@ def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
 
 
 def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
-    """Yield the tasks section by section, where the flow is requested: initial value, step size."""
+    """Yield the tasks section by section, if the flow is requested: initial value, step size."""
     for section in (x for x in scene.reference if x.flow):
         for start in _starts(scene, section):
             yield SolutionTask(**start)

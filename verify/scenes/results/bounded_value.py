@@ -1,8 +1,13 @@
-"""A number of a result: exact decimal strings, unchanged by a JSON round trip."""
+"""Numbers of a result, and antisymmetric matrices of such, as exact decimal strings with bounds.
+
+They are unchanged by a JSON round trip.
+"""
 
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from itertools import combinations
+from math import isqrt
 from numbers import Real
 from typing import Annotated, Any
 
@@ -21,7 +26,7 @@ class Value(Frozen):
     It can be used as a number: `float(x)`, `mpmath.mpf(x)` and `f"{x:.3e}"` convert `value`,
     `x.exact` is the rational number `value`, and `abs(x)` and `-x` are a Value.
 
-    Comparisons are between all numbers within the bounds: x < y is True where it holds for each of
+    Comparisons are between all numbers within the bounds: x < y is True if it holds for each of
     them, so that `assert abs(x) < 1e-6` means what it says. Where the bounds overlap, none of
     x < y, x > y, x <= y and x >= y is True: `not x < y` does not imply x ≥ y, and Values cannot be
     sorted by them (sort by `key=float`). x == 0 is True for an exact 0 alone; two Values are equal
@@ -120,7 +125,7 @@ class Value(Frozen):
 
 
 def _ends(x: object) -> tuple[Fraction, Fraction] | None:
-    """Return the least and the greatest number that x may be; None where it is no number."""
+    """Return the least and the greatest number that x may be; None if it is no number."""
     if isinstance(x, Value):
         return x.ends
     try:
@@ -133,3 +138,56 @@ def _ends(x: object) -> tuple[Fraction, Fraction] | None:
     except InputError:  # nan, an infinity
         return None
     return exact, exact
+
+
+Rows = tuple[tuple[str, ...], ...]
+
+
+class FormValue(Frozen):
+    """An antisymmetric 2n × 2n matrix of decimal strings, rows and columns p1 … pn, q1 … qn, with
+    the bound of each entry's error."""
+
+    value: Rows
+    bound: Rows
+
+    @classmethod
+    def from_entries(cls, entries: tuple[Value, ...]) -> "FormValue":
+        """Return the matrix with these entries above the diagonal, row by row."""
+        size = (1 + isqrt(1 + 8 * len(entries))) // 2  # of rows: size (size − 1)/2 entries
+        zero = Value(value="0", bound="0")
+        full = [[zero] * size for _ in range(size)]
+        for (a, b), entry in zip(combinations(range(size), 2), entries, strict=True):
+            # The lower triangle follows from antisymmetry; the diagonal is 0.
+            full[a][b], full[b][a] = entry, -entry
+        return cls(
+            value=tuple(tuple(x.value for x in row) for row in full),
+            bound=tuple(tuple(x.bound for x in row) for row in full),
+        )
+
+    @property
+    def exact(self) -> tuple[tuple[Fraction, ...], ...]:
+        """The matrix `value` as rationals."""
+        return tuple(tuple(map(Fraction, row)) for row in self.value)
+
+    def entry(self, a: int, b: int) -> Value:
+        """Return one entry, with row and column counted from 0."""
+        return Value(value=self.value[a][b], bound=self.bound[a][b])
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Row and column of the greatest |entry|, above the diagonal."""
+        places = combinations(range(len(self.value)), 2)
+        return max(places, key=lambda indices: abs(Fraction(self.value[indices[0]][indices[1]])))
+
+    @property
+    def largest(self) -> Value:
+        """The entry of the greatest size, with its sign."""
+        return self.entry(*self.place)
+
+    def __str__(self) -> str:
+        return f"{self.largest} at the greatest entry"
+
+
+def largest(x: Value | FormValue) -> Value:
+    """Return the number itself; for a matrix, the entry of the greatest size."""
+    return x if isinstance(x, Value) else x.largest

@@ -10,10 +10,10 @@ class AverageResult(OfScheme, WithProse):
     """The growth law of Λ on one orbit: see `verify.proof.plane.growth_law`.
 
     `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas.
-    `telescopes`: whether the leading coefficient of ΔJ is X·`potential`, None where that is not
+    `telescopes`: whether the leading coefficient of ΔJ is X·`potential`, None if that is not
     decided; `by_potential`: the law is written with it, and g is the next coefficient. Else g is
     the leading one. `average` (⟨g⟩) and
-    `period` are along the exact orbit through (q, p); `average` is None where the orbit is not
+    `period` are along the exact orbit through (q, p); `average` is None if the orbit is not
     known to be closed, and `reason` says why; `period` is None at an equilibrium too.
     """
 
@@ -38,7 +38,7 @@ class PredictionResult(Frozen):
     """Λ of one run as the growth law predicts it, and as it was measured.
 
     `boundary` + `secular` = log(1 + Λ), of which `predicted` is the Λ; `difference` is
-    (predicted − measured) / |measured|, None where no digit of the measured Λ is known.
+    (predicted − measured) / |measured|, None if no digit of the measured Λ is known.
     """
 
     step_size: str

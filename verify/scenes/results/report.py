@@ -8,14 +8,13 @@ from pydantic import ValidationError
 from verify.errors import InputError
 from verify.formats import read_json
 from verify.notebook import html_table
-from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, Seconds
-from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.results.claim import ClaimResult, CriterionResult
+from verify.scenes.paper_sections import Cause, PaperFigure
+from verify.scenes.results.claim import ClaimResult, CriterionResult, StatementResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
-from verify.scenes.results.orbit_sections import PoincareResult, StroboscopicResult
-from verify.scenes.results.proof import EveryResult, ProofResult
+from verify.scenes.results.orbit_points import PoincareResult, StroboscopicResult
+from verify.scenes.results.proof_result import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationGrid, SeparationGridInDegrees
@@ -25,7 +24,6 @@ from verify.scenes.results.stability import (
     StabilityMapResult,
     StabilityResult,
 )
-from verify.scenes.results.statement import StatementResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.verdict import Verdict
 
@@ -134,7 +132,5 @@ def read_report(path: Path) -> Report:
         return Report.model_validate(data)
     except ValidationError as error:
         first_error = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first_error["loc"]))
-        raise InputError(
-            "file", str(path), f"is no report: {where}: {first_error['msg']}"
-        ) from None
+        key = ".".join(map(str, first_error["loc"]))
+        raise InputError("file", str(path), f"is no report: {key}: {first_error['msg']}") from None

@@ -6,10 +6,9 @@ entry by entry.
 
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
-from verify.frames import import_library, nearest_float
-from verify.notebook import html_table
+from verify.notebook import html_table, import_library, nearest_float
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
-from verify.scenes.results.form_value import largest
+from verify.scenes.results.bounded_value import largest
 from verify.scenes.results.separation_parts import (
     AnyEvaluation,
     EvaluationResult,
@@ -28,9 +27,11 @@ WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 
 class Separation(OfScheme):
-    """Truncation and rounding of one run in float64; see `verify.studies.separation.separate`.
+    """Truncation and rounding of one run in float64.
 
-    `plain` and `closed_form`, two ways to evaluate the quantity that is split, are None where
+    See `verify.studies.separation.truncation_and_rounding`.
+
+    `plain` and `closed_form`, two ways to evaluate the quantity that is split, are None if
     `status` is not "finished" (`reason` says why). `arithmetic` is the number system that stood for
     exact arithmetic; `seconds` is the time of stepping all runs.
     """
@@ -58,12 +59,12 @@ class Separation(OfScheme):
         return {way: evaluation for way in WAYS if (evaluation := getattr(self, way))}
 
     def __repr__(self) -> str:
-        what = f"{self.scheme}, {self.steps} steps of h = {self.step_size}"
+        heading = f"{self.scheme}, {self.steps} steps of h = {self.step_size}"
         if self.plain is None:
-            return f"{type(self).__name__}({what}: {self.status})"
+            return f"{type(self).__name__}({heading}: {self.status})"
         truncation, total = map(largest, (self.plain.parts.truncation, self.plain.parts.total))
         sizes = f"{self.greatest}truncation {truncation}, rounding {total}"
-        return f"{type(self).__name__}({what}: {sizes})"
+        return f"{type(self).__name__}({heading}: {sizes})"
 
     def _extra_rows(self) -> tuple[list[tuple[str, ...]], str]:
         """Return further rows of the table, and the beginning of the line at its foot."""
@@ -103,10 +104,10 @@ class SeparationResult(Separation):
 
 class SeparationInDegrees(Separation):
     """Truncation and rounding in W of one run in float64, in n degrees of freedom; see
-    `verify.studies.separation.ways.matrices`.
+    `verify.studies.separation.matrix_products`.
 
     `coordinates` name the rows and columns of all matrices. `plain` takes W = MᵀΩM − Ω of float64's
-    M, `closed_form` sums MᵀSM. `tangent` is None where they are.
+    M, `closed_form` sums MᵀSM. `tangent` is None if they are.
     """
 
     split_into: ClassVar = FormParts
@@ -132,7 +133,7 @@ AnySeparation = SeparationResult | SeparationInDegrees
 
 
 class CrossoverResult(Frozen):
-    """A `verify.studies.separation.growth.Crossover`."""
+    """A `verify.studies.separation.growth_fits.Crossover`."""
 
     step_size: str | None
     bracket: tuple[str, str] | None
@@ -172,7 +173,7 @@ class SeparationGrid(GridOf[SeparationResult]):
         ]
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return the rows, with numbers as float64; InputError where pandas is not installed."""
+        """Return the rows, with numbers as float64; InputError if pandas is not installed."""
         pandas = import_library("pandas", "to_dataframe()")
         rows = [{k: x if k == "way" else nearest_float(x) for k, x in r.items()} for r in self.rows]
         frame: pd.DataFrame = pandas.DataFrame(rows)

@@ -3,8 +3,7 @@
 from typing import ClassVar, Literal
 
 from verify.scenes.frozen import Frozen, ProseText, WithProse
-from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.form_value import FormValue
+from verify.scenes.results.bounded_value import FormValue, Value
 from verify.structures import AREA, SYMPLECTIC, Structure
 
 
@@ -103,7 +102,7 @@ class FormAt(Frozen):
 
 
 class GrowthResult(WithProse):
-    """A `verify.studies.separation.growth.Growth`."""
+    """A `verify.studies.separation.growth_fits.Growth`."""
 
     exponent: str | None
     standard_error: str | None
@@ -115,7 +114,7 @@ class GrowthResult(WithProse):
 
 
 class PowerLawResult(WithProse):
-    """A `verify.studies.separation.growth.PowerLaw`: measured, not proved."""
+    """A `verify.studies.separation.growth_fits.PowerLaw`: measured, not proved."""
 
     exponent: str | None
     standard_error: str | None

@@ -26,7 +26,7 @@ class StabilityResult(WithProse):
     float64's range. `rate`: of a drift, the energy's change in a unit of time in parts of the
     orbit's own energy scale. `energy_error`: the greatest |H − H(z0)| seen, in the same parts.
     `h_omega`: the step size times the orbit's greatest frequency; `linear_limit`: up to where the
-    scheme is stable on the harmonic oscillator; None where either is not known. `lyapunov`: in n
+    scheme is stable on the harmonic oscillator; None if either is not known. `lyapunov`: in n
     degrees of freedom, the finite-time Lyapunov exponent of the exact motion.
     """
 
@@ -63,7 +63,7 @@ class LargestStepResult(OfScheme, WithProse):
     """The largest step size with bounded motion, measured, against linear theory.
 
     `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
-    greater, it does not; None where no step size looked at is of that kind. `linear`: the step size
+    greater, it does not; None if no step size looked at is of that kind. `linear`: the step size
     that linear theory allows where the orbit is stiffest; "0" where it allows none. `energy_error`
     and `symplectic_defect`: the further limits that the motion had to respect, if any.
     """
@@ -93,7 +93,7 @@ class StabilityMapResult(OfScheme):
     """Verdicts in the plane of step size and stiffness, of one scheme.
 
     `cells[i][j]`: at the i-th value of the parameter and the j-th step size. `linear[i]`: the step
-    size that linear theory allows there; None where it does not say.
+    size that linear theory allows there; None if it does not say.
     """
 
     parameter: str
@@ -121,8 +121,8 @@ class OrbitMapResult(OfScheme):
     a coordinate is beyond `beyond` or float64's range, seen after `left` steps, which are looked at
     every `every` steps. `lyapunov`: the rate at which a neighbour parts, by the distance that it
     began with, until a tenth of the greatest start. `defects`: max |W| after all steps, the
-    symplectic defect, in the plane |Λ|; "0" where it is proved, None where the orbit leaves or W is
-    not carried in so many degrees of freedom. `energies`: H at the start, None where H depends on
+    symplectic defect, in the plane |Λ|; "0" where it is proved, None if the orbit leaves or W is
+    not carried in so many degrees of freedom. `energies`: H at the start, None if H depends on
     time.
     """
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from verify.frames import import_library, nearest_float
-from verify.notebook import html_table
+from verify.notebook import html_table, import_library, nearest_float
 from verify.scenes.results.run import RunResult
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ class Sweep:
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
-        """The table as exact texts; a text is empty where a run gave no value."""
+        """The table as exact texts; a text is empty if a run gave no value."""
         return [
             (*values, *self._values(run), run.status)
             for values, run in zip(product(*self.axes.values()), self.runs, strict=True)
@@ -49,7 +48,7 @@ class Sweep:
         return [text for x in values for text in ((x.value, x.bound) if x else ("", ""))]
 
     def column(self, name: str) -> "np.ndarray":
-        """Return a column as float64, nan where a run gave no value; ValueError for words."""
+        """Return a column as float64, nan if a run gave no value; ValueError for words."""
         import numpy as np
 
         place = self.columns.index(name)

@@ -23,7 +23,7 @@ class WorkPoint(Frozen):
     `error`, `lambda_limited_by` of Λ, or of W; "tolerance" is a peer's, in which nothing tells
     truncation from rounding, "undecided" has its reason in `reason`. A failed run has no values;
     `failed_step` is the step at which it left its range. Seconds are those of the whole run, its
-    compilation and the call itself apart; None where that takes longer than the run. `evaluations`:
+    compilation and the call itself apart; None if that takes longer than the run. `evaluations`:
     of the vector
     field in the whole run, where it is counted.
     """
@@ -54,7 +54,7 @@ class WorkPoint(Frozen):
 
 
 class SlopeResult(Frozen):
-    """The order over the points limited by truncation; None where there are fewer than three."""
+    """The order over the points limited by truncation; None if there are fewer than three."""
 
     value: str | None
     standard_error: str | None
@@ -81,7 +81,9 @@ class CostResult(Frozen):
     def text(self) -> str:
         """The operations, such as "3 +, 2 ×, 1 sin", and those of an iteration of Newton's."""
         counts = {"+": self.additions, "×": self.multiplications, "÷": self.divisions}
-        counts_text = ", ".join(f"{n} {what}" for what, n in (counts | self.functions).items() if n)
+        counts_text = ", ".join(
+            f"{n} {operation}" for operation, n in (counts | self.functions).items() if n
+        )
         return (
             counts_text
             if self.turn is None
@@ -110,7 +112,7 @@ class WorkLine(Frozen):
 class SystemPoint(Frozen):
     """A number system at so many digits: how many of the end state it certifies, and how fast.
 
-    `certified`: correct digits of the state, by a bound that is `error_kind`; None where the run
+    `certified`: correct digits of the state, by a bound that is `error_kind`; None if the run
     gave none, and `reason` says why.
     """
 
@@ -139,7 +141,7 @@ class RatioResult(Frozen):
 class ComparisonResult(WithProse):
     """Two schemes at equal run time `seconds`, over run times `first` … `last` that both cover.
 
-    `error` and `area` are None where there is nothing to compare, and `sentence` says it all.
+    `error` and `area` are None if there is nothing to compare, and `sentence` says it all.
     """
 
     one: str
@@ -154,7 +156,7 @@ class ComparisonResult(WithProse):
 
 class WorkPrecisionResult(Frozen):
     """Error against run time over [0, `time`] from (q, p); see
-    `verify.studies.work_precision.measure`.
+    `verify.studies.work_precision.measurement`.
 
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part

@@ -14,8 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from verify.errors import InputError
-from verify.scenes.shapes.elliptical_arc import EllipticalArc
-from verify.scenes.shapes.outline import Point
+from verify.scenes.shapes.outline import EllipticalArc, Point
 
 MAX_LENGTH = 100_000
 MAX_SEGMENTS = 2_000
@@ -42,7 +41,7 @@ def subpaths(text: str, name: str = "path") -> list[tuple[Segment, ...]]:
     """
     if len(text) > MAX_LENGTH:
         raise InputError(name, text, f"longer than {MAX_LENGTH} characters")
-    reader, pen = _Reader(text, name), _Pen()
+    reader, pen = _PathReader(text, name), _Pen()
     while reader.has_more():
         place = reader.position
         command = reader.read_command(first=place == reader.begin)
@@ -64,14 +63,14 @@ def subpaths(text: str, name: str = "path") -> list[tuple[Segment, ...]]:
     return pen.finished
 
 
-def _finish_subpath(reader: "_Reader", pen: "_Pen") -> None:
+def _finish_subpath(reader: "_PathReader", pen: "_Pen") -> None:
     if not pen.finish():
         raise reader.error(
             "this subpath is not closed; end it with Z or at its start", pen.subpath_start
         )
 
 
-class _Reader:
+class _PathReader:
     """A text of path data, and the position of the reader in it."""
 
     def __init__(self, text: str, name: str) -> None:
@@ -141,10 +140,10 @@ class _Reader:
         self.position += 1
         return Fraction(int(digit))
 
-    def _read_number(self, why: str) -> Fraction:
+    def _read_number(self, purpose: str) -> Fraction:
         match = _NUMBER.match(self.text, self.position)
         if match is None:
-            raise self.error(f"a number is missing: {why}")
+            raise self.error(f"a number is missing: {purpose}")
         if len(match[0]) > MAX_NUMBER:
             raise self.error(f"a number of more than {MAX_NUMBER} characters")
         if abs(int(match[1] or 0)) > MAX_EXPONENT:
@@ -166,7 +165,7 @@ class _Pen:
     subpath_start: int = 0  # the character where the subpath begins
 
     def finish(self) -> bool:
-        """End the subpath; return False where it is not closed."""
+        """End the subpath; return False if it is not closed."""
         if self.position != self.start:
             return False
         if self.segments:

@@ -5,10 +5,17 @@ from fractions import Fraction
 from itertools import pairwise
 from math import lcm
 
-from verify.arithmetic.exact import Exact, rational, text
+from verify.arithmetic.exact import Number, rational, text
 from verify.errors import InputError
-from verify.scenes.shapes.elliptical_arc import EllipticalArc, elliptical_curve
-from verify.scenes.shapes.outline import Arc, Outline, Point, Shape, bezier
+from verify.scenes.shapes.outline import (
+    Arc,
+    EllipticalArc,
+    Outline,
+    Point,
+    Shape,
+    bezier,
+    elliptical_curve,
+)
 from verify.scenes.shapes.svg_path import Segment, subpaths
 
 Value = int | Fraction
@@ -26,15 +33,15 @@ def find_meeting_sides(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int
                 yield i, j
 
 
-def turns_back(before: Pair, here: Pair, after: Pair) -> bool:
+def turns_back(before: Pair, corner: Pair, after: Pair) -> bool:
     """Return True if two neighbouring sides lie on each other."""
-    (a, b), (x, y), (c, d) = before, here, after
-    return _cross(before, here, after) == 0 and (x - a) * (c - x) + (y - b) * (d - y) < 0
+    (a, b), (x, y), (c, d) = before, corner, after
+    return _cross(before, corner, after) == 0 and (x - a) * (c - x) + (y - b) * (d - y) < 0
 
 
 def are_collinear(points: Sequence[Pair]) -> bool:
-    other = next((point for point in points if point != points[0]), points[0])
-    return all(_cross(points[0], other, point) == 0 for point in points)
+    second = next((point for point in points if point != points[0]), points[0])
+    return all(_cross(points[0], second, point) == 0 for point in points)
 
 
 def twice_the_area(corners: Sequence[Pair]) -> Value:
@@ -45,8 +52,8 @@ def twice_the_area(corners: Sequence[Pair]) -> Value:
 def _meeting_boxes(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
     """Yield the pairs of sides whose boxes meet, the smaller index first."""
     boxes = []
-    for k, (one, other) in enumerate(zip(corners, [*corners[1:], corners[0]], strict=True)):
-        (x0, x1), (y0, y1) = (sorted(pair) for pair in zip(one, other, strict=True))
+    for k, (start, end) in enumerate(zip(corners, [*corners[1:], corners[0]], strict=True)):
+        (x0, x1), (y0, y1) = (sorted(pair) for pair in zip(start, end, strict=True))
         boxes.append((x0, x1, y0, y1, k))
     # A sweep from left to right; the open boxes reach as far to the right as the current one.
     open_boxes: list[tuple[int, int, int, int, int]] = []
@@ -81,7 +88,7 @@ MAX_BITS = 400
 MAX_COMMON_BITS = 2_000
 
 
-def polygon(points: Sequence[Sequence[Exact]], name: str = "polygon") -> Shape:
+def polygon(points: Sequence[Sequence[Number]], name: str = "polygon") -> Shape:
     """Return the polygon through the points [q, p], which may go round either way.
 
     Raises InputError, which names the point, unless there are 3 to 2,000 of them, not all on one
@@ -129,7 +136,7 @@ def _is_flat(segments: Sequence[Segment]) -> bool:
     return are_collinear(points)
 
 
-def _read_point(point: Sequence[Exact], name: str) -> Point:
+def _read_point(point: Sequence[Number], name: str) -> Point:
     if not isinstance(point, Sequence) or isinstance(point, str) or len(point) != 2:
         raise InputError(name, point, "not a pair [q, p]")
     q, p = rational(point[0], name), rational(point[1], name)

@@ -1,11 +1,17 @@
-"""Conditions on a scheme's coefficients, evaluated exactly, each with its residual."""
+"""Conditions on a scheme's coefficients: decided exactly, each with its residual."""
 
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Protocol, runtime_checkable
 
+from verify.algebra.enclosure import enclose
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.arb import is_representable, midpoint_and_radius
+from verify.arithmetic.exact import known_digits
 from verify.prose import Prose
 from verify.verdict import Verdict
+
+_PRECISIONS = (128, 512, 2048)
 
 
 @dataclass(frozen=True)
@@ -23,22 +29,26 @@ class Condition:
     holds: bool | None
 
 
-@dataclass(frozen=True)
-class NearbyOrder:
-    """The highest order that exact coefficients near printed ones have, with the evidence for it.
+def condition_of(ring: Ring, name: str, order: int, gap: Poly, digits: int) -> Condition:
+    """Return the condition that `gap`, left side − right side, is 0; so many digits of it are
+    printed."""
+    gap = ring.reduce(gap)
+    zero = ring.decide(gap).zero
+    return Condition(name, order, "0" if zero else decimal_of(ring, gap, digits), zero)
 
-    `explanation`: how near they are, and the residuals that the digits leave. `wrong`: a condition
-    of the next order that none near them satisfy; None where that is not decided. `parts`: the
-    nearest, to some 90 digits; none where they are not known. `times`: those of the nearest, None
-    where it is the right one; none where all are.
-    """
 
-    order: int
-    verdict: Verdict
-    said: Prose
-    wrong: Condition | None
-    parts: tuple[tuple[str, Fraction], ...]
-    times: tuple[Fraction | None, ...] = ()
+def decimal_of(ring: Ring, number: Poly, digits: int) -> str:
+    """Return a number in the ring as a decimal, every digit of which is known."""
+    decimal = "unknown"
+    for precision in _PRECISIONS:
+        value = enclose(ring, number, {}, precision)
+        if value is not None and is_representable(value):
+            middle, radius = midpoint_and_radius(value)
+            decimal, _ = known_digits(middle, radius, digits)
+            # The decimal has all its digits; else the precision is raised, up to the last one.
+            if radius * 10 ** (digits + 1) < abs(middle):
+                break
+    return decimal
 
 
 @runtime_checkable
@@ -66,3 +76,21 @@ class ByConditions(Protocol):
     def area_conditions(self) -> tuple[Condition, ...]:
         """Return all conditions that make det J ≡ 1 for every H; they suffice."""
         ...
+
+
+@dataclass(frozen=True)
+class NearbyOrder:
+    """The highest order that exact coefficients near printed ones have, with the evidence for it.
+
+    `explanation`: how near they are, and the residuals that the digits leave. `wrong`: a condition
+    of the next order that none near them satisfy; None where that is not decided. `parts`: the
+    nearest, to some 90 digits; none where they are not known. `times`: those of the nearest, None
+    where it is the right one; none where all are.
+    """
+
+    order: int
+    verdict: Verdict
+    explanation: Prose
+    wrong: Condition | None
+    parts: tuple[tuple[str, Fraction], ...]
+    times: tuple[Fraction | None, ...] = ()

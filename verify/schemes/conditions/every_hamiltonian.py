@@ -16,9 +16,9 @@ from typing import Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 import flint
 
-from verify.algebra.series.jets import JetsInDegrees, Poly, Series
-from verify.hamiltonians.jet_flow import JetFlow
-from verify.late import sympy
+from verify.algebra.jets import JetsInDegrees, Poly, Series
+from verify.hamiltonians.canonical_field import JetField
+from verify.lazy_sympy import sympy
 from verify.prose import count
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.steps.step_algebra import StepAlgebra, series_of
@@ -49,7 +49,7 @@ class ByChanges(ABC):
 
     def taylor(self, jets: JetsInDegrees, most: int) -> tuple[Series, ...]:
         """Return z' as series up to h^most; see `BySeries`."""
-        state = series_of(JetFlow.from_jets(jets), self.changes, most)
+        state = series_of(JetField.from_jets(jets), self.changes, most)
         return tuple(list(x.coefficients) for x in state)
 
 
@@ -234,7 +234,7 @@ def _stage_moves(
     # The first n coordinates are momenta, which the kick changes; the others the drift.
     shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
     triples = zip(before, change, shares, strict=False)
-    stage_point = [*(algebra.add_share(*each) for each in triples), *before[len(change) :]]
+    stage_point = [*(algebra.add_share(*triple) for triple in triples), *before[len(change) :]]
     slopes = algebra.slopes(stage_point, stage.at_q, range(count))  # t goes with q
-    each = zip(weights, slopes, strict=False)
-    return [algebra.move(algebra.nothing, [w], [slope]) for w, slope in each]
+    pairs = zip(weights, slopes, strict=False)
+    return [algebra.move(algebra.nothing, [weight], [slope]) for weight, slope in pairs]

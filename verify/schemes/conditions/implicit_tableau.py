@@ -22,14 +22,13 @@ from typing import Any, TypeAlias
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.late import sympy
-from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.residue import condition_of
+from verify.lazy_sympy import sympy
+from verify.schemes.conditions.condition import Condition, condition_of
 from verify.schemes.conditions.tree_weights import Tableau, TreeWeights
 from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
 Clock: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None where it is right
-SHOWN = 5  # digits of a residue
+SHOWN = 5  # digits of a residual
 
 
 @dataclass(frozen=True)
@@ -81,9 +80,9 @@ class ImplicitTableau:
         return len(self.weights)
 
     @cached_property
-    def numbers(self) -> Numbers:
+    def numbers(self) -> TableauNumbers:
         """The coefficients in one ring."""
-        return Numbers.from_tableau(self)
+        return TableauNumbers.from_tableau(self)
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """Return the conditions b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; of two parts b_p,i
@@ -101,7 +100,7 @@ def _area_conditions(tableau: ImplicitTableau) -> tuple[Condition, ...]:
     return tuple(numbers.condition(name, 0, gap) for name, gap in _area_gaps(numbers))
 
 
-def _area_gaps(numbers: Numbers) -> Iterator[tuple[str, Poly]]:
+def _area_gaps(numbers: TableauNumbers) -> Iterator[tuple[str, Poly]]:
     of_p, of_q = numbers.blocks[0], numbers.blocks[-1]
     (a, u), (b, v) = (of_p.matrix, of_p.weights), (of_q.matrix, of_q.weights)
     two = len(numbers.blocks) == 2
@@ -116,14 +115,14 @@ def _area_gaps(numbers: Numbers) -> Iterator[tuple[str, Poly]]:
 
 
 @dataclass(frozen=True)
-class Numbers:
+class TableauNumbers:
     """The numbers a_ij, b_i and c_i of each part as elements of a ring without variables."""
 
     ring: Ring
     blocks: tuple[Tableau[Poly], ...]
 
     @classmethod
-    def from_tableau(cls, tableau: ImplicitTableau) -> Numbers:
+    def from_tableau(cls, tableau: ImplicitTableau) -> TableauNumbers:
         """Return the numbers of a tableau, embedded together."""
         count, clock_times = tableau.stages, [c for c in tableau.clock or () if c is not None]
         rows = [row for part in tableau.parts for row in (part.weights, *part.rows)]
@@ -201,8 +200,8 @@ def implicit_step(
                 algebra.slopes(unknowns[size * i : size * (i + 1)], clock, range(size))
                 for i, clock in enumerate(clocks)
             ]
-            each = product(weight_rows, zip(*slopes, strict=True))
-            return [algebra.move(algebra.nothing, row, column) for row, column in each]
+            pairs = product(weight_rows, zip(*slopes, strict=True))
+            return [algebra.move(algebra.nothing, row, column) for row, column in pairs]
 
         # The unknowns are Z_i = Y_i − z, of the size of h: so they are rounded h times less than
         # Y_i.

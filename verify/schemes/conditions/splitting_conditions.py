@@ -28,7 +28,7 @@ has their rank).
 For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
 combinations of coefficients in the generator of the step
 (`verify.schemes.conditions.words.step_words`) that count
-(`verify.schemes.conditions.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6,
+(`verify.schemes.conditions.words.equations`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6,
 11, 23, 45, 93, 182 for p²/(2m(t)).
 
 Each part reads its force, or its velocity, at a time. The right clock of a kick is advanced by the
@@ -59,16 +59,15 @@ import flint
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.number import E
+from verify.arithmetic.number_system import E
 from verify.errors import InputError
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.prose import count
-from verify.schemes.conditions.condition import Condition, NearbyOrder
+from verify.schemes.conditions.condition import Condition, NearbyOrder, condition_of
 from verify.schemes.conditions.every_hamiltonian import StageEquations
-from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.words.equations import equations_of, residues_of
-from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.equations import equations_of_weight, residuals_of
 from verify.schemes.conditions.words.step_words import StepWords, TimedPart
+from verify.schemes.conditions.words.words import Kinetic
 
 # "kick" or "drift", and what part of h it takes: what needs no root may be a Fraction, whose scheme
 # then needs no sympy.
@@ -78,7 +77,7 @@ Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None for th
 Nearby: TypeAlias = Callable[[int], NearbyOrder | None]  # of the highest order to look at
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
 LETTERS = {"kick": "K", "drift": "D"}
-_DIGITS = 12  # of a residue
+_DIGITS = 12  # of a residual
 
 
 def sums_before(parts: Sequence[tuple[str, E]], zero: E, *, same_kind: bool = False) -> list[E]:
@@ -204,10 +203,11 @@ class Splitting:
 
     def _of_weight(self, n: int) -> tuple[Condition, ...]:
         if n not in self._conditions_by_weight:
-            equations, (ring, _) = equations_of(self._condition_class, n), self.numbers
+            equations, (ring, _) = equations_of_weight(self._condition_class, n), self.numbers
+            residuals = residuals_of(equations, self.words)
             self._conditions_by_weight[n] = tuple(
-                condition_of(ring, each.name, n, gap, _DIGITS)
-                for each, gap in zip(equations, residues_of(equations, self.words), strict=True)
+                condition_of(ring, equation.name, n, residual, _DIGITS)
+                for equation, residual in zip(equations, residuals, strict=True)
             )
         return self._conditions_by_weight[n]
 
@@ -240,9 +240,9 @@ class Splitting:
         conditions = []
         for kind in kinds:
             (a, b), (c, d) = shears[kind]
-            residue = a * d - b * c - 1
+            residual = a * d - b * c - 1
             conditions.append(
-                Condition(f"det of every {kind} = 1", 0, str(residue), bool(residue == zero))
+                Condition(f"det of every {kind} = 1", 0, str(residual), bool(residual == zero))
             )
         return tuple(conditions)
 

@@ -11,7 +11,7 @@ All of them are needed, as is shown there with vector fields of high dimension. 
 fields in the plane fewer are, from five vertices on: f'f is −det Hess H there, so that f''(f,
 f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So where
 conditions of n vertices fail, the difference of the two maps' terms with hⁿ, Σ (b·Φ(t) − 1/γ(t))
-F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.series.jets`);
+F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.jets`);
 where it vanishes that is one condition, which holds, in place of those that fail.
 
 A condition is written with the vectors c = A 1 and b, products of vectors by component: that of
@@ -23,34 +23,43 @@ into Φ_i(t). Where c = A 1, it has the factor of any leaf, and the densities kn
 condition is one without time, and these are used. Combinations that count in the plane alone do
 not carry over, as with time the field's derivative has a column f_t more: so the difference is
 looked at for H without time first, which are among all, and then for every one.
+
+The elementary differentials of f = (−H_q, H_p) are F(τ) = f and F([t_1 … t_m]) =
+f⁽ᵐ⁾(F(t_1), …, F(t_m)); a leaf of time differentiates by t. The trees are of one colour for f, or
+of two for its parts (−H_q, 0) and (0, H_p).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
+from itertools import product
+from typing import ClassVar, Generic, Protocol, TypeVar
 
-from verify.algebra.ring import Poly
-from verify.algebra.series.jets import JetsInDegrees
+from verify.algebra.identities.polynomials import terms_of
+from verify.algebra.jets import JetsInDegrees
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.number_system import E
 from verify.errors import InputError
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.prose import count
 from verify.schemes.conditions.coloured_trees import (
     PLAIN,
+    TIME,
     Tree,
     all_trees,
     equation_text,
+    symmetry,
     unrestricted_grammar,
 )
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.elementary_differentials import Differentials, cancels
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.words import Kinetic
 
 MOST_ORDER = 10
 _MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
+E_co = TypeVar("E_co", covariant=True)
 
 
 def trees(order: int) -> tuple[Tree, ...]:
@@ -137,9 +146,9 @@ def _of_order(method: TreeConditions, order: int) -> tuple[Condition, ...]:
         vanishes = _cancel(method, order, timed=True)
     if vanishes is False:
         return tuple(conditions.values())
-    others = tuple(c for tree, c in conditions.items() if tree not in wrong)
+    right = tuple(c for tree, c in conditions.items() if tree not in wrong)
     name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
-    return *others, Condition(name, order, "0", vanishes)
+    return *right, Condition(name, order, "0", vanishes)
 
 
 def _cancel(method: TreeConditions, order: int, *, timed: bool) -> bool | None:
@@ -192,3 +201,72 @@ def holds_for_all_trees(tableau: ImplicitTableau, order: int) -> bool:
     ring = tableau.numbers.ring
     gaps = (gap for n in range(1, order + 1) for gap in gaps_of(tableau, n).values())
     return all(ring.vanishes(gap) is True for gap in gaps)
+
+
+# -- elementary differentials -------------------------------------------------------------------
+
+
+class HamiltonianDerivatives(Protocol[E_co]):
+    """The derivatives H_ijk = ∂_pⁱ ∂_q^j ∂_t^k H, and 0, in some ring."""
+
+    @property
+    def zero(self) -> E_co: ...
+
+    def h(self, i: int, j: int, k: int = 0) -> E_co: ...
+
+
+class Differentials(Generic[E]):
+    """The elementary differentials F(t) over the jets or their values; `parts`: 2 for trees of two
+    colours."""
+
+    def __init__(self, jets: HamiltonianDerivatives[E], parts: int = 1) -> None:
+        self.jets, self.parts = jets, parts
+        self._cache: dict[Tree, tuple[E, E]] = {}
+
+    def differential(self, tree: Tree) -> tuple[E, E]:
+        """Return F(t), its parts in p' and in q'."""
+        if tree not in self._cache:
+            root, branches = tree
+            times = branches.count(TIME)
+            inner = [self.differential(branch) for branch in branches if branch != TIME]
+            # f = (−H_q, H_p); the leaves of time raise the derivative by t, the branches are its
+            # directions.
+            p, q = -self._derivative(0, 1, times, inner), self._derivative(1, 0, times, inner)
+            if self.parts == 2:
+                p, q = (p, self.jets.zero) if root == 0 else (self.jets.zero, q)
+            self._cache[tree] = p, q
+        return self._cache[tree]
+
+    def _derivative(self, i: int, j: int, k: int, along: Sequence[tuple[E, E]]) -> E:
+        """Return the derivative of H_ijk along these vectors."""
+        total, zero = self.jets.zero, self.jets.zero
+        # Each vector has a part in p and one in q, which pick ∂_p or ∂_q of H.
+        for parts in product((0, 1), repeat=len(along)):
+            term = self.jets.h(i + parts.count(0), j + parts.count(1), k)
+            for vector, part in zip(along, parts, strict=True):
+                if term == zero:
+                    break
+                term = term * vector[part]
+            total += term
+        return total
+
+
+def cancels(
+    ring: Ring, gaps: Mapping[Tree, Poly], differentials: Differentials[Poly]
+) -> bool | None:
+    """Return True if Σ gap F(t)/σ(t) is 0 for every H; None where it is not decided.
+
+    The gaps are numbers, the differentials polynomials in the jets, of which the monomials are
+    independent: each of them has to have the coefficient 0.
+    """
+    totals: dict[tuple[int, tuple[int, ...]], Poly] = {}
+    for tree, gap in gaps.items():
+        if gap.is_zero():
+            continue
+        share = gap / symmetry(tree)
+        for part, x in enumerate(differentials.differential(tree)):
+            for monomial, coefficient in terms_of(x):
+                key = part, monomial
+                totals[key] = totals.get(key, ring.zero) + share * coefficient
+    zeros = {ring.decide(x).zero for x in totals.values()}
+    return False if False in zeros else None if None in zeros else True

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeAlias, TypeVar
 
-from verify.arithmetic.number import E
+from verify.arithmetic.number_system import E
 from verify.schemes.conditions.coloured_trees import TIME, Tree, density
 
 S = TypeVar("S")

@@ -15,9 +15,9 @@ from verify.algebra.formula import FUNCTIONS, symbol
 from verify.effort import MOST, limit_effort
 from verify.errors import InputError, LimitError
 from verify.schemes.export.constants import Constant, Constants
-from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.closed_form import ClosedForm, group_by_powers
 from verify.schemes.maps.parts import parts_of
-from verify.schemes.maps.step_map import StepMap, group_by_powers
+from verify.schemes.maps.step_map import StepMap
 
 _MOST_COORDINATES = 4  # of a map in stages, whose determinant is written out
 Lines = tuple[tuple[str, sympy.Expr], ...]  # names with the expressions assigned to them, in turn

@@ -131,8 +131,8 @@ def _of_closed_form(closed_form: ClosedForm) -> Enclosures:
 
 
 def _with_gradients(field: CanonicalField, elements: Sequence[Poly]) -> Enclosures:
-    every = [y for x in elements for y in (x, *field.gradient(x))]
-    return Enclosures(field.ring, every)
+    with_slopes = [y for x in elements for y in (x, *field.gradient(x))]
+    return Enclosures(field.ring, with_slopes)
 
 
 def step_in_balls(

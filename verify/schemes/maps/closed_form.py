@@ -4,14 +4,18 @@ S is computed coefficient by coefficient of h where the map is a polynomial in h
 cancels in it; in the plane it is ΔJ dp∧dq.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
+from verify.algebra.formula import symbol
+from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import CanonicalField
+from verify.lazy_sympy import sympy
 from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import TwoForm, wedge
@@ -68,11 +72,8 @@ class ClosedForm:
         if self.degree is None:
             return None
         ring = self.ring
-        each = (
-            [coefficients.get(n, ring.zero) for n in range(most + 1)]
-            for coefficients in self._powers
-        )
-        return tuple(Series.from_coefficients(ring, coefficients, most) for coefficients in each)
+        rows = ([powers.get(n, ring.zero) for n in range(most + 1)] for powers in self._powers)
+        return tuple(Series.from_coefficients(ring, coefficients, most) for coefficients in rows)
 
     @property
     def length(self) -> int:
@@ -105,8 +106,8 @@ class ClosedForm:
         assert state is not None  # noqa: S101 - it is a polynomial in h
         series = DefectSeries(lambda _: (self.field, state), highest, self.flow_up_to)
         # Up to `flow_up_to` the map is the flow, which is symplectic.
-        each = ((m, series.form(m)) for m in range(self.flow_up_to + 1, highest + 1))
-        return {m: form for m, form in each if form.entries}
+        forms = {m: series.form(m) for m in range(self.flow_up_to + 1, highest + 1)}
+        return {m: form for m, form in forms.items() if form.entries}
 
     @cached_property
     def defect(self) -> TwoForm:
@@ -154,6 +155,29 @@ def arguments(ring: Ring, *elements: Poly) -> list[Poly]:
 def terms_of(ring: Ring, elements: Sequence[Poly]) -> int:
     """Return the number of terms in elements and in the arguments of their generators."""
     return sum(map(len, [*elements, *arguments(ring, *elements)]))
+
+
+# -- as expressions, by powers of h ----------------------------------------------------------------
+
+
+def unfactored_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
+    """Return Σ hⁿ cₙ as it stands, for coefficients that are too long to be factored."""
+    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if not c.is_zero())
+    return " + ".join(parts)
+
+
+def group_by_powers(ring: Ring, x: Poly) -> sympy.Expr:
+    """Return x as an expression: by powers of h, each coefficient factored, where h stands
+    outside."""
+    if h_inside(ring, x):
+        return ring.as_product(x)
+    return factored_by_powers(ring, ring.powers(x, "h"))
+
+
+def factored_by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
+    """Return Σ hⁿ cₙ, each coefficient factored."""
+    h = symbol("h")
+    return sympy.Add(*(h**n * ring.as_product(c) for n, c in sorted(coefficients.items())))
 
 
 # -- of any map, with an H or without --------------------------------------------------------------

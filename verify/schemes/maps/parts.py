@@ -11,10 +11,10 @@ from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
 from verify.effort import limit_effort
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.closed_form_algebras import TooLongError
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.maps.written_out import TooLongError
 from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 
@@ -27,7 +27,7 @@ class _Shear:
     places: tuple[int, ...]
 
 
-class _Shears(StepAlgebra[None]):
+class _ShearRecorder(StepAlgebra[None]):
     """A step algebra that records the shears of a step, and nothing else."""
 
     def __init__(self, field: CanonicalField) -> None:
@@ -64,15 +64,15 @@ def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
         return (step_map.flat,)
     if step_map.step is None or step_map.implicit:
         return None
-    reading = _Shears(step_map.field)
+    recorder = _ShearRecorder(step_map.field)
     try:
-        step_map.step(reading)
+        step_map.step(recorder)
     except TooLongError:
         return None
-    field, moves = _moves(step_map, reading.shears)
+    field, moves = _moves(step_map, recorder.shears)
     # The moves come in the order of the shears and, within one, of its places.
     remaining_moves, parts = iter(moves), []
-    for shear in reading.shears:
+    for shear in recorder.shears:
         elements = list(field.start)
         for k in shear.places:
             elements[k] += next(remaining_moves)
@@ -85,7 +85,7 @@ def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField,
     in time by H's derivative at the shear's own."""
     field, exact = step_map.field, step_map.hamiltonian
     if not field.timed:
-        return field, [x for each in shears for x in field.shears(each.size, each.places)]
+        return field, [x for shear in shears for x in field.shears(shear.size, shear.places)]
     expression_of, t, h = field.ring.expression, symbol("t"), symbol("h")
     moves: list[sympy.Expr] = []
     slopes = [expression_of(x) for x in field.slopes]

@@ -8,11 +8,11 @@ plane is ΔJ dp∧dq, ΔJ = det J − 1 (Eq. 14).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly, Ring
@@ -20,12 +20,17 @@ from verify.effort import MOST, limit_effort
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.late import sympy
+from verify.lazy_sympy import sympy
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.ball_algebra import may_be_uniform, may_conserve, may_preserve
-from verify.schemes.maps.closed_form import ClosedForm, h_inside
-from verify.schemes.maps.written_out import (
+from verify.schemes.maps.closed_form import (
+    ClosedForm,
+    factored_by_powers,
+    group_by_powers,
+    unfactored_text,
+)
+from verify.schemes.maps.closed_form_algebras import (
     TooLongError,
     elements_of,
     expressions_of,
@@ -41,7 +46,6 @@ _MOST_IN_PARTS, _MOST_COMPOSED, _MOST_OF_DEFECT, _MOST_WRITTEN = 150, 150, 5000,
 _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
 AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
-_UNWRITTEN = "not written in closed form"
 
 
 def solvable(structure: Structure) -> str:
@@ -68,7 +72,7 @@ class StepMap:
     formulas: tuple[Poly, ...] | None = None
     conditions: tuple[Condition, ...] = ()
     known_order: Callable[[], int | None] = lambda: None
-    formula_domain: Domain = EVERYWHERE
+    formula_domain: FormulaDomain = EVERYWHERE
     implicit: bool = False
     keeps_quadratic: bool = False
     expand: Callable[[int], tuple[CanonicalField, State]] | None = None
@@ -79,7 +83,7 @@ class StepMap:
     def _repr_latex_(self) -> str:
         """Return z' in closed form, where that is short enough."""
         names = self.hamiltonian.coordinates
-        lines = [rf"{name}' &= \text{{({_UNWRITTEN})}}" for name in names]
+        lines = [rf"{name}' &= \text{{(not written in closed form)}}" for name in names]
         if self.closed is not None:
             ring = self.closed.ring
             sides = (sympy.latex(group_by_powers(ring, x)) for x in self.closed.elements)
@@ -107,13 +111,17 @@ class StepMap:
         return self.formulas is None or self.expand is not None
 
     @cached_property
-    def domain(self) -> Domain:
+    def domain(self) -> FormulaDomain:
         """The domain where the map is smooth: where H is, and is so at the stages, if there are
         any."""
         words = [solvable(self.structure)] if self.implicit else []
         if self.in_stages and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
-        return Domain.from_requirements((), *words) & self.hamiltonian.domain & self.formula_domain
+        return (
+            FormulaDomain.from_requirements((), *words)
+            & self.hamiltonian.domain
+            & self.formula_domain
+        )
 
     @property
     def flow_up_to(self) -> int:
@@ -137,9 +145,7 @@ class StepMap:
 
     @cached_property
     def _written_form(self) -> ClosedForm | None:
-        if self.formulas is None:
-            return None
-        return ClosedForm(self.field, self.formulas)
+        return None if self.formulas is None else ClosedForm(self.field, self.formulas)
 
     @cached_property
     def closed(self) -> ClosedForm | None:
@@ -150,15 +156,14 @@ class StepMap:
             return None
         try:
             if is_polynomial(self.field):
-                elements = elements_of(self.field, self.step, _MOST_COMPOSED)
-                return self._short(ClosedForm(self.field, elements))
-            exact = expressions_of(self.field, self.step, _MOST_WRITTEN)
-            whole, elements_ = canonical_field(self.hamiltonian, *exact, most_terms=_MOST_COMPOSED)
+                field, elements = self.field, elements_of(self.field, self.step, _MOST_COMPOSED)
+            else:
+                exact = expressions_of(self.field, self.step, _MOST_WRITTEN)
+                field, items = canonical_field(self.hamiltonian, *exact, most_terms=_MOST_COMPOSED)
+                elements = tuple(items)
         except (TooLongError, InputError):
             return None
-        return self._short(ClosedForm(whole, tuple(elements_)))
-
-    def _short(self, closed_form: ClosedForm) -> ClosedForm | None:
+        closed_form = ClosedForm(field, elements)
         return closed_form if closed_form.products <= _MOST_OF_DEFECT else None
 
     @property
@@ -217,11 +222,8 @@ class StepMap:
     @property
     def written_defect(self) -> ClosedForm | None:
         """The closed form, of a map that is defined so, where S is not too long to be written."""
-        return (
-            self._written_form
-            if self._written_form and self._written_form.forms is not None
-            else None
-        )
+        written = self._written_form
+        return written if written is not None and written.forms is not None else None
 
     @cached_property
     def preserves_area(self) -> bool:
@@ -274,14 +276,13 @@ class StepMap:
 
     @cached_property
     def delta_j(self) -> sympy.Expr:
-        """The expression of ΔJ = det J − 1 (Eq. 14) in closed form; LimitError where that is too
-        large."""
+        """ΔJ = det J − 1 (Eq. 14) in closed form; LimitError where that is too large."""
         if self.preserves_area:
             return sympy.S.Zero
         step = self.flat
         if step.degree is None or self.degrees > 1:
             return step.ring.as_product(step.delta_j)
-        return _by_powers(step.ring, self._coefficients)
+        return factored_by_powers(step.ring, self._coefficients)
 
     @property
     def _coefficients(self) -> dict[int, Poly]:
@@ -292,28 +293,9 @@ class StepMap:
         """The formula of ΔJ as text; None where its closed form is too large."""
         if not self.has_closed_form:
             return None
-        if not self.preserves_area and self.flat.degree is not None:
+        # In n degrees of freedom entry (0, 1) of S is not ΔJ.
+        if not self.preserves_area and self.flat.degree is not None and self.degrees == 1:
             coefficients = self._coefficients
             if sum(map(len, coefficients.values())) > _MOST_FACTORED:
-                return _long_text(self.flat.ring, coefficients)
+                return unfactored_text(self.flat.ring, coefficients)
         return to_text(self.delta_j)
-
-
-def _long_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
-    """Return Σ hⁿ cₙ as it stands, for coefficients that are too long to be factored."""
-    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if not c.is_zero())
-    return " + ".join(parts)
-
-
-def group_by_powers(ring: Ring, x: Poly) -> sympy.Expr:
-    """Return x as an expression: by powers of h, each coefficient factored, where h stands
-    outside."""
-    if h_inside(ring, x):
-        return ring.as_product(x)
-    return _by_powers(ring, ring.powers(x, "h"))
-
-
-def _by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
-    """Return Σ hⁿ cₙ, each coefficient factored."""
-    h = symbol("h")
-    return sympy.Add(*(h**n * ring.as_product(c) for n, c in sorted(coefficients.items())))

@@ -12,7 +12,7 @@ import sympy
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose_defined
 from verify.arithmetic.arb import Ball
-from verify.arithmetic.number import E
+from verify.arithmetic.number_system import E
 
 BITS = 320  # of the balls in which all is decided
 
@@ -35,7 +35,7 @@ class NamedEquation:
     order: int
 
 
-class Residues(Protocol):
+class Residuals(Protocol):
     """The residuals, left side − right side, of every condition from the entries; `one` is the
     ring's.
 
@@ -47,68 +47,73 @@ class Residues(Protocol):
 
 @dataclass(frozen=True)
 class ConditionSet:
-    """Conditions on a table. `entries`: polynomials in the numbers that are rounded. `by_form`: the
-    number of further conditions that hold by the form of the table alone. `shares`: the factors of
-    the conditions in an error constant, as 1/σ(t) of a tree; 1 where there are none. `labels`:
-    names of the entries, for the search of one that alone is wrong. `some`: the residuals of the
-    conditions at these places alone, where they take less work than all of them."""
+    """Conditions on the entries of a table, which are known by their indices.
+
+    `entries`: polynomials in the numbers that are rounded. `residuals`: those of all `equations`,
+    in the same order. `held_by_form`: the number of further conditions that hold by the form of the
+    table alone. `error_weights`: the factor of each residual in an error constant, as 1/σ(t) of a
+    tree; none where all are 1. `entry_names`: for the search of an entry that alone is wrong; none
+    where none is searched. `select_residuals`: from indices to the residuals of those conditions
+    alone, where that takes less work than all of them.
+    """
 
     entries: tuple[sympy.Expr, ...]
     equations: tuple[Equation, ...]
-    residues: Residues
-    by_form: int = 0
-    shares: tuple[Fraction, ...] = ()
-    labels: tuple[str, ...] = ()
-    some: Callable[[Sequence[int]], Residues] | None = None
+    residuals: Residuals
+    held_by_form: int = 0
+    error_weights: tuple[Fraction, ...] = ()
+    entry_names: tuple[str, ...] = ()
+    select_residuals: Callable[[Sequence[int]], Residuals] | None = None
 
-    def residues_of(self, rows: Sequence[int], entries: Sequence[E], one: E) -> dict[int, E]:
-        """Return the residuals of the conditions at these places, by place."""
-        if self.some is not None:
-            return dict(zip(rows, self.some(rows)(entries, one), strict=True))
-        residues = self.residues(entries, one)
-        return {k: residues[k] for k in rows}
+    def residuals_by_index(
+        self, indices: Sequence[int], entries: Sequence[E], one: E
+    ) -> dict[int, E]:
+        """Return the residuals of the conditions with these indices, by index."""
+        if self.select_residuals is not None:
+            return dict(zip(indices, self.select_residuals(indices)(entries, one), strict=True))
+        residuals = self.residuals(entries, one)
+        return {k: residuals[k] for k in indices}
 
     def up_to(self, order: int) -> list[int]:
-        """Return the places of the conditions of that order, and of lower ones."""
-        return [k for k, each in enumerate(self.equations) if each.order <= order]
+        """Return the indices of the conditions of that order, and of lower ones."""
+        return [k for k, equation in enumerate(self.equations) if equation.order <= order]
 
 
-# Of entries, the ring's one and what a minus is, −1 or for a bound 1: left sides, and right sides.
-Pairs = Callable[[Sequence[Any], Any, int], Iterable[tuple[Any, Any]]]
+# From the entries, the ring's one, and what a minus is (−1, or 1 for a bound) to pairs: the left
+# side and the right side of each condition.
+EquationSides = Callable[[Sequence[Any], Any, int], Iterable[tuple[Any, Any]]]
 
 
 def conditions_of_pairs(
-    entries: tuple[sympy.Expr, ...], names: Iterable[str], pairs: Pairs,
-    labels: tuple[str, ...] = (), by_form: int = 0,
+    entries: tuple[sympy.Expr, ...], names: Iterable[str], sides_of: EquationSides,
+    entry_names: tuple[str, ...] = (), held_by_form: int = 0,
 ) -> ConditionSet:  # fmt: skip
-    """Return the conditions that the sides of each pair are equal, with the names in the same
+    """Return the conditions that both sides of each equation are equal, with the names in the same
     order."""
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+    def residuals(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         minus = 1 if bound else -1
-        return [x + y * minus for x, y in pairs(entries, one, minus)]
+        return [left + right * minus for left, right in sides_of(entries, one, minus)]
 
     equations = tuple(NamedEquation(name, 1) for name in names)
-    return ConditionSet(entries, equations, residues, by_form, labels=labels)
+    return ConditionSet(entries, equations, residuals, held_by_form, entry_names=entry_names)
 
 
 def prepend_conditions(first: ConditionSet, second: ConditionSet) -> ConditionSet:
     """Return both sets as one on the second's entries, of which the first set reads the first ones.
 
-    The second set has no `some`, and no conditions that its form fulfils.
+    The second set has no `select_residuals`, and no conditions that its form fulfils.
     """
     count = len(first.entries)
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        return [
-            *first.residues(entries[:count], one, bound), *second.residues(entries, one, bound)
-        ]  # fmt: skip
+    def residuals(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        first_residuals = first.residuals(entries[:count], one, bound)
+        return [*first_residuals, *second.residuals(entries, one, bound)]
 
     equations = (*first.equations, *second.equations)
-    return replace(second, equations=equations, residues=residues, by_form=first.by_form)
-
-
-Number = Callable[[sympy.Expr], E]
+    return replace(
+        second, equations=equations, residuals=residuals, held_by_form=first.held_by_form
+    )
 
 
 @lru_cache(maxsize=4096)

@@ -1,5 +1,5 @@
 """The order of a splitting whose sizes or times are printed with eight digits and more: that of
-exact ones near them, as `verify.schemes.printed.judged` says.
+exact ones near them, as `verify.schemes.printed.judgement` says.
 
 Taken exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
 """
@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeAlias, TypeVar
+from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 import sympy
 
@@ -18,16 +18,15 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.printed.condition_set import BITS, ball_of
-from verify.schemes.printed.judged import WITHIN, Judged
+from verify.schemes.printed.judgement import WITHIN, Judgement
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import entries_at
-from verify.schemes.printed.sentences import judgement_of_order
-from verify.schemes.printed.splitting_order import judge_order
-from verify.schemes.printed.splitting_table import PrintedTable
+from verify.schemes.printed.sentences import ruling_on_order
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 
 T = TypeVar("T")
 WrittenPart: TypeAlias = tuple[str, str, str | None]  # "kick" or "drift", its size, and its time
-_DIGITS = 12  # of a residue
+_DIGITS = 12  # of a residual
 
 
 def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
@@ -39,7 +38,9 @@ def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
         texts = enumerate(time for _, _, time in parts)
         times = tuple(None if x is None else naming.entry(x, f"time_{k + 1}") for k, x in texts)
         named_parts = tuple((kind, size) for (kind, *_), size in zip(parts, sizes, strict=True))
-        table = PrintedTable("splitting", named_parts, naming.printed_numbers, times, both=True)
+        table = PrintedTable(
+            "splitting", named_parts, naming.printed_numbers, times, kinetic_in_time=True
+        )
         tables = [table.read(numbers) for numbers in naming.printed_numbers.of_a_method()]
         rounded_tables = tuple(table for table in tables if table.printed.units)
         for table in rounded_tables:
@@ -69,47 +70,56 @@ class PrintedParts:
 
 
 def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
-    best, failing = highest(tables, min(most, tables[0].most_order), judge_order)
-    if best is None:
+    highest, failing = find_highest_order(tables, min(most, tables[0].most_order), judge_order)
+    if highest is None:
         return None
-    order, table, judged = best
-    verdict, explanation, _ = judgement_of_order(judged, order)
-    wrong = None if failing is None else _wrong(failing, order + 1)
-    if judged.nearest is None:
+    order, table, judgement = highest
+    verdict, explanation, _ = ruling_on_order(judgement, order)
+    wrong = None if failing is None else _failing_condition(failing, order + 1)
+    if judgement.nearest is None:
         return NearbyOrder(order, verdict, explanation, wrong, ())
-    parts, times = parts_at(table, judged.nearest), times_at(table, judged.nearest)
+    parts, times = parts_at(table, judgement.nearest), times_at(table, judgement.nearest)
     return NearbyOrder(order, verdict, explanation, wrong, parts, times)
 
 
-def highest(
-    readings: Sequence[T], most: int, judge: Callable[[T, int], Judged]
-) -> tuple[tuple[int, T, Judged] | None, Judged | None]:
-    """Return the highest order up to `most` that numbers near the printed ones have, with the
-    reading and its judgement, None where there is none; and the judgement of the next order."""
-    best: tuple[int, T, Judged] | None = None
+class HighestOrder(NamedTuple, Generic[T]):
+    """The highest order that numbers near the printed ones have, in a reading of these."""
+
+    order: int
+    reading: T
+    judgement: Judgement
+
+
+def find_highest_order(
+    readings: Sequence[T], most: int, judge: Callable[[T, int], Judgement]
+) -> tuple[HighestOrder[T] | None, Judgement | None]:
+    """Return the highest order up to `most`, None where there is none; and the judgement of the
+    next one, None where that is beyond `most`."""
+    highest: HighestOrder[T] | None = None
     for order in range(1, most + 1):
-        judged = [(reading, judge(reading, order)) for reading in readings]
+        candidates = [HighestOrder(order, reading, judge(reading, order)) for reading in readings]
         # One reading of the numbers that fits is enough: which decimals are exact is a matter of
         # reading.
-        near = next((pair for pair in judged if is_near(pair[1])), None)
+        near = next((x for x in candidates if is_near(x.judgement)), None)
         if near is None:
-            return best, judged[-1][1]
-        best = order, *near
-    return best, None
+            return highest, candidates[-1].judgement
+        highest = near
+    return highest, None
 
 
-def is_near(judged: Judged) -> bool:
+def is_near(judgement: Judgement) -> bool:
     """Return True if the residuals are caused by the digits alone."""
-    return judged.holds and (
-        judged.digits is not False or (judged.off is not None and judged.off <= WITHIN)
-    )
+    distance = judgement.distance
+    is_close = distance is not None and distance <= WITHIN
+    return judgement.holds and (judgement.digits is not False or is_close)
 
 
-def _wrong(judged: Judged, order: int) -> Condition | None:
-    failing = judged.failing
+def _failing_condition(judgement: Judgement, order: int) -> Condition | None:
+    """Return the condition that fails, where it is of that order at most."""
+    failing = judgement.failing
     if failing is None or failing.order > order:
         return None
-    return Condition(failing.name, failing.order, decimal(judged.residue, _DIGITS), False)
+    return Condition(failing.name, failing.order, decimal(judgement.residual, _DIGITS), False)
 
 
 def parts_at(

@@ -19,7 +19,7 @@ import sympy
 
 from verify.algebra.formula import parse, symbol
 from verify.arithmetic.exact import rational
-from verify.arithmetic.number import E
+from verify.arithmetic.number_system import E
 from verify.effort import limit_effort
 from verify.errors import InputError
 

@@ -4,158 +4,165 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
 from verify.prose import Prose, count, prose, read_prose
-from verify.schemes.printed.judged import AS_PRINTED, WITHIN, Judged, Misprint
+from verify.schemes.printed.judgement import AS_PRINTED, WITHIN, Judgement
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
+from verify.schemes.printed.solutions import Misprint
 from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]
-Judgement = tuple[Verdict, Prose, Details]
+Ruling = tuple[Verdict, Prose, Details]
 _MOST = 8  # numbers, each of which alone would explain the residuals
 
 
-def judgement_of_order(judged: Judged, claimed: int) -> Judgement:
+def ruling_on_order(judgement: Judgement, claimed: int) -> Ruling:
     """Return the judgement that the order can be had within ten units of the digits."""
-    if judged.verdict is Verdict.REFUTED:
+    if judgement.verdict is Verdict.REFUTED:
         return (
             Verdict.REFUTED,
-            read_prose(_text_of_excluded(judged, claimed)),
-            _rows_of_moved(judged),
+            read_prose(_text_of_excluded(judgement, claimed)),
+            _rows_of_moved(judgement),
         )
-    return judged.verdict, read_prose(_text_of_holding(judged)), ()
+    return judgement.verdict, read_prose(_text_of_holding(judgement)), ()
 
 
-def judgement_of_conditions(judged: Judged, what: str) -> Judgement:
+def ruling_on_conditions(judgement: Judgement, what: str) -> Ruling:
     """Return the same for conditions that have no order, such as `what`: "symplectic"."""
-    if judged.verdict is not Verdict.REFUTED:
-        return judged.verdict, read_prose(_text_of_holding(judged)), ()
-    failing = judged.failing
+    if judgement.verdict is not Verdict.REFUTED:
+        return judgement.verdict, read_prose(_text_of_holding(judgement)), ()
+    failing = judgement.failing
     if failing is None:
-        return Verdict.REFUTED, read_prose(_text_of_excluded(judged, 1)), _rows_of_moved(judged)
-    notes = f"{_none_near(judged)}{_alone(judged)}"
-    sentence = f"not {what}: `{failing.name}` fails by {_short(judged.residue)}{notes}"
-    if not judged.checked:  # no equation: it is said of the table's form
+        return (
+            Verdict.REFUTED,
+            read_prose(_text_of_excluded(judgement, 1)),
+            _rows_of_moved(judgement),
+        )
+    notes = f"{_none_near(judgement)}{_alone(judgement)}"
+    sentence = f"not {what}: `{failing.name}` fails by {_short(judgement.residual)}{notes}"
+    if not judgement.checked:  # no equation: it is said of the table's form
         sentence = f"not {what}: {failing.name}"
-    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judged)
+    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judgement)
 
 
-def _text_of_holding(judged: Judged) -> str:
-    conditions = count(judged.checked, "condition")
-    if judged.checked == 1 and judged.verdict is Verdict.PROVED:
+def _text_of_holding(judgement: Judgement) -> str:
+    conditions = count(judgement.checked, "condition")
+    if judgement.checked == 1 and judgement.verdict is Verdict.PROVED:
         return "its one condition holds exactly"
-    if judged.verdict is Verdict.PROVED:
-        decimals = judged.read is not None and judged.read.exact_up_to
+    if judgement.verdict is Verdict.PROVED:
+        decimals = judgement.numbers is not None and judgement.numbers.exact_up_to
         why = "" if decimals else ", for its coefficients are no decimals"
         return f"all {conditions} hold exactly{why}"
-    if judged.verdict is Verdict.UNDECIDED:
+    if judgement.verdict is Verdict.UNDECIDED:
         return f"whether all {conditions} hold exactly is not decided"
-    assert judged.read is not None  # noqa: S101 - of rounded numbers it is known
-    is_enclosed = judged.verdict is Verdict.ENCLOSED  # then all are shown to hold there
-    if judged.off is not None and (is_enclosed or judged.digits is not False):
-        shown_note = "" if judged.shown in (None, judged.checked) else (
-            f"; of these {judged.shown} are shown to hold there, and the others, which depend on "
-            "them, to 60 digits"
+    assert judgement.numbers is not None  # noqa: S101 - of rounded numbers it is known
+    is_enclosed = judgement.verdict is Verdict.ENCLOSED  # then all are shown to hold there
+    if judgement.distance is not None and (is_enclosed or judgement.digits is not False):
+        shown_note = "" if judgement.shown_count in (None, judgement.checked) else (
+            f"; of these {judgement.shown_count} are shown to hold there, and the others, which "
+            "depend on them, to 60 digits"
         )  # fmt: skip
         # The printed numbers solve the conditions themselves, to all digits of the balls.
-        if judged.off < AS_PRINTED:
+        if judgement.distance < AS_PRINTED:
             return f"all {conditions} hold with the numbers as they are printed{shown_note}"
         return (
-            f"exact coefficients that satisfy all {conditions} lie within {_far(judged)} of those "
-            f"printed to {judged.read.digits} decimals, whose residues are up to "
-            f"{_short(judged.largest)}{shown_note}"
+            f"exact coefficients that satisfy all {conditions} lie within {_far(judgement)} of "
+            f"those printed to {judgement.numbers.digits} decimals, whose residues are up to "
+            f"{_short(judgement.largest_residual)}{shown_note}"
         )
-    small = "as small as the digits make them" if judged.digits is None else "of wrong digits"
+    small = "as small as the digits make them" if judgement.digits is None else "of wrong digits"
     near = "that exact ones exist nearby is not shown"
-    if judged.off is not None:
-        near = f"the nearest exact ones are up to {_far(judged)} away"
-    return f"all {conditions} hold but for residues up to {_short(judged.largest)}, {small}; {near}"
+    if judgement.distance is not None:
+        near = f"the nearest exact ones are up to {_far(judgement)} away"
+    largest = _short(judgement.largest_residual)
+    return f"all {conditions} hold but for residues up to {largest}, {small}; {near}"
 
 
-def _text_of_excluded(judged: Judged, claimed: int) -> str:
-    if judged.order >= claimed:  # each condition alone could hold; together they cannot
-        far = f"; the nearest exact ones are {_far(judged)} away" if judged.off else ""
+def _text_of_excluded(judgement: Judgement, claimed: int) -> str:
+    if judgement.order >= claimed:  # each condition alone could hold; together they cannot
+        far = f"; the nearest exact ones are {_far(judgement)} away" if judgement.distance else ""
         return (
             f"no coefficients within {WITHIN} units of the last printed digits satisfy all "
-            f"{judged.checked} conditions together{far}; residues are up to "
-            f"{_short(judged.largest)}"
+            f"{judgement.checked} conditions together{far}; residues are up to "
+            f"{_short(judgement.largest_residual)}"
         )
-    assert judged.failing is not None  # noqa: S101 - it is what excludes more
-    but = ""
-    if judged.lower is not None:
-        lower, by = judged.lower[0], _short(judged.lower[1])
-        but = f", but for wrong digits (of `h^{lower.order}`, `{lower.name}` fails by {by})"
+    assert judgement.failing is not None  # noqa: S101 - it is what excludes more
+    failing, exception = judgement.failing, ""
+    if judgement.lower_failure is not None:
+        lower, size = judgement.lower_failure[0], _short(judgement.lower_failure[1])
+        exception = f", but for wrong digits (of `h^{lower.order}`, `{lower.name}` fails by {size})"
     sentence = (
-        f"its order is {judged.order}{but}: of `h^{judged.failing.order}`, `{judged.failing.name}` "
-        f"fails by {_short(judged.residue)}{_none_near(judged)}"
+        f"its order is {judgement.order}{exception}: of `h^{failing.order}`, `{failing.name}` "
+        f"fails by {_short(judgement.residual)}{_none_near(judgement)}"
     )
-    return sentence + _alone(judged)
+    return sentence + _alone(judgement)
 
 
-def _none_near(judged: Judged) -> str:
-    if judged.read is None or not judged.read.units:
+def _none_near(judgement: Judgement) -> str:
+    if judgement.numbers is None or not judgement.numbers.units:
         return ""
     return f", and no coefficients within {WITHIN} units of the last digits satisfy it"
 
 
-def _alone(judged: Judged) -> str:
+def _alone(judgement: Judgement) -> str:
     """Return the one misprinted number that explains the residuals; or that each of several
     does."""
-    m, several = (
-        judged.misprint,
-        [f"`{m.name}` = `{mended_text(judged, m)}`" for m in judged.misprints],
-    )
+    m = judgement.misprint
     if m is not None:
-        explanation = (
-            f"`{m.name}`, printed `{m.printed.strip()}`, would be `{mended_text(judged, m)}`"
-        )
-        return f". One number alone explains it: {explanation}"
-    candidates = ", ".join(several[:_MOST]) + (", …" if len(several) > _MOST else "")
-    sentence = f"Each of {len(several)} numbers alone would explain it, and none is singled out"
-    return f". {sentence}: {candidates}" if several else ""
+        explanation = f"`{m.name}`, printed `{m.printed.strip()}`, would be"
+        mended = mended_text(judgement, m)
+        return f". One number alone explains it: {explanation} `{mended}`"
+    suspects = [f"`{m.name}` = `{mended_text(judgement, m)}`" for m in judgement.misprints]
+    candidates = ", ".join(suspects[:_MOST]) + (", …" if len(suspects) > _MOST else "")
+    sentence = f"Each of {len(suspects)} numbers alone would explain it, and none is singled out"
+    return f". {sentence}: {candidates}" if suspects else ""
 
 
-def mended_text(judged: Judged, m: Misprint) -> str:
+def mended_text(judgement: Judgement, m: Misprint) -> str:
     """Return the text that would be printed in its place, with as many digits."""
-    unit = None if judged.read is None else judged.read.last_digits.get(m.name)
+    unit = None if judgement.numbers is None else judgement.numbers.last_digits.get(m.name)
     return str(m.value) if unit is None else rounded_to(m.value, unit)
 
 
-def judgement_of_digits(judged: Judged) -> Judgement:
+def ruling_on_digits(judgement: Judgement) -> Ruling:
     """Return the judgement that all digits are right to one unit of the last."""
-    if judged.digits is None and judged.off is not None and judged.off < AS_PRINTED:
+    if (
+        judgement.digits is None
+        and judgement.distance is not None
+        and judgement.distance < AS_PRINTED
+    ):
         sentence = (
             "the conditions hold with the numbers as they are printed, and leave some of them free"
         )
         return Verdict.UNDECIDED, prose(sentence), ()
-    if judged.digits is None:
+    if judgement.digits is None:
         sentence = (
             "the conditions do not tell all of its digits, or exact ones are not shown to exist"
         )
         return Verdict.UNDECIDED, prose(sentence), ()
-    if judged.off is None:
+    if judgement.distance is None:
         sentence = (
             "no coefficients within one unit of the last printed digits satisfy all conditions"
         )
-        message = read_prose(f"{sentence}; the nearest are not known{_alone(judged)}")
+        message = read_prose(f"{sentence}; the nearest are not known{_alone(judgement)}")
         return Verdict.REFUTED, message, ()
-    if judged.digits:
-        sentence = f"exact coefficients lie within {_far(judged)} of the printed ones"
-        verdict = Verdict.ENCLOSED if judged.verdict is Verdict.ENCLOSED else Verdict.MEASURED
+    if judgement.digits:
+        sentence = f"exact coefficients lie within {_far(judgement)} of the printed ones"
+        verdict = Verdict.ENCLOSED if judgement.verdict is Verdict.ENCLOSED else Verdict.MEASURED
         return verdict, read_prose(sentence), ()
     sentence = (
         "no coefficients within one unit of the last printed digits satisfy all conditions; the "
-        f"nearest that do are up to {_far(judged)} away{_alone(judged)}"
+        f"nearest that do are up to {_far(judgement)} away{_alone(judgement)}"
     )
-    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judged)
+    return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judgement)
 
 
-def _rows_of_moved(judged: Judged) -> Details:
+def _rows_of_moved(judgement: Judgement) -> Details:
     """Return the numbers whose last digits are off by more than a unit, and exact ones with two
     more digits."""
-    if judged.nearest is None or judged.read is None or not judged.read.units:
+    if judgement.nearest is None or judgement.numbers is None or not judgement.numbers.units:
         return ()
-    numbers: PrintedNumbers = judged.read
+    numbers: PrintedNumbers = judgement.numbers
     rows = [("number", "printed", "nearest exact", f"off, in {_units(numbers)}")]
-    for name, exact in judged.nearest.items():
+    for name, exact in judgement.nearest.items():
         off = (numbers.values[name] - exact) / numbers.units[name]
         if abs(off) > 1:
             printed_text = numbers.numbers[name].strip()
@@ -164,16 +171,16 @@ def _rows_of_moved(judged: Judged) -> Details:
     return tuple(rows) if len(rows) > 1 else ()
 
 
-def _far(judged: Judged) -> str:
+def _far(judgement: Judgement) -> str:
     """Return how far the nearest exact coefficients are: in units, or, where it is far,
     absolutely."""
-    assert judged.off is not None  # noqa: S101 - the callers have one
-    assert judged.nearest is not None  # noqa: S101 - and so its numbers
-    assert judged.read is not None  # noqa: S101 - which are rounded
-    if judged.off < 100:
-        return f"`{float(judged.off):.2g}` {_units(judged.read)}"
-    values = judged.read.values
-    largest = max(abs(values[n] - x) for n, x in judged.nearest.items())
+    assert judgement.distance is not None  # noqa: S101 - the callers have one
+    assert judgement.nearest is not None  # noqa: S101 - and so its numbers
+    assert judgement.numbers is not None  # noqa: S101 - which are rounded
+    if judgement.distance < 100:
+        return f"`{float(judgement.distance):.2g}` {_units(judgement.numbers)}"
+    values = judgement.numbers.values
+    largest = max(abs(values[n] - x) for n, x in judgement.nearest.items())
     return f"`{float(largest):.1e}`"
 
 

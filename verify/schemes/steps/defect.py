@@ -8,13 +8,13 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, Generic, TypeVar
 
-from verify.algebra.generator import Poly
-from verify.algebra.series.power_series import CoefficientRing, Series
-from verify.hamiltonians.canonical_field import Flow
+from verify.algebra.identities.polynomials import Poly
+from verify.algebra.power_series import CoefficientRing, Series
+from verify.hamiltonians.canonical_field import VectorField
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import TwoForm, wedge
 
-F = TypeVar("F", bound=Flow)
+F = TypeVar("F", bound=VectorField)
 Matrix = list[list[Series]]
 
 

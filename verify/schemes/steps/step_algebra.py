@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, Protocol, TypeAlias, TypeVar
 
+from verify.algebra.power_series import Series, expand_at
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, expand_at
-from verify.hamiltonians.canonical_field import Flow
+from verify.hamiltonians.canonical_field import VectorField
 
 V = TypeVar("V")
 Recent: TypeAlias = "deque[tuple[object, list[Series]]]"
@@ -20,7 +20,7 @@ Number = Fraction | Poly  # a coefficient of a scheme, in the ring of H's field 
 
 class StepAlgebra(Protocol[V]):
     """Operations on changes of z, which are values `V`, each O(h); as many as there are names in
-    the flow."""
+    the field."""
 
     @property
     def nothing(self) -> V:
@@ -61,28 +61,28 @@ class StepAlgebra(Protocol[V]):
 
 
 class SeriesAlgebra(StepAlgebra[Series]):
-    """The step algebra of series up to h^most over the ring of a flow."""
+    """The step algebra of series up to h^most over the ring of a field."""
 
-    def __init__(self, flow: Flow, most: int, recent: "Recent | None" = None) -> None:
+    def __init__(self, field: VectorField, most: int, recent: "Recent | None" = None) -> None:
         """`recent`: slopes that were computed, which are read again where an iteration ends."""
-        self.flow, self.most = flow, most
+        self.field, self.most = field, most
         self._recent: Recent = deque(maxlen=_RECENT) if recent is None else recent
 
     @property
     def nothing(self) -> Series:
-        return Series.from_coefficients(self.flow.ring, [], self.most)
+        return Series.from_coefficients(self.field.ring, [], self.most)
 
     @property
     def size(self) -> int:
-        return len(self.flow.names)
+        return len(self.field.names)
 
     def along_flow(self, eta: int) -> list[Series]:
-        flow, ring = self.flow, self.flow.ring
-        terms = [flow.term(n) for n in range(1, min(eta, self.most) + 1)]
-        each = zip(*terms, strict=True) if terms else [()] * len(flow.names)
+        field, ring = self.field, self.field.ring
+        terms = [field.term(n) for n in range(1, min(eta, self.most) + 1)]
+        rows = zip(*terms, strict=True) if terms else [()] * len(field.names)
         return [
             Series.from_coefficients(ring, [ring.zero, *coefficients], self.most)
-            for coefficients in each
+            for coefficients in rows
         ]
 
     def slopes(
@@ -100,13 +100,13 @@ class SeriesAlgebra(StepAlgebra[Series]):
     def _slopes(
         self, changes: Sequence[Series], clock: Number, places: Sequence[int], reach: int
     ) -> list[Series]:
-        flow, ring = self.flow, self.flow.ring
-        each = zip(flow.names, changes, strict=True)
-        moves = [(name, x) for name, x in each if not x.vanishes]
-        if flow.timed and clock != 0:
+        field, ring = self.field, self.field.ring
+        named_changes = zip(field.names, changes, strict=True)
+        moves = [(name, x) for name, x in named_changes if not x.vanishes]
+        if field.timed and clock != 0:
             late = ring.constant(clock) if isinstance(clock, Fraction) else clock
             moves.append(("t", Series.from_coefficients(ring, [ring.zero, late], self.most)))
-        return [expand_at(flow.derivatives[k], moves, reach) for k in places]
+        return [expand_at(field.derivatives[k], moves, reach) for k in places]
 
     def move(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
         total = self._cut(change)
@@ -121,15 +121,15 @@ class SeriesAlgebra(StepAlgebra[Series]):
         self, count: int, right: Callable[[StepAlgebra[Series], Sequence[Series]], list[Series]]
     ) -> list[Series]:
         """Solve by iteration: each makes one more power of h right."""
-        solution = [SeriesAlgebra(self.flow, 0).nothing] * count
+        solution = [SeriesAlgebra(self.field, 0).nothing] * count
         # The right side is O(h): if Z is right up to h^(k−1), right(Z) is up to h^k.
         for longest in range(1, self.most + 1):
-            shorter = SeriesAlgebra(self.flow, longest, self._recent)
+            shorter = SeriesAlgebra(self.field, longest, self._recent)
             solution = right(shorter, list(map(shorter._cut, solution)))
         return solution
 
     def _cut(self, x: Series) -> Series:
-        return Series.from_coefficients(self.flow.ring, x.coefficients, self.most)
+        return Series.from_coefficients(self.field.ring, x.coefficients, self.most)
 
 
 State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
@@ -137,8 +137,8 @@ State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
 Step = Callable[[StepAlgebra[Any]], list[Any]]
 
 
-def series_of(flow: Flow, step: Step, most: int) -> State:
+def series_of(field: VectorField, step: Step, most: int) -> State:
     """Return z' up to h^most."""
-    changes = step(SeriesAlgebra(flow, most))
-    start = (Series.from_coefficients(flow.ring, [x], most) for x in flow.start)
+    changes = step(SeriesAlgebra(field, most))
+    start = (Series.from_coefficients(field.ring, [x], most) for x in field.start)
     return tuple(x + y for x, y in zip(start, changes, strict=True))

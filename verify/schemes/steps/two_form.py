@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
 
+from verify.algebra.power_series import CoefficientRing
 from verify.algebra.ring import Decision, Poly
-from verify.algebra.series.power_series import CoefficientRing
-from verify.hamiltonians.canonical_field import Flow
+from verify.hamiltonians.canonical_field import VectorField
 
 Place = tuple[int, int]
 MOST_TERMS = 2000  # of a form that is written out
@@ -20,7 +20,7 @@ MOST_TERMS = 2000  # of a form that is written out
 class TwoForm:
     """A two-form: its coefficients that are not 0 in normal form, by their places a < b."""
 
-    ring: Any  # of coefficients: see `verify.algebra.series.power_series.CoefficientRing`
+    ring: Any  # of coefficients: see `verify.algebra.power_series.CoefficientRing`
     names: tuple[str, ...]
     entries: Mapping[Place, Poly] = field(default_factory=dict)
 
@@ -95,7 +95,7 @@ class TwoForm:
         return undecided or (Decision(True), None)
 
 
-def lie_derivative(flow: Flow, form: TwoForm) -> TwoForm:
+def lie_derivative(flow: VectorField, form: TwoForm) -> TwoForm:
     """Return the Lie derivative along the flow, of D = ∂_t + X where H depends on time: D applied
     to the entries, and with A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
     ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]

@@ -1,7 +1,7 @@
 """The studies, one a file, each with its `STUDY`."""
 
 from verify.discovery import Catalogue
-from verify.execution.study import Study
+from verify.execution.plan import Study
 
 _FILES = Catalogue(__name__, __path__)
 

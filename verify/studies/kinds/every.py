@@ -1,13 +1,57 @@
 """Proofs about the scene's schemes for every H."""
 
-from typing import Any
+from typing import Any, Literal
 
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, results_of_tasks, scene_name
-from verify.scenes.results.proof import EveryResult
+from verify.execution.keeper import Keeper
+from verify.execution.plan import Plan, Results, SceneQuestion, Study, results_of_tasks, scene_name
+from verify.execution.task import Task
+from verify.scenes.results.claim import StepResult
+from verify.scenes.results.proof_result import EveryResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
-from verify.studies.proofs.every import EveryTask
+
+_COST = 20_000_000  # of a proof, about
+
+
+class EveryTask(Task):
+    """Prove properties of a scheme for every H, in so many degrees of freedom.
+
+    `timed`: for every H that depends on time.
+    """
+
+    result = EveryResult
+    imports = (
+        "verify.proof.checked.proof_marks",
+        "verify.proof.checked.proved_statement",
+        "verify.proof.order_for_every_h",
+    )
+    kind: Literal["every"] = "every"
+    scheme: str
+    timed: bool = False
+    degrees: int = 1
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        return _COST
+
+    def compute(self, keeper: Keeper) -> EveryResult:
+        """Return the proof for every H as a result."""
+        from verify.proof.checked.proof_marks import marks, steps_of
+        from verify.proof.checked.proved_statement import ALL, statement_for_every_h
+        from verify.proof.order_for_every_h import prove_for_every_h
+
+        proof = prove_for_every_h(self.scheme, timed=self.timed, degrees=self.degrees)
+        differs: dict[str, Any] = {
+            "steps": tuple(
+                StepResult(text=x.text, checked_by=x.checked_by) for x in steps_of(proof)
+            ),
+            "checked_by": marks(statement_for_every_h(proof, get(self.scheme), ALL)),
+        }
+        if not proof.planar:  # S is written out in its formula, where it has one
+            differs |= {"formula": "", "leading": proof.formula or proof.leading}
+        same = EveryResult.model_fields.keys() - differs
+        return EveryResult(**{name: getattr(proof, name) for name in same}, **differs)
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
@@ -20,8 +64,8 @@ def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
 
 
 def _task(scene: Scene, scheme: str) -> EveryTask:
-    exact = scene.exact_hamiltonian()
-    return EveryTask(scheme=scheme, timed=exact.time_dependent, degrees=exact.degrees)
+    hamiltonian = scene.exact_hamiltonian()
+    return EveryTask(scheme=scheme, timed=hamiltonian.time_dependent, degrees=hamiltonian.degrees)
 
 
 def _collect(scene: Scene, results: Results) -> dict[str, Any]:
@@ -29,7 +73,7 @@ def _collect(scene: Scene, results: Results) -> dict[str, Any]:
     return {"every": tuple(results_of_tasks(EveryResult, tasks, results))}
 
 
-_SECTION = Section(
+_SECTION = SceneQuestion(
     0,
     "proofs for every H",
     "the scene does not say `every_hamiltonian = true`",

@@ -4,8 +4,8 @@ from fractions import Fraction
 from typing import Any
 
 from verify import observables
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, results_of_tasks, scene_name, toml_section
+from verify.arithmetic.systems import ball, float64
+from verify.execution.plan import Plan, Results, Study, results_of_tasks, scene_name, toml_section
 from verify.kernels.run_inputs import SECTIONS
 from verify.observables.observable import has_no_defect
 from verify.runs.digits_on_demand import WORTH_COMPILING
@@ -14,9 +14,10 @@ from verify.scenes.observables import select_observables
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.structures import AREA, SYMPLECTIC
+from verify.studies.separation.determinants import POINTS, Determinants
 from verify.studies.separation.links import way_for
-from verify.studies.separation.task import serves_first_link
-from verify.studies.separation.ways.determinants import POINTS
+
+SEPARATION_DIGITS = 6  # of each part of a separation
 
 
 def grid_task(
@@ -63,9 +64,17 @@ def shares_runs(scene: Scene) -> bool:
     grid = scene.grid
     if grid is None or not grid.separate:
         return False
-    exact = scene.exact_hamiltonian()
-    has_links = way_for(exact).observables <= set(select_observables(exact, grid.observables))
+    hamiltonian = scene.exact_hamiltonian()
+    has_links = way_for(hamiltonian).observables <= set(
+        select_observables(hamiltonian, grid.observables)
+    )
     return has_links and serves_first_link(grid.arithmetic, grid.digits)
+
+
+def serves_first_link(arithmetic: str, digits: int) -> bool:
+    """Return True if a run in that arithmetic is certified to enough digits for the first link."""
+    least = SEPARATION_DIGITS + Determinants.cancelled
+    return arithmetic not in (float64.NAME, ball.NAME) and digits >= least
 
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
@@ -75,17 +84,18 @@ def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, tasks = scene_name(scene), grid_tasks(scene, scheme)
-    exact = scene.exact_hamiltonian()
+    hamiltonian = scene.exact_hamiltonian()
     observable_names = (
-        set(select_observables(exact, scene.grid.observables)) if scene.grid else set()
+        set(select_observables(hamiltonian, scene.grid.observables)) if scene.grid else set()
     )
-    every = observables.by_name()
-    vanishing = {name for name, each in every.items() if each.vanishes is has_no_defect}
+    catalogue = observables.by_name().items()
+    vanishing = {name for name, entry in catalogue if entry.vanishes is has_no_defect}
     # Observables that measure the loss of area are exactly 0: no run is needed for them alone.
     if preserves and observable_names and observable_names <= vanishing:
-        also = {AREA: "", SYMPLECTIC: "S, W, "}[exact.structure]
-        why = f"{exact.structure.identity} is proved: {also}ΔJ, MSE and Λ are exactly 0"
-        plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", why)
+        structure = hamiltonian.structure
+        of_form = {AREA: "", SYMPLECTIC: "S, W, "}[structure]
+        reason = f"{structure.identity} is proved: {of_form}ΔJ, MSE and Λ are exactly 0"
+        plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", reason)
         return
     for task in tasks:
         plan.need(task, f"{name}: grid")

@@ -1,16 +1,37 @@
 """Λ of the grid's runs against its growth law."""
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
 
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, results_of_tasks, scene_name
+from verify.execution.keeper import Keeper
+from verify.execution.plan import Plan, Results, SceneQuestion, Study, results_of_tasks, scene_name
+from verify.execution.task import StartTask
 from verify.scenes.results.growth import AverageResult, GrowthLawResult
 from verify.scenes.scene import Scene
-from verify.studies.growth.task import GrowthTask
 from verify.studies.kinds.grid import grid_runs
 
+_COST = 25_000_000  # of a law and its time average, about
 _DIGITS = 30  # of the time average
+
+
+class GrowthTask(StartTask):
+    """The growth law of Λ on one orbit, with the time average in it."""
+
+    result = AverageResult
+    imports = ("verify.studies.growth_prediction",)
+    kind: Literal["growth"] = "growth"
+    digits: int
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        return _COST
+
+    def compute(self, keeper: Keeper) -> AverageResult:
+        """Return the law, with its average enclosed."""
+        from verify.studies.growth_prediction import compute_average
+
+        return compute_average(self.exact_hamiltonian(), **self.other_fields())
 
 
 def _tasks(scene: Scene, scheme: str) -> list[GrowthTask]:
@@ -27,8 +48,8 @@ def _tasks(scene: Scene, scheme: str) -> list[GrowthTask]:
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     tasks = _tasks(scene, scheme)
     if tasks and preserves:
-        why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
-        plan.leave_out(f"{scene_name(scene)}: growth law of Λ for {scheme}", why)
+        reason = "ΔJ ≡ 0 is proved: Λ is exactly 0"
+        plan.leave_out(f"{scene_name(scene)}: growth law of Λ for {scheme}", reason)
         return
     for task in tasks:
         plan.need(task, f"{scene_name(scene)}: growth law of Λ")
@@ -37,20 +58,22 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
 def _collect(scene: Scene, results: Results) -> dict[str, Any]:
     if scene.grid is None or not scene.grid.growth:
         return {"growth_explains": scene.grid.growth_explains if scene.grid else ""}
-    from verify.studies.growth.prediction import predict_runs
+    from verify.studies.growth_prediction import predict_runs
 
-    exact, laws = scene.exact_hamiltonian(), []
+    hamiltonian, laws = scene.exact_hamiltonian(), []
     for scheme in scene.schemes:
         runs = grid_runs(scene, scheme, results)
         for law in results_of_tasks(AverageResult, _tasks(scene, scheme), results):
             orbit_runs = [run for run in runs if (run.q, run.p) == (law.q, law.p)]
             # Pages show predictions by step size.
             orbit_runs.sort(key=lambda run: Fraction(run.step_size))
-            laws.append(GrowthLawResult(law=law, predictions=predict_runs(exact, law, orbit_runs)))
+            laws.append(
+                GrowthLawResult(law=law, predictions=predict_runs(hamiltonian, law, orbit_runs))
+            )
     return {"growth_laws": tuple(laws), "growth_explains": scene.grid.growth_explains}
 
 
-_SECTION = Section(
+_SECTION = SceneQuestion(
     3,
     "Λ against its growth law",
     "the scene has no [grid] that says `growth = true`",

@@ -1,7 +1,6 @@
 """Reference data, which a command of its own makes."""
 
-from verify.execution.plan import Plan
-from verify.execution.study import Study, scene_name
+from verify.execution.plan import Plan, Study, scene_name
 from verify.scenes.scene import Scene
 
 

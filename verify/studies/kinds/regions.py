@@ -2,19 +2,71 @@
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
+
+from pydantic import Field
 
 from verify.arithmetic.exact import text
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, results_of_tasks, scene_name, toml_section
+from verify.execution.keeper import Keeper
+from verify.execution.plan import Plan, Results, Study, results_of_tasks, scene_name, toml_section
+from verify.execution.task import HamiltonianTask
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.frozen import PLAIN
 from verify.scenes.observables import carries_defect
-from verify.scenes.region_sections import Flow
+from verify.scenes.region_sections import PlacedShape, RegionFlow
 from verify.scenes.results.regions import EXACT_FLOW, DrawnOutline, FlowImage, FlowResult
 from verify.scenes.scene import Scene
+from verify.scenes.values import ExactNumber, StepSize
 from verify.structures import AREA, SYMPLECTIC
-from verify.studies.regions.task import FlowTask
+
+_COST, _POINTS = 40_000_000, 40_000  # of a region, and how many points of it are carried
+
+
+class FlowTask(HamiltonianTask):
+    """Carry a shape by `steps` steps of a map: a scheme's, or the exact flow's."""
+
+    result = FlowImage
+    imports = ("verify.studies.regions.region_image", "verify.studies.regions.point_carriers")
+    kind: Literal["flow"] = "flow"
+    map: str
+    shape: PlacedShape
+    step_size: StepSize
+    t0: ExactNumber | None = None
+    steps: int
+    digits: int
+    mean_lambda: bool
+    distance: bool
+    point: dict[str, ExactNumber] = Field(default_factory=dict)
+    """The centre's coordinates by their names; `plane`: in which it lies. Left out: p and q."""
+    plane: int = 1
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps it is worth."""
+        return _COST + _POINTS * self.steps
+
+    @property
+    def ensemble(self) -> str | None:
+        """A key of the maps of one region: they carry mostly the same points of it.
+
+        They are compared with the same exact ones, too.
+        """
+        return f"{self.kind} {self.hamiltonian} {self.parameters} {self.shape} {self.t0 or 0}"
+
+    @property
+    def turn(self) -> float:
+        """The time: maps over longer ones come later, and carry on the points of the others."""
+        return float(self.step_size * self.steps)
+
+    def compute(self, keeper: Keeper) -> FlowImage:
+        """Return the images of the outline as a result."""
+        from verify.studies.regions.point_carriers import QP_PLANE, RegionPlane
+        from verify.studies.regions.region_image import carry
+
+        plane = RegionPlane.from_point(self.point, self.plane) if self.point else QP_PLANE
+        shape = self.shape.to_shape()
+        arguments = self.other_fields("map", "shape", "point", "plane")
+        return carry(self.exact_hamiltonian(), self.map, shape, plane=plane, **arguments)
 
 
 def need_flows(plan: Plan, scene: Scene) -> None:
@@ -22,36 +74,41 @@ def need_flows(plan: Plan, scene: Scene) -> None:
     name = scene_name(scene)
     for flow in scene.flow:
         for task in flow_tasks(scene, flow):
-            what = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"
-            plan.need(task, what)
+            reason = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"
+            plan.need(task, reason)
             if flow.mean_lambda and not task.mean_lambda and task.map != EXACT_FLOW:
                 plan.leave_out(*_no_mean(scene, name, task.map))
 
 
 def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
-    exact = scene.exact_hamiltonian()
-    structure, evidence = exact.structure, {AREA: "proved", SYMPLECTIC: "shown"}[exact.structure]
-    why = f"{structure.identity} is {evidence}: {structure.accumulated} is exactly 0"
-    if not step_map_of(exact, scheme).preserves_area:
-        why = f"{structure.accumulated} is not carried in {exact.degrees} degrees of freedom"
-    return f"{name}: mean of {structure.accumulated} over the region for {scheme}", why
+    hamiltonian = scene.exact_hamiltonian()
+    structure, evidence = (
+        hamiltonian.structure,
+        {AREA: "proved", SYMPLECTIC: "shown"}[hamiltonian.structure],
+    )
+    reason = f"{structure.identity} is {evidence}: {structure.accumulated} is exactly 0"
+    if not step_map_of(hamiltonian, scheme).preserves_area:
+        reason = (
+            f"{structure.accumulated} is not carried in {hamiltonian.degrees} degrees of freedom"
+        )
+    return f"{name}: mean of {structure.accumulated} over the region for {scheme}", reason
 
 
-def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
+def maps_of(scene: Scene, flow: RegionFlow) -> tuple[str, ...]:
     """Return the exact flow, where it is requested, then the schemes."""
     schemes = flow.schemes or scene.schemes
     return (EXACT_FLOW, *schemes) if flow.exact else schemes
 
 
-def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
+def flow_tasks(scene: Scene, flow: RegionFlow) -> Iterator[FlowTask]:
     """Yield a task for each map and number of steps, in that order."""
-    exact = scene.exact_hamiltonian()
+    hamiltonian = scene.exact_hamiltonian()
     common = scene.hamiltonian_fields()
     shape = flow.placed_shape()
     begin, point = scene.begin, _point(scene, flow)
     for name in maps_of(scene, flow):
-        by_scheme = name != EXACT_FLOW
-        preserves_area = not by_scheme or step_map_of(exact, name).preserves_area
+        is_scheme = name != EXACT_FLOW
+        preserves_area = not is_scheme or step_map_of(hamiltonian, name).preserves_area
         for steps in flow.counts:
             yield FlowTask(
                 **common,
@@ -61,26 +118,26 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 t0=begin,
                 steps=steps,
                 digits=flow.digits,
-                mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(exact),
-                distance=by_scheme and flow.exact and exact.planar,  # of curves in it
+                mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(hamiltonian),
+                distance=is_scheme and flow.exact and hamiltonian.planar,  # of curves in it
                 point=point,
                 plane=flow.plane,
             )
 
 
-def _point(scene: Scene, flow: Flow) -> dict[str, Fraction]:
+def _point(scene: Scene, flow: RegionFlow) -> dict[str, Fraction]:
     """Return the region's place, by the names of H's coordinates; empty in the plane."""
-    exact = scene.exact_hamiltonian()
-    return {} if exact.planar else flow.point(exact)
+    hamiltonian = scene.exact_hamiltonian()
+    return {} if hamiltonian.planar else flow.point(hamiltonian)
 
 
 def flows_of(scene: Scene, results: Results) -> tuple[FlowResult, ...]:
     """Return a result for each section of the scene that was computed."""
-    results_of_flows = (_flow(scene, flow, results) for flow in scene.flow)
-    return tuple(each for each in results_of_flows if each.images)
+    flow_results = (_flow(scene, flow, results) for flow in scene.flow)
+    return tuple(result for result in flow_results if result.images)
 
 
-def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
+def _flow(scene: Scene, flow: RegionFlow, results: Results) -> FlowResult:
     centre, point = flow.placed_shape().centre, _point(scene, flow)
     return FlowResult(
         shape=flow.shape or ("polygon" if flow.polygon else "path"),
@@ -96,7 +153,7 @@ def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
     )
 
 
-def _outlines_to_draw(flow: Flow) -> tuple[DrawnOutline, ...]:
+def _outlines_to_draw(flow: RegionFlow) -> tuple[DrawnOutline, ...]:
     from verify.studies.regions.polyline import format_points as points_text
     from verify.studies.regions.polyline import trace_outlines
 

@@ -4,21 +4,108 @@ In n degrees of freedom it is W that is split.
 """
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import chain, repeat
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, results_of_tasks, scene_name
-from verify.scenes.results.separation import Separation
+from verify.arithmetic import AUTO, step_cost
+from verify.execution.keeper import Keeper
+from verify.execution.plan import Plan, Results, SceneQuestion, Study, results_of_tasks, scene_name
+from verify.execution.task import StartTask, Task
+from verify.lockstep import Course, run_alone
+from verify.runs.requested_run import RequestedRun
+from verify.runs.task import RunTask
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.separation import (
+    AnySeparation,
+    Separation,
+    SeparationInDegrees,
+    SeparationResult,
+)
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
+from verify.scenes.values import ExactNumber, StepSize
 from verify.structures import AREA, SYMPLECTIC
-from verify.studies.kinds.grid import grid_tasks, shares_runs
-from verify.studies.separation.separate import as_grid
-from verify.studies.separation.task import DIGITS, FormSeparationTask, SeparationTask
+from verify.studies.kinds.grid import SEPARATION_DIGITS, grid_tasks, shares_runs
+from verify.studies.separation.determinants import Determinants
+from verify.studies.separation.matrix_products import Matrices
+from verify.studies.separation.truncation_and_rounding import as_grid, separate_in_turn
 
 
-class _Split(NamedTuple):
+class SeparationTask(StartTask):
+    """Split Λ of a float64 run into truncation and rounding."""
+
+    result: ClassVar[type[AnySeparation]] = SeparationResult
+    runs: ClassVar[int] = 3
+    """The number of runs of the chain, in wide numbers."""
+    points: ClassVar[int] = Determinants.points
+    """Checkpoints, each of which costs about as much as `point_cost` float64 steps."""
+    point_cost: ClassVar[int] = 80_000
+    kind: Literal["separation", "separation in degrees"] = "separation"
+    step_size: StepSize
+    steps: int
+    t0: ExactNumber = Fraction(0)
+    digits: int
+    run: RunTask | None = None
+    """A requested run of the same steps: its exact run is the separation's first link."""
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that its runs and their checkpoints are worth.
+
+        A requested run is done in place of one of the chain's.
+        """
+        of_points = self.point_cost * min(self.steps, self.points)
+        difference = 0 if self.run is None else self.run.cost - self.steps * step_cost(AUTO)
+        return of_points + self.runs * self.steps * step_cost(AUTO) + difference
+
+    @property
+    def ensemble(self) -> str | None:
+        """A key of the separations of one scheme's map, for any step size and initial value."""
+        return f"{self.kind} {self.scheme} {self.hamiltonian}"
+
+    @property
+    def gives(self) -> tuple[Task, ...]:
+        """The requested run, whose result comes with the separation."""
+        return () if self.run is None else (self.run,)
+
+    def _separate(self, keeper: Keeper, run: RequestedRun | None) -> Course[Any]:
+        arguments = self.other_fields("run")
+        return separate_in_turn(self.exact_hamiltonian(), **arguments, run=run, keeper=keeper)
+
+    def compute(self, keeper: Keeper) -> AnySeparation:
+        """Return the separation as a result."""
+        split: AnySeparation = run_alone(self._separate(keeper, self._requested_run(keeper)))
+        return split
+
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
+        """Return the separation, and the run where that was done for it."""
+        run = self._requested_run(keeper)
+        results: dict[str, Frozen] = {self.key: (yield from self._separate(keeper, run))}
+        if self.run and run and run.done:
+            results[self.run.key] = yield from run.result()
+        return results
+
+    def _requested_run(self, keeper: Keeper) -> RequestedRun | None:
+        return self.run.requested_run(keeper) if self.run else None
+
+
+class FormSeparationTask(SeparationTask):
+    """Split W of a float64 run into truncation and rounding."""
+
+    result = SeparationInDegrees
+    runs = 8  # of which those beside float64 are done twice and carry matrices
+    points = Matrices.points
+    point_cost = 400_000
+    kind: Literal["separation in degrees"] = "separation in degrees"
+
+    @property
+    def ensemble(self) -> None:
+        """None: no number system steps several of them together."""
+        return None
+
+
+class _SplitKind(NamedTuple):
     """The task of a split, and its keys in a `SceneResult`: for the grid, and for other grids."""
 
     task: type[SeparationTask]
@@ -27,8 +114,8 @@ class _Split(NamedTuple):
 
 
 _SPLITS = {
-    AREA: _Split(SeparationTask, "separations", "crossovers"),
-    SYMPLECTIC: _Split(FormSeparationTask, "form_separations", "form_crossovers"),
+    AREA: _SplitKind(SeparationTask, "separations", "crossovers"),
+    SYMPLECTIC: _SplitKind(FormSeparationTask, "form_separations", "form_crossovers"),
 }
 
 
@@ -44,7 +131,7 @@ def _rows(scene: Scene, scheme: str, grid: Grid) -> Sequence[Sequence[Separation
         [
             task(
                 **common, scheme=scheme, step_size=h, steps=grid.steps_for(h),
-                **dict(initial_value), t0=scene.t0, digits=DIGITS, **next(runs),
+                **dict(initial_value), t0=scene.t0, digits=SEPARATION_DIGITS, **next(runs),
             )
             for h in grid.step_sizes
         ]
@@ -89,7 +176,7 @@ def _collect(scene: Scene, results: Results) -> dict[str, Any]:
     }
 
 
-_SECTION = Section(
+_SECTION = SceneQuestion(
     2,
     "truncation separated from rounding",
     "the scene has no [[separation]], and its [grid] does not say `separate = true`",

@@ -3,16 +3,15 @@
 from collections.abc import Iterator
 
 from verify.arithmetic.exact import text
-from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, results_of_tasks, scene_name, toml_section
+from verify.execution.plan import Plan, Results, Study, results_of_tasks, scene_name, toml_section
 from verify.runs.task import RunTask
 from verify.scenes.observables import select_observables
 from verify.scenes.results.run import RunResult
-from verify.scenes.run_sections import Series
+from verify.scenes.run_sections import PlottedSeries
 from verify.scenes.scene import Scene
 
 
-def series_task(scene: Scene, scheme: str, series: Series) -> RunTask:
+def series_task(scene: Scene, scheme: str, series: PlottedSeries) -> RunTask:
     """Return the run of a `[[series]]`."""
     initial_value = series.initial_value
     return RunTask(
@@ -26,11 +25,11 @@ def series_task(scene: Scene, scheme: str, series: Series) -> RunTask:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     for series in scene.series:
-        what = f"{scene_name(scene)}: series of {scheme} at h = {text(series.step_size)}"
+        description = f"{scene_name(scene)}: series of {scheme} at h = {text(series.step_size)}"
         if preserves:
-            plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
+            plan.leave_out(description, "ΔJ ≡ 0 is proved: it is a line at 0")
         else:
-            plan.need(series_task(scene, scheme, series), f"{what}, for its plot")
+            plan.need(series_task(scene, scheme, series), f"{description}, for its plot")
 
 
 def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:

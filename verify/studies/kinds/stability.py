@@ -2,19 +2,23 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from fractions import Fraction
+from typing import Any, Literal, TypeVar
 
+from verify.arithmetic import AUTO, step_cost
 from verify.arithmetic.exact import short
-from verify.execution.plan import Plan
-from verify.execution.study import (
+from verify.execution.keeper import Keeper
+from verify.execution.plan import (
+    Plan,
     Results,
-    Section,
+    SceneQuestion,
     Study,
     results_of_tasks,
     scene_name,
     toml_section,
 )
-from verify.execution.task import Task
+from verify.execution.task import StartTask, Task
+from verify.hamiltonians.run_domain import point_of
 from verify.scenes.frozen import PLAIN
 from verify.scenes.results.stability import (
     LargestStepResult,
@@ -24,22 +28,130 @@ from verify.scenes.results.stability import (
 )
 from verify.scenes.scene import Scene
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, StabilityMap
-from verify.studies.stability.task import (
-    LargestStepTask,
-    OrbitMapTask,
-    StabilityMapTask,
-    StabilityTask,
-)
+from verify.scenes.values import ExactNumber, StepSize
 
+_RUN_COST = 40_000_000  # about what a run costs that is judged, however short
+_BISECTION_COST = 3 * _RUN_COST
+_CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
+_MOTION_COST = 1_000_000  # of a unit of time of the exact motion in n degrees of freedom, at ω = 1
+_STEPS_OF_A_CELL = 4  # for each of its steps: a neighbour's, and those with W
 AnySection = TypeVar("AnySection", LargestStepOver, StabilityMap, OrbitMap)
+
+
+class _FromATime(StartTask):
+    """A task from one initial value, at a time t0 if H depends on it."""
+
+    t0: ExactNumber | None = None
+    """None if H does not depend on time."""
+
+
+class StabilityTask(_FromATime):
+    """Judge one run: is it stable, drifting or unstable, and what is to blame?"""
+
+    result = StabilityResult
+    imports = ("verify.studies.stability.verdict_results", "verify.studies.stability.trail")
+    kind: Literal["stability"] = "stability"
+    step_size: StepSize
+    steps: int
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        return _RUN_COST + self.steps * step_cost(AUTO)
+
+    def compute(self, keeper: Keeper) -> StabilityResult:
+        """Return the verdict on the run."""
+        from verify.studies.stability.trail import StabilityRun
+        from verify.studies.stability.verdict_results import run_result
+
+        hamiltonian, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)
+        state = tuple(point_of(hamiltonian, self.q, self.p).values())
+        return run_result(
+            StabilityRun(hamiltonian, self.scheme, self.step_size, state, self.steps, t0)
+        )
+
+
+class LargestStepTask(_FromATime):
+    """The largest step size with bounded motion until `time`."""
+
+    result = LargestStepResult
+    imports = ("verify.studies.stability.verdict_results",)
+    kind: Literal["largest_step"] = "largest_step"
+    time: ExactNumber
+    energy_error: ExactNumber | None = None
+    symplectic_defect: ExactNumber | None = None
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        return _BISECTION_COST
+
+    def compute(self, keeper: Keeper) -> LargestStepResult:
+        """Return the largest step size, with the smallest one that was too large."""
+        from verify.studies.stability.verdict_results import largest_step
+
+        return largest_step(self.exact_hamiltonian(), **self.other_fields())
+
+
+class StabilityMapTask(_FromATime):
+    """Verdicts over a parameter's values and step sizes."""
+
+    result = StabilityMapResult
+    imports = ("verify.studies.stability.verdict_results",)
+    kind: Literal["stability_map"] = "stability_map"
+    parameter: str
+    values: tuple[ExactNumber, ...]
+    step_sizes: tuple[StepSize, ...]
+    steps: int
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        cells = _CELL_COST * len(self.values) * len(self.step_sizes)
+        if isinstance(self.q, Fraction):
+            return cells
+        motion = int(_MOTION_COST * self.steps * max(self.step_sizes))
+        return cells + motion * len(self.values)
+
+    def compute(self, keeper: Keeper) -> StabilityMapResult:
+        """Return the verdict on the run of each value and step size."""
+        from verify.studies.stability.verdict_results import stability_map
+
+        return stability_map(self.exact_hamiltonian(), **self.other_fields())
+
+
+class OrbitMapTask(_FromATime):
+    """Classify orbits over two of their initial values."""
+
+    result = OrbitMapResult
+    imports = ("verify.studies.stability.map_of_orbits",)
+    kind: Literal["orbit_map"] = "orbit_map"
+    axes: tuple[str, str]
+    across: tuple[ExactNumber, ...]
+    upwards: tuple[ExactNumber, ...]
+    step_size: StepSize
+    steps: int
+    beyond: ExactNumber
+
+    @property
+    def cost(self) -> int:
+        """About the number of float64 steps that it is worth."""
+        cells = len(self.across) * len(self.upwards)
+        return _RUN_COST + cells * self.steps * _STEPS_OF_A_CELL
+
+    def compute(self, keeper: Keeper) -> OrbitMapResult:
+        """Return the kind of each orbit."""
+        from verify.studies.stability.map_of_orbits import orbit_map
+
+        return orbit_map(self.exact_hamiltonian(), **self.other_fields())
 
 
 def need_stability(plan: Plan, scene: Scene) -> None:
     """Add the scene's tasks of stability to the plan."""
     for run, stability_task in stability_tasks(scene):
         plan.need(stability_task, f"{run}: is it stable, and whose fault is it if not")
-    for task, what in _tasks_over(scene):
-        plan.need(task, f"{scene_name(scene)}: {what}")
+    for task, description in _tasks_over(scene):
+        plan.need(task, f"{scene_name(scene)}: {description}")
 
 
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
@@ -144,7 +256,7 @@ def _needs_map_section(scene: Scene) -> bool:
 _SECTIONS = (
     toml_section(8, "stability, and whose fault it is where there is none", "[[stability]]"),
     toml_section(9, "the largest stable step", "[[largest_step]]"),
-    Section(
+    SceneQuestion(
         13, "orbits over two initial values", "the scene has no [[orbit_map]]", _needs_map_section
     ),
     toml_section(10, "the map of step size and stiffness", "[[stability_map]]"),

@@ -25,7 +25,7 @@ from verify.kernels.many_points import PointMap
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.panels import NODES, rule
-from verify.studies.regions.place import ITSELF, Place
+from verify.studies.regions.point_carriers import QP_PLANE, RegionPlane
 
 _FROM_START = Fraction(0)
 _FIRST = 8  # cells along the curve, at least
@@ -39,7 +39,7 @@ _Cell = tuple[int, float, float, float, float]  # an arc, from where to where on
 
 
 @dataclass(frozen=True)
-class Mean:
+class RegionMean:
     """The mean with its error, the sum of the differences of cells and their quarters."""
 
     value: float
@@ -54,24 +54,24 @@ def mean_over(
     step_size: Fraction,
     steps: int,
     t0: Fraction = _FROM_START,
-    place: Place = ITSELF,
-) -> Mean:
+    plane: RegionPlane = QP_PLANE,
+) -> RegionMean:
     """Return the mean of Λ after N steps of a scheme over the outline's region, in float64.
 
-    Where H depends on time the steps start at t0. In n degrees of freedom it is the mean of W, in
-    the plane of `place`. The rays start at the centre (q, p). Raises LeftRangeError.
+    If H depends on time the steps start at t0. In n degrees of freedom it is the mean of W, in
+    `plane`. The rays start at the centre (q, p). Raises LeftRangeError.
     """
     observables = frozenset({hamiltonian.structure.of_run})
     point_map = PointMap(
         hamiltonian, scheme, step_size=step_size, steps=steps, t0=t0,
         arithmetic=number_systems.get(float64.NAME, 17), observables=observables,
     )  # fmt: skip
-    entry = f"w_{place.index}_{place.degrees + place.index}"
+    entry = f"w_{plane.index}_{plane.degrees + plane.index}"
     name = entry if entry in point_map.kernel.state_names else "lam"
 
     def density(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        points = place.embed(x, y, lambda value: np.full(len(x), float(value)))
-        values: np.ndarray = point_map(**dict(zip(place.names, points, strict=True)))[name]
+        points = plane.embed(x, y, lambda value: np.full(len(x), float(value)))
+        values: np.ndarray = point_map(**dict(zip(plane.names, points, strict=True)))[name]
         return values
 
     mean = _compute_mean(density, outline, centre)
@@ -80,7 +80,7 @@ def mean_over(
     has_written_defect = (
         name == "lam" or step_map_of(hamiltonian, scheme).written_defect is not None
     )
-    return mean if has_written_defect else Mean(mean.value, mean.error + steps * _DEFECT)
+    return mean if has_written_defect else RegionMean(mean.value, mean.error + steps * _DEFECT)
 
 
 def find_middle(outline: Outline) -> tuple[float, float]:
@@ -94,7 +94,7 @@ def find_middle(outline: Outline) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def _compute_mean(density: _Density, outline: Outline, centre: tuple[float, float]) -> Mean:
+def _compute_mean(density: _Density, outline: Outline, centre: tuple[float, float]) -> RegionMean:
     region = _Region(outline, centre, density)
     count = -(-_FIRST // len(outline.arcs))
     first = [
@@ -115,7 +115,7 @@ def _compute_mean(density: _Density, outline: Outline, centre: tuple[float, floa
         cut = [f for f in families if f.difference(mean) > share]
         points += 16 * NODES**2 * len(cut)
         if error <= _AGREED * abs(mean) or not cut or points > _MOST_POINTS:
-            return Mean(float(mean), float(error))
+            return RegionMean(float(mean), float(error))
         sharp = [f for f in families if f.difference(mean) <= share]
         cells = [cell for f in cut for cell in _quarters(f.cell)]
         sums = np.concatenate([f.quarters for f in cut], axis=1)
@@ -130,13 +130,15 @@ class _Region:
     centre: tuple[float, float]
     density: _Density
 
-    def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_Family]":
+    def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_CellFamily]":
         """Cut the cells, whose sums are known, into quarters."""
         parts = [part for cell in cells for part in _quarters(cell)]
         quarters = self.sums(parts).reshape(3, len(cells), 4)
         # Summed without signs later: two wrong totals may agree by chance, not all cells at once.
         differences = quarters.sum(axis=2) - sums
-        return [_Family(cell, quarters[:, k], differences[:, k]) for k, cell in enumerate(cells)]
+        return [
+            _CellFamily(cell, quarters[:, k], differences[:, k]) for k, cell in enumerate(cells)
+        ]
 
     def sums(self, cells: list[_Cell]) -> np.ndarray:
         """Return each cell's area and the integrals of the density and of its size: (3, cells)."""
@@ -148,7 +150,7 @@ class _Region:
 
 
 @dataclass(frozen=True)
-class _Family:
+class _CellFamily:
     """A cell, the sums of its quarters (3, 4), and their differences from the cell's."""
 
     cell: _Cell

@@ -1,4 +1,4 @@
-"""Gauss–Legendre panels on a curve: nodes, and the area that the interpolating polynomials sweep.
+"""Gauss–Legendre panels on a curve: nodes, the area that they sweep, and points between the nodes.
 
 On a panel x and y are the polynomials of degree n − 1 through its n nodes, and ½ ∫ (x dy − y dx) is
 Σ x_i S_ij y_j with S antisymmetric, exactly: the integrand is of degree 2n − 3, and the rule is
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import lcm, prod
+from typing import Any
 
 import flint
 import numpy as np
@@ -20,6 +21,11 @@ from verify.arithmetic.flint_precision import working_precision
 
 NODES = 16
 _GUARD = 40  # bits, of which differences of nodes take a few
+_MOST_POINTS = 40_000  # of a dense curve
+_BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
+_MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
+Points = tuple[Any, ...]  # q and p, or q1 … qn and p1 … pn: a sequence of each
+PanelPart = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to where on it
 
 
 @dataclass(frozen=True)
@@ -52,9 +58,10 @@ def rule(bits: int) -> Rule:
             [weights[i] * d[i][j] - weights[j] * d[j][i] for j in range(NODES)]
             for i in range(NODES)
         ]
-    whole = [[round(x * 2 ** (bits - 1)) for x in _exact(row)] for row in pairs]
+    whole = [[round(x * 2 ** (bits - 1)) for x in _midpoints(row)] for row in pairs]
     area_matrix = np.array(whole, dtype=object)
-    return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), area_matrix)
+    derivative = tuple(map(_midpoints, d))
+    return Rule(bits, _midpoints(nodes), _midpoints(weights), derivative, area_matrix)
 
 
 @lru_cache(maxsize=8192)
@@ -96,7 +103,7 @@ def _derivative(nodes: Sequence[Ball]) -> list[list[Ball]]:
     return d
 
 
-def _exact(values: Sequence[Ball]) -> tuple[Fraction, ...]:
+def _midpoints(values: Sequence[Ball]) -> tuple[Fraction, ...]:
     return tuple(midpoint_and_radius(x)[0] for x in values)
 
 
@@ -111,3 +118,82 @@ def interpolation(count: int) -> np.ndarray:
     terms = weight / (targets[:, None] - nodes[None, :])
     matrix: np.ndarray = terms / terms.sum(axis=1, keepdims=True)
     return matrix
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A part of an arc of an outline with its points, and the points' images."""
+
+    outline: int
+    arc: int
+    left: Fraction
+    right: Fraction
+    start: Points
+    image: Points
+    before: int  # area swept, in units of the carrier's grid and of the rule
+    parts: tuple[int, ...]  # that by the image, in each plane (q_k, p_k)
+
+    @property
+    def after(self) -> int:
+        """The area swept by the image, in the same units as `before`."""
+        return sum(self.parts)
+
+    @property
+    def change(self) -> int:
+        """The change of the area by the map, in the same units."""
+        return self.after - self.before
+
+    @property
+    def halves(self) -> list[PanelPart]:
+        """The two halves of its arc, not yet carried."""
+        middle = (self.left + self.right) / 2
+        arc = self.outline, self.arc
+        return [(*arc, self.left, middle), (*arc, middle, self.right)]
+
+
+@dataclass(frozen=True)
+class PanelFamily:
+    """A panel in halves, with their difference from the whole panel.
+
+    `difference`: of the areas before and after the map; `unsure`: of that before alone.
+    """
+
+    halves: tuple[Panel, Panel]
+    difference: int
+    unsure: int
+    parts: tuple[int, ...]  # the difference in each plane, of the images
+    stuck: bool = False
+
+    @property
+    def change(self) -> int:
+        """The change of the halves' area by the map."""
+        return self.halves[0].change + self.halves[1].change
+
+    @property
+    def before(self) -> int:
+        """The halves' area before the map."""
+        return self.halves[0].before + self.halves[1].before
+
+
+def split_by_panel(points: Points) -> list[Points]:
+    """Split the points of many panels into those of each."""
+    cut = [slice(i, i + NODES) for i in range(0, len(points[0]), NODES)]
+    return [tuple(z[part] for z in points) for part in cut]
+
+
+def densify(
+    panels: Sequence[tuple[np.ndarray, ...]], points: int = _MOST_POINTS
+) -> tuple[np.ndarray, float]:
+    """Return about so many points (n, 2) of a closed curve, and its distance from their chords.
+
+    They are interpolated from the nodes of its panels. The distance is an estimate, by points
+    midway between those.
+    """
+    least, most = _BETWEEN
+    between = min(most, max(least, points // len(panels)))
+    matrix = interpolation(2 * between)
+    nodes = np.array([np.stack(z, axis=1) for z in panels], dtype=np.float64).reshape(-1, NODES, 2)
+    fine = np.einsum("kn,pnd->pkd", matrix, nodes).reshape(-1, 2)
+    vertices, middles = fine[::2], fine[1::2]
+    sagittas = middles - (vertices + np.roll(vertices, -1, axis=0)) / 2
+    return vertices, float(_MORE * np.hypot(*sagittas.T).max())

@@ -1,18 +1,20 @@
 """Points of outlines in one number system, and the maps that carry them.
 
-A point is q and p, or q1 … qn and p1 … pn, in the order of its `Place`: a sequence of each.
+A region lies in the plane of one pair (q_i, p_i), through a point in 2n dimensions. Its canonical
+area is then the integral of ω over it, and ∮ p·dq along its outline; the other coordinates are the
+same for all its points, until a map moves them. Points are q and p, or q1 … qn and p1 … pn, in the
+order of their `RegionPlane`: a sequence of each.
 
 A scheme's map in float64 is compared with the same steps with compensated sums. These show nothing
-of a clock's rounding: where H depends on time, and in wider number systems, the map is compared
+of a clock's rounding: if H depends on time, and in wider number systems, the map is compared
 with a wider one. The exact flow comes with its own bound.
-
-The distance of outlines from their exact images is Hausdorff's.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from mpmath.ctx_mp import MPContext
@@ -23,18 +25,59 @@ from verify.arithmetic.float_context import FLOAT
 from verify.arithmetic.number_system import bits_for
 from verify.arithmetic.systems import float64
 from verify.flows.points import exact_points
+from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
 from verify.scenes.shapes.outline import Outline
-from verify.studies.regions.area import Points
-from verify.studies.regions.hausdorff import FARTHEST, hausdorff
-from verify.studies.regions.place import ITSELF, Place
-from verify.studies.regions.polyline import densify
+from verify.studies.regions.panels import Points
 
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
 _PRECISE = 2000  # bits with which the size of an outline is found
 _WIDER = 19  # digits that the finer arithmetic has more: one limb
 _SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
+
+
+@dataclass(frozen=True)
+class RegionPlane:
+    """The plane of one pair of coordinates through a point.
+
+    `names`: q1 … qn, p1 … pn, the order of points' coordinates here; `point`: their values, of
+    which those of the pair `index`, from 0, are the region's own.
+    """
+
+    names: tuple[str, ...] = PLANE[::-1]
+    point: tuple[Fraction, ...] = (Fraction(0),) * 2
+    index: int = 0
+
+    @classmethod
+    def from_point(cls, point: Mapping[str, Fraction], plane: int) -> "RegionPlane":
+        """Return the plane through this point, p and q or p1 … qn by names.
+
+        `plane` is i, from 1.
+        """
+        names = tuple(sorted(point, key=lambda name: (name[0] != "q", int(name[1:] or 1))))
+        return cls(names, tuple(point[name] for name in names), plane - 1)
+
+    @property
+    def degrees(self) -> int:
+        """The number n of degrees of freedom."""
+        return len(self.names) // 2
+
+    @property
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        """The pairs (q1, p1) … (qn, pn)."""
+        n = self.degrees
+        return tuple(zip(self.names[:n], self.names[n:], strict=True))
+
+    def embed(self, x: Any, y: Any, constant: Callable[[Fraction], Any]) -> tuple[Any, ...]:
+        """Return points of the plane in all coordinates; `constant` repeats one number."""
+        plane_axes = {self.index: x, self.degrees + self.index: y}
+        return tuple(
+            plane_axes[k] if k in plane_axes else constant(v) for k, v in enumerate(self.point)
+        )
+
+
+QP_PLANE = RegionPlane()
 
 
 def smaller_than_one(outline: Outline) -> int:
@@ -46,17 +89,38 @@ def smaller_than_one(outline: Outline) -> int:
     return max(0, -int(mp.mag(size))) if size else 0
 
 
+class PointCarrier(Protocol):
+    """A number system's points, and a map of them."""
+
+    bits: int  # about so many bits after the point are right
+    grid: int  # 2^grid is what `whole` multiplies by
+    sampled: int  # panels that are carried in finer arithmetic
+    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
+        """Return an arc's points."""
+
+    def images(self, *points: Any) -> Points:
+        """Return their images."""
+
+    def finer(self, *points: Any) -> Points:
+        """Return their images in finer arithmetic."""
+
+    def whole(self, x: Any) -> np.ndarray:
+        """Return 2^grid x, rounded to whole numbers; an array of int."""
+
+
 class _Floats:
     """Points in float64."""
 
-    bits, grid, place = 53, _FLOAT_GRID, ITSELF
+    bits, grid, plane = 53, _FLOAT_GRID, QP_PLANE
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
         positions = np.array([float(x) for x in s])
         x, y = (
             np.broadcast_to(z, positions.shape).copy() for z in outline.arcs[arc](FLOAT, positions)
         )
-        return self.place.embed(x, y, lambda value: np.full(positions.shape, float(value)))
+        return self.plane.embed(x, y, lambda value: np.full(positions.shape, float(value)))
 
     def floats(self, points: Points) -> tuple[np.ndarray, ...]:
         return points
@@ -81,10 +145,10 @@ class FloatCarrier(_Floats):
 
     def __init__(
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
-        smaller: int = 0, place: Place = ITSELF,
+        smaller: int = 0, plane: RegionPlane = QP_PLANE,
     ) -> None:  # fmt: skip
         self.grid += smaller
-        self.place = place
+        self.plane = plane
         arithmetic = number_systems.get(self.name, self.digits)
         steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
         self._map = steps_of(arithmetic=arithmetic)
@@ -99,14 +163,14 @@ class FloatCarrier(_Floats):
             self._finer = steps_of(arithmetic=arithmetic, compensated=True)
 
     def images(self, *points: Any) -> Points:
-        return _apply_map(self._map, self.place, points)
+        return _apply_map(self._map, self.plane, points)
 
     def finer(self, *points: Any) -> Points:
         arithmetic = self._finer.arithmetic
         if arithmetic.name == self.name:
-            return _apply_map(self._finer, self.place, points)
+            return _apply_map(self._finer, self.plane, points)
         numbers = [[arithmetic.number(Fraction(v)) for v in z.tolist()] for z in points]
-        images = _apply_map(self._finer, self.place, numbers)
+        images = _apply_map(self._finer, self.plane, numbers)
         return tuple(np.array([float(arithmetic.exact(v)) for v in z]) for z in images)
 
 
@@ -118,21 +182,21 @@ class ExactFlowCarrier(_Floats):
 
     def __init__(
         self, hamiltonian: Hamiltonian, time: Fraction, t0: Fraction, smaller: int = 0,
-        place: Place = ITSELF,
+        plane: RegionPlane = QP_PLANE,
     ) -> None:  # fmt: skip
         self.grid += smaller
-        self.place = place
+        self.plane = plane
         self._hamiltonian, self._time, self._t0 = hamiltonian, time, t0
         self.radius: Fraction | None = Fraction(0)
         self.method = ""
 
     def images(self, *points: Any) -> Points:
-        starts = dict(zip(self.place.names, points, strict=True))
+        starts = dict(zip(self.plane.names, points, strict=True))
         solution = exact_points(self._hamiltonian, starts, [self._time], self._t0)
         # Probe asks for images several times; one bound holds for all of them.
         self.radius = max(self.radius or Fraction(0), Fraction(solution.bound))
         self.method = solution.method
-        return tuple(solution.points[name][0] for name in self.place.names)
+        return tuple(solution.points[name][0] for name in self.plane.names)
 
     def finer(self, *points: Any) -> Points:
         raise NotImplementedError("the exact flow's error is known")
@@ -146,11 +210,11 @@ class WideCarrier:
 
     def __init__(
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
-        name: str, digits: int, smaller: int = 0, place: Place = ITSELF,
+        name: str, digits: int, smaller: int = 0, plane: RegionPlane = QP_PLANE,
     ) -> None:  # fmt: skip
         """Take `digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
         self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
-        self.name, self.digits, self.place = name, digits, place
+        self.name, self.digits, self.plane = name, digits, plane
         # A bit is 0.301 digits: `smaller` bits below 1 need 3/10 as many digits more, rounded up.
         self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
@@ -169,33 +233,33 @@ class WideCarrier:
         arc_points = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
         number = self.arithmetic.number
         x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in arc_points] for i in (0, 1))
-        return self.place.embed(
+        return self.plane.embed(
             _object_array(x),
             _object_array(y),
             lambda value: _object_array([number(value)] * len(s)),
         )
 
     def floats(self, points: Points) -> tuple[np.ndarray, ...]:
-        exact = self.arithmetic.exact
-        return tuple(np.array([float(exact(v)) for v in z]) for z in points)
+        to_rational = self.arithmetic.exact
+        return tuple(np.array([float(to_rational(v)) for v in z]) for z in points)
 
     def whole(self, x: Any) -> np.ndarray:
-        exact, size = self.arithmetic.exact, 1 << self.grid
-        return _object_array([round(exact(v) * size) for v in x])
+        to_rational, size = self.arithmetic.exact, 1 << self.grid
+        return _object_array([round(to_rational(v) * size) for v in x])
 
     def images(self, *points: Any) -> Points:
-        return tuple(map(_object_array, _apply_map(self._map, self.place, points)))
+        return tuple(map(_object_array, _apply_map(self._map, self.plane, points)))
 
     def finer(self, *points: Any) -> Points:
         arithmetic, wider = self.arithmetic, self._wider.arithmetic
         numbers = [[wider.number(arithmetic.exact(v)) for v in z] for z in points]
-        images = _apply_map(self._wider, self.place, numbers)
+        images = _apply_map(self._wider, self.plane, numbers)
         return tuple(_object_array([arithmetic.number(wider.exact(v)) for v in z]) for z in images)
 
 
-def _apply_map(point_map: PointMap, place: Place, points: Sequence[Any]) -> Points:
-    image = point_map(**dict(zip(place.names, points, strict=True)))
-    return tuple(image[name] for name in place.names)
+def _apply_map(point_map: PointMap, plane: RegionPlane, points: Sequence[Any]) -> Points:
+    image = point_map(**dict(zip(plane.names, points, strict=True)))
+    return tuple(image[name] for name in plane.names)
 
 
 def _object_array(values: Sequence[Any]) -> np.ndarray:
@@ -205,54 +269,3 @@ def _object_array(values: Sequence[Any]) -> np.ndarray:
 
 
 SchemeCarrier = FloatCarrier | WideCarrier
-
-
-_SAFETY = 1.01  # for what lies between the points of dense curves
-_Nodes = Sequence[tuple[np.ndarray, ...]]  # of panels, q and p of each
-
-
-def distance_from_exact(
-    hamiltonian: Hamiltonian,
-    time: Fraction,
-    t0: Fraction,
-    outlines: Sequence[tuple[_Nodes, _Nodes]],
-) -> tuple[Fraction, Fraction] | None:
-    """Return the greatest Hausdorff distance of an outline from its exact image, with its error.
-
-    None where an image is too far away for it. `outlines`: the nodes of each outline's panels
-    before and after the map. Raises NoFlowError.
-    """
-    # Squares of such coordinates would overflow in float64.
-    if any(np.abs(z).max() > FARTHEST for _, after in outlines for z in after):
-        return None
-    plane = ExactFlowCarrier(hamiltonian, time, t0)
-    panels = [z for before, _ in outlines for z in before]
-    q, p = plane.images(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
-    images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
-    distances = [
-        _curve_distance(after, [next(images) for _ in before]) for before, after in outlines
-    ]
-    greatest, bound = _greatest_with_error(distances)
-    return Fraction(greatest), Fraction(bound) + (plane.radius or 0)
-
-
-def _greatest_with_error(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return the greatest of values with errors, and the error of the maximum."""
-    greatest = max(value for value, _ in values)
-    most, least = (max(value + sign * error for value, error in values) for sign in (1, -1))
-    return greatest, max(most - greatest, greatest - least)
-
-
-def _curve_distance(nodes: _Nodes, exact: _Nodes) -> tuple[float, float]:
-    """Return the Hausdorff distance of two curves with its error, from the nodes of their panels.
-
-    It is at most the greatest distance of images of the same point.
-    """
-    (one, sagitta), (other, other_sagitta) = densify(nodes), densify(exact)
-    distance = hausdorff([one], [other], sagitta, other_sagitta)
-    # Points of the same index come from the same point of the outline, as both curves have the same
-    # panels and nodes.
-    most = float(np.hypot(*(one - other).T).max()) * _SAFETY
-    return min(distance.value, most), min(
-        distance.bound, max(most - distance.value, distance.value)
-    )

@@ -1,4 +1,4 @@
-"""Curves as polylines: dense ones to measure with, thinned ones to draw."""
+"""Polylines to draw: outlines and curves thinned, and their points as text."""
 
 from collections.abc import Sequence
 
@@ -6,32 +6,10 @@ import numpy as np
 
 from verify.arithmetic.float_context import FLOAT
 from verify.scenes.shapes.outline import Shape
-from verify.studies.regions.panels import NODES, interpolation
 
 _DRAWN = 800  # a curve is drawn to this part of the picture's size
 _TRACED = 400  # points of an arc that is drawn as it is
-_MOST_POINTS = 40_000  # of a dense curve
-_BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
 _TINY = float(np.finfo(np.float64).tiny)
-_MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
-
-
-def densify(
-    panels: Sequence[tuple[np.ndarray, ...]], points: int = _MOST_POINTS
-) -> tuple[np.ndarray, float]:
-    """Return about so many points (n, 2) of a closed curve, and its distance from their chords.
-
-    They are interpolated from the nodes of its panels. The distance is an estimate, by points
-    midway between those.
-    """
-    least, most = _BETWEEN
-    between = min(most, max(least, points // len(panels)))
-    matrix = interpolation(2 * between)
-    nodes = np.array([np.stack(z, axis=1) for z in panels], dtype=np.float64).reshape(-1, NODES, 2)
-    fine = np.einsum("kn,pnd->pkd", matrix, nodes).reshape(-1, 2)
-    vertices, middles = fine[::2], fine[1::2]
-    sagittas = middles - (vertices + np.roll(vertices, -1, axis=0)) / 2
-    return vertices, float(_MORE * np.hypot(*sagittas.T).max())
 
 
 def thin(points: np.ndarray, tolerance: float) -> np.ndarray:
@@ -41,9 +19,9 @@ def thin(points: np.ndarray, tolerance: float) -> np.ndarray:
     keep = np.zeros(len(ring), dtype=bool)
     # Two distant points of a closed curve start the division; a chord from a point to itself would
     # have no direction.
-    far = int(abs(plane_points - plane_points[0]).argmax())
-    keep[[0, far, -1]] = True
-    todo = [(0, far), (far, len(ring) - 1)]
+    farthest = int(abs(plane_points - plane_points[0]).argmax())
+    keep[[0, farthest, -1]] = True
+    todo = [(0, farthest), (farthest, len(ring) - 1)]
     while todo:
         first, last = todo.pop()
         if last - first < 2:

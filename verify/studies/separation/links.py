@@ -8,7 +8,6 @@ exactly 0, and the closed form's too; where ΔJ does not depend on (p, q), Λ₀
 the initial value.
 """
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -17,32 +16,31 @@ from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
 from verify.arithmetic.number_system import NumberSystem, UnsupportedError
 from verify.errors import InputError
-from verify.execution.keeping import NOTHING, Keeper
+from verify.execution.keeper import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course, clock
 from verify.runs.digits_on_demand import Measurement, choose, measure
-from verify.runs.estimated import working_digits
-from verify.runs.run import RequestedRun
+from verify.runs.estimates import working_digits
+from verify.runs.requested_run import RequestedRun
 from verify.schemes.maps.step_map import StepMap
 from verify.structures import AREA, SYMPLECTIC, Structure
-from verify.studies.separation.chain import Chain, lacking
-from verify.studies.separation.stepper.run import (
+from verify.studies.separation.chain import Chain, Kind, Links, lacking, links_of
+from verify.studies.separation.determinants import Determinants
+from verify.studies.separation.matrix_products import Matrices
+from verify.studies.separation.mixed_run import (
     Advance,
     MixedRun,
     Stopped,
     Working,
+    clock_is_exact,
     marks_of,
-    rounded_inputs,
+    round_inputs,
 )
-from verify.studies.separation.stepper.trail import Kind, Links, links_of
-from verify.studies.separation.stepper.way import Size, Way
-from verify.studies.separation.ways.determinants import Determinants
-from verify.studies.separation.ways.matrices import Matrices
+from verify.studies.separation.way import Size, Way
 
 _WAYS: dict[Structure, type[Way]] = {AREA: Determinants, SYMPLECTIC: Matrices}
-_MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
 _ATTEMPTS = 4
 EachWay = tuple[tuple[Chain, ...], tuple[Chain, ...] | None]
@@ -83,7 +81,7 @@ def separate_chains(
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
     with the steps just done, of three runs of N steps. `run`, of these steps and checkpoints, is
-    taken for the first link. Raises Stopped where Λ, or W, has no value.
+    taken for the first link. Raises Stopped if Λ, or W, has no value.
     """
     way = way_for(hamiltonian)
     kernel_run = KernelRun(
@@ -115,7 +113,7 @@ class LinksOnDemand:
         self.advance: Advance = lambda _: None
         self.marks = marks_of(kernel_run.steps, way.points)
         self.digits = {"first": digits, "second": digits, "beside": digits + way.products}
-        rounded_run = _round_inputs(kernel_run)
+        rounded_run = round_inputs(kernel_run)
         self.runs = {"first": kernel_run, "second": rounded_run}
         inputs, of_rounded = ((run.start, run.parameters) for run in self.runs.values())
         self.has_equal_inputs = inputs == of_rounded
@@ -137,16 +135,16 @@ class LinksOnDemand:
     def prove_link(self, name: str) -> Links | None:
         """Return the `first` link or the `second` to its digits by proof, or None; made once."""
         if name not in self._proved_links:
-            exact = _map_for_parameters(self.step_map, self.runs[name])
+            step_map = _map_for_parameters(self.step_map, self.runs[name])
             self._proved_links[name] = self.way.prove_links(
-                self.runs[name], exact, self.digits[name]
+                self.runs[name], step_map, self.digits[name]
             )
         return self._proved_links[name]
 
     def working(self) -> Course[Working]:
         """Do the run in float64, exact arithmetic beside it, once.
 
-        Stopped where it leaves its range.
+        Stopped if it leaves its range.
         """
         if self._working is None:
             self._working = yield from self._run_working()
@@ -165,11 +163,8 @@ class LinksOnDemand:
         arithmetic = number_systems.get(self.system(digits), digits)
         last = last_system().make(working_digits(digits_needed, run.steps))
         try:
-            return (
-                yield from mixed_run.step_through(
-                    arithmetic if arithmetic.rounding else last, self.advance
-                )
-            )
+            beside = arithmetic if arithmetic.rounding else last
+            return (yield from mixed_run.step_through(beside, self.advance))
         except UnsupportedError:
             return (yield from mixed_run.step_through(last, self.advance))
 
@@ -181,13 +176,15 @@ class LinksOnDemand:
         second = first if self.has_equal_inputs else (yield from self._link("second"))
         shared_links, parts = [first, second, working.trajectory or second], self.way.parts
         if self.kernel_run.hamiltonian.time_dependent:
-            exact = _clock_is_exact(self.runs["second"])
-            shared_links.insert(2, second if exact or working.clock is None else working.clock)
+            has_exact_clock = clock_is_exact(self.runs["second"])
+            shared_links.insert(
+                2, second if has_exact_clock or working.clock is None else working.clock
+            )
             parts = (parts[0], "clock", *parts[1:])
 
         def chains(*links: Links) -> tuple[Chain, ...]:
-            each = zip(*shared_links, *links, strict=True)
-            return tuple(Chain(self.marks, entry, parts) for entry in each)
+            links_of_entries = zip(*shared_links, *links, strict=True)
+            return tuple(Chain(self.marks, entry, parts) for entry in links_of_entries)
 
         plain = chains(working.factors, working.plain)
         if working.closed_factors is None or working.closed_form is None:
@@ -207,7 +204,7 @@ class LinksOnDemand:
         return plain, closed_form
 
     def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
-        """Require so many more digits of the links; return False where none lacks any.
+        """Require so many more digits of the links; return False if none lacks any.
 
         A part that is still noise lacks the same again and again: each attempt doubles the number.
         """
@@ -217,10 +214,10 @@ class LinksOnDemand:
             first, second = max(first, second), 0
         extra_digits = {"first": first, "second": second, "beside": max(beside)}
         self.advance = lambda _: None  # what was foreseen is done
-        for name, more in extra_digits.items():
-            if more:
+        for name, increase in extra_digits.items():
+            if increase:
                 # `<<` binds less than `+`: (more + 2) · 2^attempt.
-                self.digits[name] += more + 2 << attempt
+                self.digits[name] += increase + 2 << attempt
                 self._link_cache.pop(name, None)
                 self._proved_links.pop(name, None)
         if extra_digits["beside"]:
@@ -229,10 +226,8 @@ class LinksOnDemand:
 
     def system(self, digits: int) -> str:
         """Return the arithmetic for so many digits: compiling one takes ever longer with more."""
-        requested_system = number_systems.about(self.arithmetic)
-        return (
-            requested_system.name if digits <= requested_system.most_digits else last_system().name
-        )
+        system = number_systems.about(self.arithmetic)
+        return system.name if digits <= system.most_digits else last_system().name
 
     def _link(self, name: str) -> Course[Links]:
         """Return the `first` or the `second` link, by proof or by a run."""
@@ -250,9 +245,8 @@ class LinksOnDemand:
                         requested_run.kernel_run, digits, measurement
                     )
                     return self._link_cache[name]
-            measurement = yield from measure(
-                kernel_run, self.system(digits), digits, self._progress()
-            )
+            system = self.system(digits)
+            measurement = yield from measure(kernel_run, system, digits, self._progress())
             self._link_cache[name] = self._links_from_run(kernel_run, digits, measurement)
         return self._link_cache[name]
 
@@ -270,7 +264,7 @@ class LinksOnDemand:
     def _links_from_run(
         self, kernel_run: KernelRun, digits: int, measurement: Measurement
     ) -> Links:
-        """Return the links of a run to so many digits; Stopped where it cannot give them."""
+        """Return the links of a run to so many digits; Stopped if it cannot give them."""
         bounds, run, observable = measurement.bounds, measurement.outcome, self.way.observable
         if bounds.status != "finished":
             reason = f"in exact arithmetic: {bounds.method}"
@@ -280,13 +274,13 @@ class LinksOnDemand:
         # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may
         # be that of a run with more digits; the checkpoints must be those of a run that agrees
         # with it.
-        more = working_digits(digits, kernel_run.steps)
+        run_digits = working_digits(digits, kernel_run.steps)
         for _ in range(_DOUBLINGS):
             done = run.done == kernel_run.steps
             if done and abs(run.values[observable] - value) <= bound:
                 return links_of(self.way.values(run, value), bound, kind, bounds.method)
-            more *= 2
-            run = kernel_run.run(last_system().make(more))
+            run_digits *= 2
+            run = kernel_run.run(last_system().make(run_digits))
         raise Stopped("unresolved", None, f"in exact arithmetic: {bounds.method}")
 
 
@@ -295,28 +289,11 @@ def last_system() -> NumberSystem:
     return number_systems.automatic()[-1]
 
 
-def _clock_is_exact(run: KernelRun) -> bool:
-    """Return True if t ← t + h rounds nothing: all times are at most 2^53 times one 2^−k."""
-    first, h = run.start["t"], run.start["h"]
-    unit = Fraction(1, max(first.denominator, h.denominator))  # of float64s, powers of 2
-    latest = max(abs(first), abs(first + run.steps * h))
-    return latest / unit <= _MANTISSAS
-
-
-def _round_inputs(kernel_run: KernelRun) -> KernelRun:
-    """Return the run from the rounded inputs; parameters inside the kernel stay exact."""
-    rounded_run, inputs = copy.copy(kernel_run), rounded_inputs(kernel_run)
-    rounded_run.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
-    parameters = {n: Fraction(inputs[n]) for n in kernel_run.hamiltonian.parameters}
-    rounded_run.parameters = {**kernel_run.parameters, **parameters}
-    return rounded_run
-
-
-def _map_for_parameters(exact: StepMap, run: KernelRun) -> StepMap | None:
-    """Return the step map for a run's parameters; None where H is not defined for them."""
+def _map_for_parameters(step_map: StepMap, run: KernelRun) -> StepMap | None:
+    """Return the step map for a run's parameters; None if H is not defined for them."""
     values = {n: run.parameters[n] for n in run.hamiltonian.parameters}
-    if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
-        return exact
+    if values == {n: v for n, v in step_map.hamiltonian.values if n in values}:
+        return step_map
     try:
         return step_map_of(run.hamiltonian.with_values(values), run.scheme)
     except InputError:

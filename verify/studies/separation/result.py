@@ -5,8 +5,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import decimal, known_text
-from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.form_value import FormValue
+from verify.scenes.results.bounded_value import FormValue, Value
 from verify.scenes.results.separation_parts import (
     AnyEvaluation,
     EvaluationResult,
@@ -21,15 +20,14 @@ from verify.scenes.results.separation_parts import (
     PartsInTimeAt,
     PowerLawResult,
 )
-from verify.studies.separation.chain import Chain
-from verify.studies.separation.growth import (
+from verify.studies.separation.chain import Chain, Trail
+from verify.studies.separation.growth_fits import (
     classify_motion,
     fit_growth,
     fit_power_law,
     select_log_spaced,
 )
-from verify.studies.separation.stepper.trail import Trail
-from verify.studies.separation.stepper.way import Size
+from verify.studies.separation.way import Size
 
 SHOWN = 7  # digits of what a figure shows
 _CHECKPOINTS = 32

@@ -17,15 +17,15 @@ from typing import Literal
 from verify.arithmetic.exact import decimal, magnitude, text
 from verify.kernels.stepping import KernelRun
 from verify.prose import Number, Prose, prose
-from verify.runs.start import Start
+from verify.runs.run_start import Start
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_parts import PowerLawResult, TangentGrowth
-from verify.studies.separation.growth import Motion, PowerLaw, classify_motion, fit_power_law
+from verify.studies.separation.growth_fits import Motion, PowerLaw, classify_motion, fit_power_law
 from verify.studies.separation.links import last_system
+from verify.studies.separation.matrix_products import POINTS
+from verify.studies.separation.mixed_run import marks_of
 from verify.studies.separation.result import SHOWN, Split
-from verify.studies.separation.stepper.run import marks_of
-from verify.studies.separation.stepper.way import Size
-from verify.studies.separation.ways.matrices import POINTS
+from verify.studies.separation.way import Size
 
 _DIGITS = 20
 _ALIKE = 2  # rates within this factor of each other
@@ -45,7 +45,7 @@ _WHOSE: dict[Cause, str] = {
 class HalfStep:
     """The cause of the growth, and the finite-time Lyapunov exponent at half the step size.
 
-    The exponent is None where that run left its range.
+    The exponent is None if that run left its range.
     """
 
     cause: Cause
@@ -81,11 +81,13 @@ def tangent_growth(split: Split, sizes: Sequence[Size], start: Start, steps: int
     rate = finite_time_lyapunov(math.log(norm), count, float(time))
     half = repeat_with_half_step(start, steps, rate) if motion == "exponential" else None
     law, law_of_areas = (
-        fit_power_law(marks, each, Fraction(0), motion) for each in (squares, areas)
+        fit_power_law(marks, values, Fraction(0), motion) for values in (squares, areas)
     )
-    exact = split.tops["truncation"]
+    truncation = split.tops["truncation"]
     law_of_w = (
-        fit_power_law(marks, exact, split.noise["truncation"], motion) if any(exact) else None
+        fit_power_law(marks, truncation, split.noise["truncation"], motion)
+        if any(truncation)
+        else None
     )
     if half:
         times = f"{log10(last.norm / sizes[0].norm):.1f}"
@@ -102,7 +104,7 @@ def tangent_growth(split: Split, sizes: Sequence[Size], start: Start, steps: int
         at_half_step=_short(half.rate) if half and half.rate is not None else None,
         law=PowerLawResult(**law.fields),
         law_of_areas=PowerLawResult(**law_of_areas.fields),
-        per_area=decimal(exact[-1] / areas[-1], 3),
+        per_area=decimal(truncation[-1] / areas[-1], 3),
         meaning=meaning,
     )
 
@@ -115,10 +117,10 @@ def _describe_exponential(times: str, rate: float, half: HalfStep, vanishes: boo
     )  # fmt: skip
     if vanishes:
         return prose(growth, "; S ≡ 0 is proved, so that all of W is rounding, which M magnifies")
-    again = prose(", and with half the step size the orbit leaves the range")
+    half_step = prose(", and with half the step size the orbit leaves the range")
     if half.rate is not None:
-        again = prose(", and of ", Number(_short(half.rate)), " with half the step size")
-    return prose(growth, again, _SO_W, _WHOSE[half.cause])
+        half_step = prose(", and of ", Number(_short(half.rate)), " with half the step size")
+    return prose(growth, half_step, _SO_W, _WHOSE[half.cause])
 
 
 def _describe_power(law_of_w: PowerLaw | None, law: PowerLaw, motion: Motion) -> Prose:

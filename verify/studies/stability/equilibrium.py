@@ -7,9 +7,9 @@ coefficients, which are isolated exactly.
 Where that part is T(p) + V(q), and both are positive definite, a linear change of p and of q takes
 it to a sum of oscillators (p² + ω²q²)/2. Our schemes do the same in the new coordinates, since they
 treat all p alike and all q alike; so powers of a step stay bounded up to that h with which the
-greatest ω reaches the end of the scheme's interval in hω (`verify.studies.stability.linear`).
-Otherwise it is decided for a given h, by the matrix of a step
-(`verify.studies.stability.step_matrix`).
+greatest ω reaches the end of the scheme's interval in hω
+(`verify.studies.stability.linear_stability`). Otherwise it is decided for a given h, by the matrix
+of a step (`verify.studies.stability.step_matrix`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,11 +24,11 @@ from verify.arithmetic.exact import known_digits
 from verify.effort import limit_effort
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import check_start, shown_of
+from verify.hamiltonians.run_domain import check_start, coordinate_texts
 from verify.schemes import get
-from verify.studies.stability.linear import LinearStability, NearbyLimit
-from verify.studies.stability.nearby_linear import linear_stability
+from verify.studies.stability.linear_stability import LinearStability, NearbyLimit
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
+from verify.studies.stability.scheme_interval import linear_stability
 from verify.studies.stability.step_matrix import stays_bounded, step_matrix
 
 _DIGITS = 30
@@ -64,7 +64,7 @@ class LinearAtEquilibrium:
     `frequencies`: from the smallest on; less than n of them, with multiplicities, where motion
     near the equilibrium is not oscillation alone. `interval`: of hω, where H's quadratic part is a
     sum of oscillators; else None. `decided`: for each requested h True if powers of a step stay
-    bounded, False if not, None where it is not decided.
+    bounded, False if not, None if it is not decided.
     """
 
     scheme: str
@@ -127,9 +127,11 @@ def linear_at_equilibrium(
 ) -> LinearAtEquilibrium:
     """Return the linear stability of a scheme at the equilibrium `point`, by coordinates' names.
 
-    Raises InputError where H depends on time or a parameter has no value, where the point is none,
-    for second derivatives that are not rational, and where only step sizes could be decided and
-    none is given.
+    `step_sizes`: for each of them it is decided if powers of a step's matrix stay bounded.
+
+    Raises InputError if H depends on time or a parameter has no value, if the point is none, for
+    second derivatives that are not rational, and if only step sizes could be decided and none is
+    given.
     """
     if get(scheme).formulas:
         raise InputError("scheme", scheme, "is a formula; linear theory takes a named scheme")
@@ -159,20 +161,20 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
         name = hamiltonian.symbols[0]
         raise InputError("parameter", name, f"has no value; give one, as {name}=1")
     names = [symbol(name) for name in hamiltonian.coordinates]
-    q, p = (shown_of(hamiltonian, point, letter) for letter in "qp")
+    q, p = (coordinate_texts(hamiltonian, point, letter) for letter in "qp")
     check_start(hamiltonian, q, p)
     point_values = {z: sympy.Rational(*point[z.name].as_integer_ratio()) for z in names}
     second_derivatives = flint.fmpq_mat(len(names), len(names))
     for i, z in enumerate(names):
         slope = sympy.diff(hamiltonian.exact, z)
         _check_equilibrium(slope, point_values, z.name)
-        for j, other in enumerate(names):
-            if other in slope.free_symbols:
-                second = _evaluate(sympy.diff(slope, other), point_values)
+        for j, partner in enumerate(names):
+            if partner in slope.free_symbols:
+                second = _evaluate(sympy.diff(slope, partner), point_values)
                 if not second.is_Rational:
-                    what = f"∂²H/∂{z.name}∂{other.name}"
+                    second_name = f"∂²H/∂{z.name}∂{partner.name}"
                     raise InputError(
-                        what, str(second), "is not rational there; --linear needs that"
+                        second_name, str(second), "is not rational there; --linear needs that"
                     )
                 second_derivatives[i, j] = flint.fmpq(int(second.p), int(second.q))
     return second_derivatives

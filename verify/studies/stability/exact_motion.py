@@ -1,7 +1,7 @@
 """The exact motion that a run is compared with.
 
-In the plane it is followed until it closes (`verify.flows.orbit`), in n degrees of freedom beside a
-neighbour, which shows how fast the two part.
+In the plane it is followed until it closes (`verify.flows.exact_orbit`), in n degrees of freedom
+beside a neighbour, which shows how fast the two part.
 
 There the flow is followed with 24 digits from one time to the next, and so is a neighbour that
 starts 10⁻¹² of the reach away: their distance, by the first one, is what the tangent map does to
@@ -17,9 +17,9 @@ from math import log, pi
 from typing import ClassVar
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import Flow, NoFlowError
-from verify.flows.functions import functions_at
-from verify.flows.orbit import exact_orbit
+from verify.flows.compiled_functions import functions_at
+from verify.flows.exact_orbit import exact_orbit
+from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.flows.orbit_search import ExactOrbit, Kind
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -42,7 +42,7 @@ class Sensitivity:
     """The growth of a small distance between neighbours.
 
     `exponent`: (1/t) ln of the factor by which it has grown, over the `time` in which it was small.
-    `exponential`: True if it grows exponentially; None where the time is too short to decide.
+    `exponential`: True if it grows exponentially; None if the time is too short to decide.
     """
 
     exponent: float
@@ -83,13 +83,13 @@ class ExactMotion(ExactOrbit):
 
     @property
     def is_sensitive(self) -> bool | None:
-        """True if it parts from its neighbours exponentially; None where that is not decided."""
+        """True if it parts from its neighbours exponentially; None if that is not decided."""
         return None if self.sensitivity is None else self.sensitivity.exponential
 
     @cached_property
     def frequency(self) -> Fraction:
         """The greatest ω, to some three digits: the greatest imaginary part of an eigenvalue of the
-        field's Jacobian, in float64, at the states; 0 where nothing oscillates."""
+        field's Jacobian, in float64, at the states; 0 if nothing oscillates."""
         import numpy as np
 
         field, _ = canonical_field(self.hamiltonian)
@@ -118,9 +118,9 @@ def displace(state: State, reach: State, part: Fraction) -> State:
     )
 
 
-def distance(one: State, other: State, reach: State) -> float:
+def distance(state: State, neighbour: State, reach: State) -> float:
     """Return the greatest difference of a coordinate, in parts of its reach."""
-    return max(float(abs(x - y) / r) for x, y, r in zip(one, other, reach, strict=True))
+    return max(float(abs(x - y) / r) for x, y, r in zip(state, neighbour, reach, strict=True))
 
 
 def exact_motion(
@@ -137,7 +137,7 @@ def exact_motion(
 def _follow_with_neighbour(
     hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
 ) -> ExactMotion:
-    search = _Search(hamiltonian, state, time, t0)
+    search = _FlowAtTimes(hamiltonian, state, time, t0)
     try:
         points = search.follow(state)
     except NoFlowError as error:
@@ -149,9 +149,9 @@ def _follow_with_neighbour(
         return search.build_motion("escapes", read_prose(summary), points)
     kind: Kind = "driven" if hamiltonian.time_dependent else "bounded"
     motion = search.build_motion(kind, prose(), points)
-    near = displace(state, motion.reach, _NEAR)
+    displaced = displace(state, motion.reach, _NEAR)
     try:
-        neighbour = search.follow(near)
+        neighbour = search.follow(displaced)
     except NoFlowError:
         return search.build_motion(kind, prose("is followed; a neighbour is not"), points)
     pairs = zip(points, neighbour, strict=True)
@@ -171,19 +171,21 @@ def _describe_sensitivity(sensitivity: Sensitivity) -> Prose:
     return read_prose(f"{says[sensitivity.exponential]} (`{rate}`)")
 
 
-class _Search:
+class _FlowAtTimes:
+    """The exact flow from one time to the next, from a state and from its neighbours."""
+
     def __init__(
         self, hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
     ) -> None:
         field, _ = canonical_field(hamiltonian)
         self.hamiltonian = hamiltonian
-        self.flow, self.t0, self.state = Flow(field, _DIGITS), t0, state
+        self.flow, self.t0, self.state = NumericalFlow(field, _DIGITS), t0, state
         self.part = time / _TIMES
         self.times = [float(k * self.part) for k in range(_TIMES + 1)]
         self.speeds: list[State] = []
 
     def follow(self, state: State) -> list[State]:
-        """Return the states at the times. Raises NoFlowError where the motion ends on the way."""
+        """Return the states at the times. Raises NoFlowError if the motion ends on the way."""
         flow, size = self.flow, len(state)
         start = (*state, self.t0) if flow.timed else state
         z, points = tuple(map(flow.number, start)), [state]
@@ -228,12 +230,13 @@ class _Search:
 
     def _fastest(self, points: Sequence[State]) -> list[Fraction]:
         """Return the greatest |z'| of each coordinate at the points."""
-        flow, exact = self.flow, self.flow.arithmetic.exact
+        flow, to_rational = self.flow, self.flow.arithmetic.exact
         speeds = []
         for k, point in enumerate(points):
             start = (*point, self.t0 + k * self.part) if flow.timed else point
             try:
-                speeds.append([abs(exact(x)) for x in flow.slope(tuple(map(flow.number, start)))])
+                slope = flow.slope(tuple(map(flow.number, start)))
+                speeds.append([abs(to_rational(x)) for x in slope])
             except NoFlowError:
                 continue
         return [max(x) for x in zip(*speeds, strict=True)] or [Fraction(0)] * len(points[0])

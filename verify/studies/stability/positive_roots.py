@@ -24,14 +24,14 @@ _BITS = 128
 
 @dataclass(frozen=True)
 class PositiveRoot:
-    """The positive root number `which`, from 1 upwards, of an irreducible polynomial."""
+    """The positive root with this `number`, from 1 upwards, of an irreducible polynomial."""
 
     polynomial: flint.fmpz_poly
-    which: int
+    number: int
 
     def describe(self, variable: str) -> str:
         """Return the root in words, with the polynomial in that variable."""
-        return f"positive root {self.which} of {self._in(sympy.Symbol(variable)).as_expr()}"
+        return f"positive root {self.number} of {self._in(sympy.Symbol(variable)).as_expr()}"
 
     def closed_form(self) -> sympy.Expr | None:
         """Return the root of a quadratic or a binomial polynomial in closed form; else None."""
@@ -39,13 +39,13 @@ class PositiveRoot:
         if self.polynomial.degree() > 2 and terms > 2:
             return None
         roots = answer_unless_long(lambda: self._in(sympy.Dummy()).real_roots(), None)
-        return roots and sorted(x for x in roots if x > 0)[self.which - 1]
+        return roots and sorted(x for x in roots if x > 0)[self.number - 1]
 
     def decimal(self, digits: int) -> str:
         """Return the root rounded to so many significant digits; it must not be rational."""
         bits = 4 * digits + _BITS
         while True:
-            ends = bounds(_enclosures(self.polynomial, bits)[self.which - 1])
+            ends = bounds(_enclosures(self.polynomial, bits)[self.number - 1])
             low, high = (str(sympy.Rational(x.numerator, x.denominator).n(digits)) for x in ends)
             if low == high:
                 return low
@@ -60,7 +60,7 @@ def positive_roots(
 ) -> list[tuple[PositiveRoot, tuple[Fraction, Fraction]]]:
     """Return the positive roots of all polynomials in order, in intervals that do not meet.
 
-    >>> [root.which for root, _ in positive_roots([flint.fmpz_poly([-2, 0, 1])])]
+    >>> [root.number for root, _ in positive_roots([flint.fmpz_poly([-2, 0, 1])])]
     [1]
     """
     factors = [g for f in polynomials for g, _ in f.factor()[1] if g.degree() > 0]
@@ -68,7 +68,7 @@ def positive_roots(
     bits = _BITS
     while True:
         roots = [(x, g, n) for g in different for n, x in enumerate(_enclosures(g, bits), 1)]
-        roots.sort(key=lambda one: bounds(one[0])[0])
+        roots.sort(key=lambda entry: bounds(entry[0])[0])
         # Balls that overlap do not decide an order: distinct roots separate with enough bits.
         if all(x < y for (x, _, _), (y, _, _) in pairwise(roots)):
             return [(PositiveRoot(g, n), bounds(x)) for x, g, n in roots]

@@ -3,35 +3,39 @@
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at
+from verify.flows.compiled_functions import functions_at
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.prose import Number, Prose, prose, read_prose
-from verify.studies.stability.trail import Run
+from verify.studies.stability.trail import StabilityRun
 
 _DIGITS = 120
 _NEWTON = 12
 _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 
 
-def describe_rounded_start(run: Run) -> Prose:
+def describe_rounded_start(run: StabilityRun) -> Prose:
     """Describe how float64 rounds the initial value, and an equilibrium it takes it for, if any."""
     sentences = Prose()
     for name, value in zip(("q", "p"), reversed(run.state), strict=True):
         gap = abs(Fraction(float(value)) - value)
         if gap:
             sentences += prose(f"; it rounds {name}0 by ", Number(f"{float(gap):.1e}"))
-    rest = nearest_equilibrium(run)
-    if rest is not None and all(float(x) == float(y) for x, y in zip(rest, run.state, strict=True)):
-        distance = max(abs(x - y) for x, y in zip(rest, run.state, strict=True))
-        far = f"`{float(distance):.1e}`"
-        sentences += read_prose(f" and cannot tell z0 from an equilibrium, which is {far} away")
+    equilibrium = nearest_equilibrium(run)
+    if equilibrium is not None and all(
+        float(x) == float(y) for x, y in zip(equilibrium, run.state, strict=True)
+    ):
+        distance = max(abs(x - y) for x, y in zip(equilibrium, run.state, strict=True))
+        distance_text = f"`{float(distance):.1e}`"
+        sentences += read_prose(
+            f" and cannot tell z0 from an equilibrium, which is {distance_text} away"
+        )
     return sentences
 
 
-def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
+def nearest_equilibrium(run: StabilityRun) -> tuple[Fraction, Fraction] | None:
     """Find a zero (p, q) of H's gradient very near to the initial value, by Newton's method.
 
-    None where there is none, or H depends on time.
+    None if there is none, or H depends on time.
     """
     if run.hamiltonian.time_dependent:
         return None

@@ -42,6 +42,7 @@ class LinearAlgebra(StepAlgebra[Row]):
 
     @property
     def size(self) -> int:
+        """The number 2n of coordinates."""
         return self.matrix.nrows()
 
     @property
@@ -50,6 +51,7 @@ class LinearAlgebra(StepAlgebra[Row]):
 
     @property
     def nothing(self) -> Row:
+        """The row of the function 0."""
         return flint.fmpq_mat(1, self._width)
 
     def unit(self, k: int) -> Row:
@@ -111,8 +113,8 @@ def step_matrix(
 ) -> flint.fmpq_mat | None:
     """Return M of a step of z' = `matrix` z, the field of a quadratic H.
 
-    None where the scheme has irrational coefficients. Raises InputError for a scheme given by
-    formulas, and where the scheme does not take H.
+    None if the scheme has irrational coefficients. Raises InputError for a scheme given by
+    formulas, and if the scheme does not take H.
     """
     chosen = get(scheme)
     step = chosen.step_map(hamiltonian).step or getattr(chosen.every_h, "changes", None)
@@ -131,7 +133,7 @@ def step_matrix(
 def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
     """Return True if all powers of M stay bounded, exactly.
 
-    None where balls do not decide a size.
+    None if balls do not decide a size.
     """
     # The roots of the reversed polynomial are the inverses.
     c = matrix.charpoly()
@@ -147,12 +149,12 @@ def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
 
 def _is_root(polynomial: flint.fmpq_poly, matrix: flint.fmpq_mat) -> bool:
     """Return True if the polynomial is 0 at the matrix: its simple roots have no Jordan blocks."""
-    one = matrix * 0
+    identity = matrix * 0
     for k in range(matrix.nrows()):
-        one[k, k] = flint.fmpq(1)
+        identity[k, k] = flint.fmpq(1)
     total = matrix * 0
     for coefficient in reversed(polynomial.coeffs()):
-        total = total * matrix + one * coefficient
+        total = total * matrix + identity * coefficient
     return bool(total == matrix * 0)
 
 
@@ -179,15 +181,15 @@ def _all_inside(polynomial: flint.fmpq_poly) -> bool | None:
 
 def _all_of_size_one(polynomial: flint.fmpq_poly) -> bool:
     """Return True if all roots of a polynomial with root pairs x, 1/x are of size 1."""
-    rest = _squarefree(polynomial)
-    for one in (1, -1):
-        if rest.degree() > 0 and rest(flint.fmpq(one)) == 0:
-            rest = rest // flint.fmpq_poly([-one, 1])
-    if rest.degree() < 1:
+    quotient = _squarefree(polynomial)
+    for root in (1, -1):
+        if quotient.degree() > 0 and quotient(flint.fmpq(root)) == 0:
+            quotient = quotient // flint.fmpq_poly([-root, 1])
+    if quotient.degree() < 1:
         return True
     # A pair is of size 1 exactly where x + 1/x is real and in [−2, 2]: then 2 − y and y − 2 put in
     # for x + 1/x have as many positive roots as g has roots, with multiplicity one each.
-    sums = _polynomial_of_sums(rest)
+    sums = _polynomial_of_sums(quotient)
     below, above = (sums(flint.fmpq_poly(line)).numer() for line in ([2, -1], [-2, 1]))
     return len(positive_roots([below])) == len(positive_roots([above])) == sums.degree()
 

@@ -31,8 +31,8 @@ State = tuple[Fraction, ...]  # p and q; p1 … pn, q1 … qn
 
 
 @dataclass(frozen=True)
-class Run:
-    """The first N steps from a state, p and q or p1 … qn, at t0 where H depends on time."""
+class StabilityRun:
+    """The first N steps from a state, p and q or p1 … qn, at t0 if H depends on time."""
 
     hamiltonian: Hamiltonian
     scheme: str
@@ -43,6 +43,7 @@ class Run:
 
     @property
     def time(self) -> Fraction:
+        """The length N·h of the run."""
         return self.steps * self.step_size
 
     @property
@@ -51,15 +52,17 @@ class Run:
         point = dict(zip(self.hamiltonian.coordinates, self.state, strict=True))
         return {**point, "h": self.step_size, "t": self.t0}
 
-    def onwards(self, state: State, step: int, steps: int) -> "Run":
+    def onwards(self, state: State, step: int, steps: int) -> "StabilityRun":
+        """Return the run of so many steps from `state`, which is that after `step` of its steps."""
         t0 = self.t0 + step * self.step_size
         return replace(self, state=state, steps=steps, t0=t0)
 
-    def with_steps(self, steps: int) -> "Run":
+    def with_steps(self, steps: int) -> "StabilityRun":
+        """Return the run from the same start with another number of steps."""
         return replace(self, steps=steps)
 
 
-class Point(NamedTuple):
+class TrailPoint(NamedTuple):
     """The state after so many steps, as the exact numbers that it has, in gmpy2's rationals."""
 
     step: int
@@ -67,7 +70,7 @@ class Point(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Trail:
+class RunTrail:
     """States of a run in an arithmetic, at its start and after every so many steps, the last ones
     perhaps fewer; `done` of its steps stayed in the arithmetic's range.
 
@@ -75,38 +78,41 @@ class Trail:
     rationals: any two of them are compared exactly, ten times as fast as Fractions are.
     """
 
-    run: Run
+    run: StabilityRun
     arithmetic: Arithmetic
     every: int
     columns: tuple[tuple[Any, ...], ...]
     done: int
 
     @cached_property
-    def points(self) -> tuple[Point, ...]:
+    def points(self) -> tuple[TrailPoint, ...]:
+        """The start and the state after each stretch."""
         return tuple(map(self.point, range(len(self.columns[0]))))
 
-    def point(self, index: int) -> Point:
+    def point(self, index: int) -> TrailPoint:
         """Return the point after so many stretches; −1 for the last one."""
         index %= len(self.columns[0])
         state = tuple(quotient(column[index]) for column in self.columns)
-        return Point(min(index * self.every, self.steps), state)
+        return TrailPoint(min(index * self.every, self.steps), state)
 
     @property
     def steps(self) -> int:
+        """The number of steps of the run, of which `done` were done."""
         return self.run.steps
 
     @property
     def is_finished(self) -> bool:
+        """True if no step left the arithmetic's range."""
         return self.done == self.steps
 
-    def onwards(self, point: Point, steps: int) -> "Trail":
+    def onwards(self, point: TrailPoint, steps: int) -> "RunTrail":
         """Follow so many steps from one of its points more closely."""
         state = tuple(map(fraction, point.state))
         return follow(self.run.onwards(state, point.step, steps), self.arithmetic)
 
 
-def follow(run: Run, arithmetic: Arithmetic) -> Trail:
-    """Follow the run in this arithmetic. Raises UnsupportedError where that lacks a function."""
+def follow(run: StabilityRun, arithmetic: Arithmetic) -> RunTrail:
+    """Follow the run in this arithmetic. Raises UnsupportedError if that lacks a function."""
     arguments = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
     kernel_run = KernelRun(*arguments, sections=_sections(run.steps))
     outcome = kernel_run.run(arithmetic)
@@ -116,7 +122,7 @@ def follow(run: Run, arithmetic: Arithmetic) -> Trail:
         if arithmetic.absolute:  # of fixed point, which gmpy2 does not know
             numbers = tuple(quotient(arithmetic.exact(x)) for x in numbers)
         columns.append((quotient(first), *numbers))
-    return Trail(run, arithmetic, kernel_run.section, tuple(columns), outcome.done)
+    return RunTrail(run, arithmetic, kernel_run.section, tuple(columns), outcome.done)
 
 
 @lru_cache(maxsize=256)
@@ -131,7 +137,7 @@ def _sections(steps: int) -> int:
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), target)
 
 
-def follow_precisely(run: Run, digits: int) -> Trail:
+def follow_precisely(run: StabilityRun, digits: int) -> RunTrail:
     """Follow the run to so many digits, compiled where that repays.
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
@@ -148,10 +154,10 @@ def follow_precisely(run: Run, digits: int) -> Trail:
     return follow(run.with_steps(min(run.steps, MOST_INTERPRETED)), last.make(digits))
 
 
-def find_first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:
+def find_first_step(trail: RunTrail, happens: Callable[[TrailPoint], bool]) -> int | None:
     """Find the first step after which it happens, at the trail's points and then between them.
 
-    A run that leaves its range does so at the step after the last that is done. None where neither
+    A run that leaves its range does so at the step after the last that is done. None if neither
     is seen.
     """
     before = trail.points[0]
@@ -163,24 +169,26 @@ def find_first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | Non
         before = point
     if trail.is_finished:
         return None
-    rest = trail.done - before.step
-    step = _find_first_step_from(trail, before, rest, happens) if rest else None
+    remaining = trail.done - before.step
+    step = _find_first_step_from(trail, before, remaining, happens) if remaining else None
     return trail.done + 1 if step is None else step
 
 
 def _find_first_step_from(
-    trail: Trail, before: Point, steps: int, happens: Callable[[Point], bool]
+    trail: RunTrail, before: TrailPoint, steps: int, happens: Callable[[TrailPoint], bool]
 ) -> int | None:
     """Find the step within so many steps from a point on the way."""
     step = find_first_step(trail.onwards(before, steps), happens)
     return None if step is None else before.step + step
 
 
-def find_first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], bool]) -> int | None:
-    """Find the first step after which two trails of one run are apart; None where none is seen."""
+def find_first_apart(
+    trail: RunTrail, other_trail: RunTrail, apart: Callable[[TrailPoint, TrailPoint], bool]
+) -> int | None:
+    """Find the first step after which two trails of one run are apart; None if none is seen."""
     offset = 0
     while True:
-        pairs = list(zip(one.points, other.points, strict=False))
+        pairs = list(zip(trail.points, other_trail.points, strict=False))
         index = next((k for k, pair in enumerate(pairs) if apart(*pair)), None)
         if index is None:
             return None
@@ -193,4 +201,4 @@ def find_first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], b
         if length == 1:
             return offset + step
         offset += x.step
-        one, other = one.onwards(x, length), other.onwards(y, length)
+        trail, other_trail = trail.onwards(x, length), other_trail.onwards(y, length)

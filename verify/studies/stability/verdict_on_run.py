@@ -12,7 +12,7 @@ blame:
 - float64 alone does: `overflow` or `underflow`.
 
 High precision is trusted where twice as many digits agree. A bounded run is `stable`, or `drifts`
-(see `verify.studies.stability.energy_drift`). `verify.studies.stability.run_motion` defines the
+(see `verify.studies.stability.run_motion`). `verify.studies.stability.run_motion` defines the
 bounds, and when two runs are apart.
 
 In n degrees of freedom the motion may be sensitive, chaotic or near an unstable orbit, where
@@ -36,12 +36,11 @@ from verify.arithmetic.systems import mpfr
 from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
-from verify.studies.stability.energy_drift import find_drift, is_too_short
 from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.rounded_start import describe_rounded_start
-from verify.studies.stability.run_motion import RunMotion, float64
+from verify.studies.stability.run_motion import RunMotion, find_drift, float64, is_too_short
 from verify.studies.stability.trail import (
-    Trail,
+    RunTrail,
     find_first_apart,
     find_first_step,
     follow,
@@ -90,18 +89,18 @@ def judge(motion: RunMotion) -> RunJudgement:
 
 def _judge_leaving(motion: RunMotion) -> RunJudgement:
     digits = 2 * motion.digits
-    again = follow_precisely(motion.run, digits)
-    step = find_first_step(again, motion.is_beyond)
+    finer_trail = follow_precisely(motion.run, digits)
+    step = find_first_step(finer_trail, motion.is_beyond)
     if step is None:
         detail = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
         return RunJudgement("undecided", detail)
-    where = f"at step {step}, in {motion.digits} and in {digits} digits"
+    place_text = f"at step {step}, in {motion.digits} and in {digits} digits"
     if not isinstance(motion.orbit, ExactMotion):
         return RunJudgement(
-            "unstable: scheme", _describe_end(motion, again, step, where), step=step
+            "unstable: scheme", _describe_end(motion, finer_trail, step, place_text), step=step
         )
-    detail = prose(f"the scheme leaves the bounds {where}")
-    errors = motion.energy_errors(again)[: sum(x.step < step for x in again.points)]
+    detail = prose(f"the scheme leaves the bounds {place_text}")
+    errors = motion.energy_errors(finer_trail)[: sum(x.step < step for x in finer_trail.points)]
     worst = fraction(max((abs(x) for x in errors if x is not None), default=0))
     if not motion.orbit.is_sensitive or worst > _KEPT:
         return RunJudgement("unstable: scheme", detail, step=step)
@@ -109,21 +108,25 @@ def _judge_leaving(motion: RunMotion) -> RunJudgement:
     return RunJudgement("sensitive", detail, step=step, energy_error=worst)
 
 
-def _describe_end(motion: RunMotion, again: Trail, step: int, where: str) -> Prose:
+def _describe_end(motion: RunMotion, finer_trail: RunTrail, step: int, place_text: str) -> Prose:
     """Describe how the scheme's run ends, and float64's."""
     solves_equations = get(motion.run.scheme).step_map(motion.run.hamiltonian).implicit
     # An implicit scheme may fail at the step after the last one done, as its equations then have no
     # solution, and not as the orbit leaves.
-    lacks_solution = solves_equations and not again.is_finished and step == again.done + 1
+    lacks_solution = (
+        solves_equations and not finer_trail.is_finished and step == finer_trail.done + 1
+    )
     does = "finds no solution of its equations" if lacks_solution else "leaves the bounds"
-    sentences = prose(f"the scheme {does} {where}")
+    sentences = prose(f"the scheme {does} {place_text}")
     if not motion.float64.is_finished:
         ends = "goes no further" if solves_equations else "is out of its range"
         sentences += f"; float64 {ends} from step {motion.float64.done + 1} on"
     return sentences
 
 
-def _describe_parting(motion: RunMotion, precise: Trail, where: str) -> tuple[Prose, int | None]:
+def _describe_parting(
+    motion: RunMotion, precise: RunTrail, digits_text: str
+) -> tuple[Prose, int | None]:
     """Say that float64 parts from the scheme in high precision.
 
     Return the sentence and the step.
@@ -131,23 +134,23 @@ def _describe_parting(motion: RunMotion, precise: Trail, where: str) -> tuple[Pr
     here = motion.float64_as_far
     step = find_first_apart(here, precise, motion.are_apart)
     when = f"at step {step}" if step is not None else f"before step {here.done + 1}"
-    return prose(f"float64 parts {when} from the same scheme in {where} digits"), step
+    return prose(f"float64 parts {when} from the same scheme in {digits_text} digits"), step
 
 
-def _judge_by_neighbours(motion: RunMotion, exact: ExactMotion) -> RunJudgement:
+def _judge_by_neighbours(motion: RunMotion, exact_motion: ExactMotion) -> RunJudgement:
     """Judge a run that float64 and high precision part in, as exact neighbours may, too."""
     detail, step = _describe_parting(motion, motion.precise, str(motion.digits))
     kind: Kind = "unstable: arithmetic"
-    if exact.is_sensitive is None:
+    if exact_motion.is_sensitive is None:
         kind = "undecided"
-    elif exact.is_sensitive:
+    elif exact_motion.is_sensitive:
         kind = "sensitive"
     # The exact motion parts from its neighbours slowly and the scheme's own map does not: the
     # sensitivity comes from the scheme.
     elif motion.sensitivity.exponential:
         kind, rate = "unstable: scheme", f"{motion.sensitivity.exponent:.2g}"
         detail += read_prose(f"; so do neighbours of its own orbit (`{rate}` in a unit of time)")
-    detail += prose("; the exact solution ", exact.summary)
+    detail += prose("; the exact solution ", exact_motion.summary)
     return RunJudgement(kind, detail, step=step, energy_error=motion.worst(motion.precise))
 
 
@@ -158,29 +161,29 @@ def _judge_by_digits(motion: RunMotion) -> RunJudgement:
         detail = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
         return RunJudgement("undecided", detail)
     digits, precise = confirmation
-    which = f"{digits // 2} and in {digits}"
+    digits_text = f"{digits // 2} and in {digits}"
     if not motion.stays(precise):  # fewer digits did, by rounding
         step = find_first_step(precise, motion.is_beyond)
-        detail = prose(f"the scheme leaves the bounds, in {which} digits")
+        detail = prose(f"the scheme leaves the bounds, in {digits_text} digits")
         return RunJudgement("unstable: scheme", detail, step=step)
     if _is_range_to_blame(motion):
         return _judge_out_of_range(motion, here)
-    detail, step = _describe_parting(motion, precise, which)
+    detail, step = _describe_parting(motion, precise, digits_text)
     detail += describe_rounded_start(motion.run)
     if motion.orbit.kind == "driven":
         detail += _describe_sensitivity(motion, digits, precise)
     return RunJudgement("unstable: arithmetic", detail, step=step or here.done + 1)
 
 
-def _describe_sensitivity(motion: RunMotion, digits: int, precise: Trail) -> Prose:
+def _describe_sensitivity(motion: RunMotion, digits: int, precise: RunTrail) -> Prose:
     """Say so if a neighbour parts from the run without rounding, too.
 
     Driven ones may be chaotic.
     """
     p, q = motion.run.state
     state = p, q + _NEXT * (motion.orbit.reach[1] or 1)
-    near = follow_precisely(motion.run.onwards(state, 0, precise.steps), digits)
-    step = find_first_apart(near, precise, motion.are_apart)
+    neighbour = follow_precisely(motion.run.onwards(state, 0, precise.steps), digits)
+    step = find_first_apart(neighbour, precise, motion.are_apart)
     if step is None:
         return Prose()
     return prose(
@@ -189,17 +192,17 @@ def _describe_sensitivity(motion: RunMotion, digits: int, precise: Trail) -> Pro
     )
 
 
-def _confirm_run(motion: RunMotion) -> tuple[int, Trail] | None:
+def _confirm_run(motion: RunMotion) -> tuple[int, RunTrail] | None:
     """Return the digits at which two runs in high precision agree, and the second of them."""
     digits, last = motion.digits, motion.precise
     run = last.run
     while digits <= _MOST_DIGITS:
         # Twice the digits, since a chaotic orbit loses them in proportion to the time.
         digits *= 2
-        again = follow_precisely(run, digits)
-        if again.steps == last.steps and motion.stay_together(again, last):
-            return digits, again
-        last = again
+        finer_trail = follow_precisely(run, digits)
+        if finer_trail.steps == last.steps and motion.stay_together(finer_trail, last):
+            return digits, finer_trail
+        last = finer_trail
     return None
 
 
@@ -219,7 +222,7 @@ def _is_range_to_blame(motion: RunMotion) -> bool:
     return all(motion.stay_together(run, precise) for run in wide)
 
 
-def _judge_out_of_range(motion: RunMotion, here: Trail) -> RunJudgement:
+def _judge_out_of_range(motion: RunMotion, here: RunTrail) -> RunJudgement:
     if here.is_finished:
         detail = _describe_underflow(motion) or prose(
             "numbers vanish in float64 that wider exponents keep"
@@ -233,7 +236,7 @@ def _judge_out_of_range(motion: RunMotion, here: Trail) -> RunJudgement:
 
 
 def _describe_underflow(motion: RunMotion) -> Prose:
-    """Describe what underflow has taken of a bounded run; empty where it has taken nothing.
+    """Describe what underflow has taken of a bounded run; empty if it has taken nothing.
 
     p or q as a whole, either of which may be small beside the other one.
     """
@@ -249,8 +252,8 @@ def _describe_underflow(motion: RunMotion) -> Prose:
         gap = max(abs(x - y) for x, y in zip(true, remaining, strict=False))
         if gap > _LOST * size:
             share = "all" if not any(remaining) else Number(f"{float(gap / size):.1e}")
-            rest = f" of {name} vanishes in float64; 53 bits with wider exponents keep it"
-            return prose(share, rest)
+            sentence_end = f" of {name} vanishes in float64; 53 bits with wider exponents keep it"
+            return prose(share, sentence_end)
     return Prose()
 
 

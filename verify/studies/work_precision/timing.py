@@ -59,7 +59,7 @@ def time_interleaved(calls: Sequence[Call], rounds: int) -> list[RunTime]:
     finally:
         if collecting:
             gc.enable()
-    return [RunTime(min(each), median(each)) for each in seconds]
+    return [RunTime(min(call_seconds), median(call_seconds)) for call_seconds in seconds]
 
 
 def subtract_blank(time: RunTime, blank: RunTime) -> RunTime:
@@ -68,7 +68,7 @@ def subtract_blank(time: RunTime, blank: RunTime) -> RunTime:
 
 
 def subtract_or_none(time: RunTime, blank: RunTime) -> RunTime | None:
-    """Return the same, or None where the rest is below the blank call's time, and so noise."""
+    """Return the same, or None if the rest is below the blank call's time, and so noise."""
     net_time = subtract_blank(time, blank)
     return None if net_time.median < blank.least else net_time
 
@@ -82,11 +82,11 @@ def _count(call: Call) -> tuple[int, float]:
     call()
     count = 1
     while True:
-        each = _seconds(call, count)
-        if each * count >= _LEAST or count == _MOST_CALLS:
-            return count, each
+        seconds = _seconds(call, count)
+        if seconds * count >= _LEAST or count == _MOST_CALLS:
+            return count, seconds
         # Not all at once: a first timing may be slow by chance.
-        room = int(_LEAST / max(each, 1e-7 / count) / 2)
+        room = int(_LEAST / max(seconds, 1e-7 / count) / 2)
         count = min(_MOST_CALLS, max(2 * count, room))
 
 

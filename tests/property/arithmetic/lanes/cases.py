@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.helpers.fixed_checks import HARD, Near
 from tests.helpers.lanes import Both, number, same
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.vectors import LANES
 from verify.arithmetic.systems.fixed import functions
 
 WIDTHS = (128, 156, 192, 256, 320, 384, 448, 512)

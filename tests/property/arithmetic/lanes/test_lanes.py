@@ -117,12 +117,15 @@ def test_sines_of_float64_beside_fixed_numbers_have_the_bits_of_one_orbit(way: s
 OTHER_COUNT = """\
 import sys
 import pytest
-from verify.arithmetic import processor
+from llvmlite import binding
 
-processor.LANES = 12 - processor.LANES
-if processor.LANES == 4:  # the instructions of AVX-512 take eight
-    features = processor.features() | {"avx512ifma": False}
-    processor.features = lambda: features
+features = binding.get_host_cpu_features()  # as they are read for the number of lanes
+text = features.flatten()
+features.flatten = lambda: text
+features["avx512f"] = not features.get("avx512f", False)
+if not features["avx512f"]:  # the instructions of AVX-512 take eight
+    features["avx512ifma"] = False
+binding.get_host_cpu_features = lambda: features
 sys.exit(pytest.main(sys.argv[1:]))
 """
 

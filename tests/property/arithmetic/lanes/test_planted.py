@@ -19,11 +19,10 @@ from tests.property.arithmetic.lanes.cases import (
     operands,
     small_squares,
 )
-from verify.arithmetic.lanes import circle, exponential, multiply_add
+from verify.arithmetic.lanes import multiply_add, transcendentals
 from verify.arithmetic.lanes.functions import LaneFunctions
-from verify.arithmetic.lanes.numbers import Numbers
-from verify.arithmetic.lanes.vectors import CONDITIONS
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.numbers import FunctionValues, Numbers
+from verify.arithmetic.lanes.vectors import CONDITIONS, LANES
 
 
 @pytest.mark.left_to_ci
@@ -33,8 +32,8 @@ def test_lanes_that_never_ask_for_the_last_bit_are_caught(
 ) -> None:
     """Where all are taken to be sure, one in a thousand arguments or so is rounded otherwise; at
     156 bits one in some tens of thousands."""
-    monkeypatch.setattr(circle, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(circle, "_units_lost", lambda count: 0)
+    monkeypatch.setattr(transcendentals, "lost_by_one", lambda fraction: 0)
+    monkeypatch.setattr(transcendentals, "_lost_of_circle", lambda count: 0)
     pair = Both(FUNCTIONS["circle"], width, IN_LANES[0])
     draws = Draws(5)
     rows = [(number(draws.bits(width - 12), width),) for _ in range(count)]
@@ -55,7 +54,7 @@ def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
             exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
             most = max(most, abs(x.raw - exact) - Fraction(1, 2))
     # An ulp is 2^14 of the units in which it is counted.
-    assert most * 2**14 <= circle.lost_by_one(width - 16)
+    assert most * 2**14 <= transcendentals.lost_by_one(width - 16)
 
 
 def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
@@ -68,13 +67,15 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
         x = pair.of_one((number(raw, width),))
         y = finer.of_one((number(raw << width, 2 * width),))
         exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
-        lost = Fraction(circle.lost_by_one(width - 16), 2**14) * max(1, exact / 2 ** (width - 16))
+        lost = Fraction(transcendentals.lost_by_one(width - 16), 2**14) * max(
+            1, exact / 2 ** (width - 16)
+        )
         assert exact - 1 - lost <= x.raw <= exact + lost
 
 
 def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(circle, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(exponential, "_units_lost", lambda count: 0)
+    monkeypatch.setattr(transcendentals, "lost_by_one", lambda fraction: 0)
+    monkeypatch.setattr(transcendentals, "_lost_of_exponential", lambda count: 0)
     pair = Both(FUNCTIONS["exp"], 128, IN_LANES[0])
     draws = Draws(7)
     assert first_differing(pair, [(number(draws.bits(116), 128),) for _ in range(20_000)])
@@ -86,9 +87,10 @@ def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.Monk
 def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where what one orbit's function gives is thrown away, few values are wrong, or none."""
 
-    def zeros(self: LaneFunctions, b: ir.IRBuilder, *_: Any) -> tuple[Any, list[Any]]:
+    def zeros(self: LaneFunctions, b: ir.IRBuilder, *_: Any) -> FunctionValues:
         nothing = self.numbers.constant(0, self.numbers.size)
-        return ir.Constant(CONDITIONS, [1] * LANES), [nothing] * (2 if name == "circle" else 1)
+        valid = ir.Constant(CONDITIONS, [1] * LANES)
+        return FunctionValues([nothing] * (2 if name == "circle" else 1), valid)
 
     monkeypatch.setattr(LaneFunctions, "_one_by_one", zeros)
     pair = Both(FUNCTIONS[name], 128, IN_LANES[0])

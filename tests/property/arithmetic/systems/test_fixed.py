@@ -14,7 +14,7 @@ from tests.examples import drawn
 from tests.helpers import fixed_checks
 from tests.helpers.fixed_checks import HARD, WIDEST, WIDTHS, Near, Shape, format_of
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide import functions
+from verify.arithmetic.wide import table_series
 
 FORMATS = [format_of(width) for width in WIDTHS]
 ALL_FORMATS = [*FORMATS, format_of(WIDEST)]  # whose functions take long to compile
@@ -44,7 +44,7 @@ def near(step: str, most: int) -> st.SearchStrategy[Near]:
     return st.builds(Near, st.just(step), ks, tiny, st.integers(-2, 2))
 
 
-TURN, OCTAVE = functions._ANGLES, functions._OCTAVE  # table steps
+TURN, OCTAVE = table_series._ANGLES, table_series._OCTAVE  # table steps
 BEYOND = 2**15 * TURN // 6  # the range
 angles = near("angle", BEYOND) | near("angle", TURN * 5 // 4) | shapes
 powers = near("octave", OCTAVE * 70) | near("octave", 3 * OCTAVE) | shapes

@@ -21,7 +21,7 @@ from verify import arithmetic
 from verify.arithmetic.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic
 from verify.arithmetic.systems import fixed, float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 FLOATING = ("mpfr", "mpmath", "ball")
 quick = drawn(30)

@@ -18,14 +18,14 @@ from tests.helpers.fixed_checks import FRACTION_OF, HARD, Format, Near
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide import functions, limbs, newton, products
-from verify.arithmetic.wide.functions import Functions
+from verify.arithmetic.wide import limbs, newton, products, table_series
 from verify.arithmetic.wide.limbs import constant, limb, resize, shifted_up
 from verify.arithmetic.wide.size import WORD
+from verify.arithmetic.wide.table_series import Functions
 
 WIDTH = 256
 # Steps of the tables: of a turn, whose table is of a quarter, and of a factor 2.
-TURN, OCTAVE = functions._ANGLES, functions._OCTAVE
+TURN, OCTAVE = table_series._ANGLES, table_series._OCTAVE
 
 
 def fresh() -> Format:
@@ -173,8 +173,9 @@ def test_numbers_with_bits_less_than_promised_are_caught(
     true = limbs.product
 
     def coarse(b: Any, x: Any, y: Any, fraction: int) -> Any:
-        found, unsure = true(b, x, y, fraction)
-        return b.and_(found, constant(-(1 << bits), found.type.width)), unsure
+        near = true(b, x, y, fraction)
+        mask = constant(-(1 << bits), near.value.type.width)
+        return near._replace(value=b.and_(near.value, mask))
 
     monkeypatch.setattr(limbs, "product", coarse)
     assert_caught(operations)
@@ -196,13 +197,13 @@ def test_numbers_with_bits_less_than_promised_are_caught(
 def test_a_table_with_one_entry_a_little_off_is_caught(
     monkeypatch: pytest.MonkeyPatch, table: str, entry: int, kind: str
 ) -> None:
-    true, made = functions._table_of, getattr(functions, f"_{table}").__wrapped__
+    true, made = table_series._table_of, getattr(table_series, f"_{table}").__wrapped__
 
     def wrong(values: list[int], width: int) -> Any:
         return true([v + (k == entry) * 2**20 for k, v in enumerate(values)], width)
 
-    monkeypatch.setattr(functions, "_table_of", wrong)
-    monkeypatch.setattr(functions, f"_{table}", made)  # which is kept for other tests
+    monkeypatch.setattr(table_series, "_table_of", wrong)
+    monkeypatch.setattr(table_series, f"_{table}", made)  # which is kept for other tests
     assert_caught(function(kind))
 
 
@@ -236,15 +237,17 @@ def test_a_reduced_argument_without_its_further_bits_is_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A step to the format's last place: right for small arguments, and wrong for large ones."""
-    true = functions.arb_integer
+    true = table_series.arb_integer
 
     def short(value: Any, shift: int) -> int:
         if shift == WIDTH:  # that many steps which are added
-            return true(value / functions._SURELY_POSITIVE, shift) * functions._SURELY_POSITIVE
+            return (
+                true(value / table_series._SURELY_POSITIVE, shift) * table_series._SURELY_POSITIVE
+            )
         lost = WORD if shift == WIDTH + WORD else 0
         return true(value, shift - lost) << lost
 
-    monkeypatch.setattr(functions, "arb_integer", short)
+    monkeypatch.setattr(table_series, "arb_integer", short)
     assert_caught(function("sin"))
 
 

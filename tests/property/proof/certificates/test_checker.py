@@ -14,9 +14,9 @@ from tests.examples import drawn
 from tests.helpers.sampled.certificates import Data, certificates
 from verify.errors import InputError
 from verify.proof.certificates.balls import function, times
+from verify.proof.certificates.certificate_file import check_file
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import state_theorem
-from verify.proof.certificates.file import check_file
+from verify.proof.certificates.established_statement import state_theorem
 
 _FINE = Fraction(1, 2**500)
 

@@ -17,26 +17,26 @@ from tests.helpers.constructed.schemes import made_of, proof_of
 from tests.helpers.sampled.certificates import EVERY, Data, as_read
 from tests.helpers.sampled.formulas import rationals
 from verify.errors import InputError
-from verify.proof.certificates import every as certificate
+from verify.proof.certificates import certification as certificate
+from verify.proof.certificates.certificate_file import FORMAT, check_file
+from verify.proof.certificates.certification import certify_for_every_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import EstablishedStatement, state_theorem
-from verify.proof.certificates.every import certify_every
-from verify.proof.certificates.file import FORMAT, check_file
-from verify.proof.every import prove_every
-from verify.proof.every_proof import EveryProof
+from verify.proof.certificates.established_statement import EstablishedStatement, state_theorem
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.verdict import Verdict
 
 OF_ONE_H = "p_next = p - h*q; q_next = q + h*p_next"
-proofs = cache(prove_every)
+proofs = cache(prove_for_every_h)
 names = st.sampled_from(EVERY)
 verdicts = st.sampled_from([Verdict.PROVED, *Verdict])
 quick = drawn(40)
 
 
-def refused(proof: EveryProof) -> str:
+def refused(proof: ProofForEveryH) -> str:
     with pytest.raises(InputError) as found:
-        certify_every(proof)
+        certify_for_every_h(proof)
     return str(found.value)
 
 
@@ -53,7 +53,7 @@ def test_what_is_not_proved_for_every_h_has_no_certificate(
         convergence_order=proofs(name).convergence_order if ordered else None,
     )
     if verdict is Verdict.PROVED and of_every_h and ordered:
-        data = as_read(certify_every(proof))
+        data = as_read(certify_for_every_h(proof))
         said = state_theorem(check(data))
         assert data["format"] == FORMAT
         assert ("potential" in data) == bool(proof.telescopes)
@@ -74,7 +74,7 @@ def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(
     assert (proof.order, proof.telescopes) == ((4, False) if alpha == 1 else (3, True))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(certificate, "get", lambda _: made_of(generic, 2))
-        data = as_read(certify_every(proof))
+        data = as_read(certify_for_every_h(proof))
     said = state_theorem(check(data))
     assert ("T(p) + V(q)" in said.hamiltonian) == separable
     if alpha == 1:

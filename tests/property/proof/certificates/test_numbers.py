@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.proof.certificates.numbers import Number, Residues, read_numbers
+from verify.proof.certificates.named_numbers import AlgebraicNumber, QuotientRing, read_numbers
 from verify.proof.certificates.readers import Poly
 
 X, Y = sympy.symbols("x y")
@@ -67,10 +67,10 @@ def test_residues_are_the_remainders_by_both_polynomials(
     tails: tuple[list[int], list[int]], one: list[tuple[int, ...]], two: list[tuple[int, ...]]
 ) -> None:
     named = [
-        Number(name, (*tail, 2), Fraction(0), Fraction(1))
+        AlgebraicNumber(name, (*tail, 2), Fraction(0), Fraction(1))
         for name, tail in zip("xy", tails, strict=True)
     ]
-    residues = Residues(named)
+    residues = QuotientRing(named)
     found = residues.product(*(residues.reduce(made_of(each)) for each in (one, two)))
     relations = [
         sum((c * z**k for k, c in enumerate((*tail, 2))), sympy.S.Zero)

@@ -14,9 +14,9 @@ from verify.kernels.many_points import LeftRangeError
 from verify.scenes.shapes.outline import Outline
 from verify.scenes.shapes.user_outline import polygon
 from verify.schemes import get
-from verify.studies.regions.area import Goal
 from verify.studies.regions.mean_lambda import mean_over
 from verify.studies.regions.point_carriers import FloatCarrier
+from verify.studies.regions.region_area import Goal
 
 GOAL = Goal(change=Fraction(1, 10**5), area=Fraction(1, 10**13))
 schemes = st.sampled_from(["lie1", "lie2", "lie3"])

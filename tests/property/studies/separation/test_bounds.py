@@ -30,11 +30,10 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.studies.separation.chain import QUANTITIES, Chain
-from verify.studies.separation.separate import separate
-from verify.studies.separation.stepper.run import MixedRun, Stopped
-from verify.studies.separation.stepper.trail import Link
-from verify.studies.separation.ways.determinants import WORKING, Determinants, _bound_product
+from verify.studies.separation.chain import QUANTITIES, Chain, Link
+from verify.studies.separation.determinants import WORKING, Determinants, _bound_product
+from verify.studies.separation.mixed_run import MixedRun, Stopped
+from verify.studies.separation.truncation_and_rounding import separate
 
 few = drawn(10)
 some = drawn(14)

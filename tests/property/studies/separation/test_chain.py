@@ -13,12 +13,16 @@ from tests.examples import drawn
 from verify.arithmetic.exact import magnitude
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
-from verify.studies.separation.growth import find_crossover, select_log_spaced
-from verify.studies.separation.separate import as_grid, count_steps, separate, separate_grid
-from verify.studies.separation.stepper.run import marks_of
-from verify.studies.separation.stepper.trail import Kind, Link, Trail
-from verify.studies.separation.ways.determinants import POINTS
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Kind, Link, Trail
+from verify.studies.separation.determinants import POINTS
+from verify.studies.separation.growth_fits import find_crossover, select_log_spaced
+from verify.studies.separation.mixed_run import marks_of
+from verify.studies.separation.truncation_and_rounding import (
+    as_grid,
+    count_steps,
+    separate,
+    separate_grid,
+)
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))

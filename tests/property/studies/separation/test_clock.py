@@ -10,10 +10,10 @@ import mpmath
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_parts import PartsInTime
-from verify.studies.separation.separate import separate
+from verify.studies.separation.truncation_and_rounding import separate
 
 FORMULA = "p**2/2 - (1 + eps*cos(2*t))*cos(q)"
 STEPS = 400

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.studies.separation.growth import find_crossover, fit_growth, log, select_log_spaced
+from verify.studies.separation.growth_fits import find_crossover, fit_growth, log, select_log_spaced
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))

@@ -13,9 +13,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
 from verify.studies.separation.chain import QUANTITIES, Chain
-from verify.studies.separation.stepper.kernel import mixed_kernel
-from verify.studies.separation.stepper.run import MixedRun, Stopped
-from verify.studies.separation.ways.determinants import WORKING, Determinants
+from verify.studies.separation.determinants import WORKING, Determinants
+from verify.studies.separation.mixed_kernel import mixed_kernel
+from verify.studies.separation.mixed_run import MixedRun, Stopped
 
 few = drawn(10)
 

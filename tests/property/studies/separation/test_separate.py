@@ -13,7 +13,7 @@ from tests.helpers.sampled.separations import AreaChains, area_chains
 from tests.helpers.stepping.exact_separation import links
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
-from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.mixed_run import Stopped
 
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
 step_sizes = st.fractions(min_value="1/50", max_value="1/3", max_denominator=50)

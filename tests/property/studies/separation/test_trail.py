@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.studies.separation.stepper.trail import Trail
+from verify.studies.separation.chain import Trail
 
 quick = drawn(60)
 dyadic = st.builds(lambda n, k: Fraction(n, 2**k), st.integers(), st.integers(0, 300))

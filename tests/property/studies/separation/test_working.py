@@ -25,16 +25,15 @@ from tests.helpers.sampled.separations import (
 )
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
-from verify.execution.keeping import Keeper
+from verify.execution.keeper import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.runs.run import run
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
-from verify.studies.separation.separate import separate
-from verify.studies.separation.stepper.run import MixedRun
-from verify.studies.separation.stepper.trail import Link
-from verify.studies.separation.ways.determinants import WORKING, Determinants
+from verify.runs.requested_run import run
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Link
+from verify.studies.separation.determinants import WORKING, Determinants
+from verify.studies.separation.mixed_run import MixedRun
+from verify.studies.separation.truncation_and_rounding import separate
 
 few = drawn(10)
 some = drawn(14)

@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.stability import KINDS
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run
+from verify.studies.stability.trail import StabilityRun
 from verify.studies.stability.verdict_on_run import judge
 
 SIZES = st.builds(lambda n: Fraction(10) ** n, st.integers(-200, 100))
@@ -34,7 +34,7 @@ def test_every_case_ends_in_a_verdict(
     try:
         hamiltonian = Hamiltonian.parse(text)
         hamiltonian = hamiltonian.with_values(dict.fromkeys(hamiltonian.parameters, Fraction(1, 2)))
-        found = judge(RunMotion(Run(hamiltonian, scheme, h, (p, q), steps)))
+        found = judge(RunMotion(StabilityRun(hamiltonian, scheme, h, (p, q), steps)))
     except InputError:
         return  # no H, or one that the scheme does not take
     assert found.kind in KINDS
@@ -50,7 +50,7 @@ def test_below_their_limit_symplectic_schemes_are_stable_at_any_size_and_frequen
 ) -> None:
     hamiltonian = HARMONIC.with_values({"w": omega})
     h = 2 * Fraction(percent, 100) / omega
-    found = judge(RunMotion(Run(hamiltonian, scheme, h, (Fraction(0), size), 400)))
+    found = judge(RunMotion(StabilityRun(hamiltonian, scheme, h, (Fraction(0), size), 400)))
     # p is ω times as large as q; where either leaves float64's range that is the verdict.
     assert found.kind in ("stable", "overflow", "underflow")
     ordinary = all(Fraction(1, 10**100) < x < 10**100 for x in (size, omega, size * omega**2))
@@ -64,6 +64,6 @@ def test_beyond_it_the_scheme_is_to_blame_at_any_size_and_frequency(
 ) -> None:
     hamiltonian = HARMONIC.with_values({"w": omega})
     h = 2 * Fraction(percent, 100) / omega
-    found = judge(RunMotion(Run(hamiltonian, scheme, h, (Fraction(0), size), 400)))
+    found = judge(RunMotion(StabilityRun(hamiltonian, scheme, h, (Fraction(0), size), 400)))
     assert found.kind == "unstable: scheme"
     assert found.step is not None

@@ -6,12 +6,15 @@ from random import Random
 
 import flint
 import pytest
+import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from verify.algebra.formula import parse
 from verify.algebra.identities import signs
 from verify.algebra.identities.signs import definite_sign
+from verify.errors import InputError
 
 CONTEXT = flint.fmpq_mpoly_ctx.get(["a", "b", "c"], flint.Ordering.lex)
 MONOMIALS = st.tuples(*[st.integers(0, 4)] * 3)
@@ -70,3 +73,28 @@ def test_that_a_squared_distance_vanishes_somewhere_is_seen_without_a_search(
     assert definite_sign(u**2 + 1, Given(), strict=True) == 1
     monkeypatch.setattr(signs, "_definite_sign", lambda *_: pytest.fail("searched"))
     assert definite_sign(distance, Given(), strict=True) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "equal"),
+    [
+        ("sqrt((q**2-q+1)**2)", "q**2-q+1"),
+        ("sqrt((sin(q)-2)**2)", "2-sin(q)"),
+        ("sqrt((1+sin(q))**2*(p+1))", "sqrt(p+1)*(1+sin(q))"),
+        ("((q**2-q+1)**2)**(1/4)", "sqrt(q**2-q+1)"),
+        ("sqrt((p*q+p**2+q**2)**2)", "p**2+p*q+q**2"),
+        ("sqrt((-1-q**2)**2)", "1+q**2"),
+    ],
+)
+def test_the_root_of_a_square_of_what_has_one_sign_is_read(text: str, equal: str) -> None:
+    assert sympy.expand(parse(text) - parse(equal)) == 0
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["sqrt((q-1)**2)", "sqrt((exp(q)-1)**2)", "sqrt((1/2+sin(q))**2)", "sqrt((q**2-3*q+1)**2)",
+     "sqrt((p**2+3*p*q+q**2)**2)", "sqrt(((q**2-q+1)*p)**2)", "sqrt((delta+q**2)**2)"],
+)  # fmt: skip
+def test_of_what_may_have_either_it_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="not smooth"):
+        parse(text)

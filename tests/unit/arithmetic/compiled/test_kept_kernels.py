@@ -10,7 +10,7 @@ from verify.arithmetic.compiled import engine, native
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide.translate import Translator
+from verify.arithmetic.wide.translator import Translator
 from verify.code_cache import OFF, VARIABLE
 
 BITS = 176

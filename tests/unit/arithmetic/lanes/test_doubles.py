@@ -74,8 +74,10 @@ def test_points_have_the_bits_of_one(before: str, lines: list[str], steps: int) 
 def test_a_set_of_lanes_that_took_anothers_numbers_would_be_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    own = DoublesInLanes._place
-    monkeypatch.setattr(DoublesInLanes, "_place", lambda self, b, at, k, _: own(self, b, at, k, 0))
+    own = DoublesInLanes._address
+    monkeypatch.setattr(
+        DoublesInLanes, "_address", lambda self, b, at, k, _: own(self, b, at, k, 0)
+    )
     assert differing(source(*KERNELS["a sine alone"]), 3, seed=1)
 
 

@@ -11,9 +11,8 @@ from llvmlite import ir
 
 from verify.arithmetic.compiled import doubles, native
 from verify.arithmetic.lanes import libm_circle
-from verify.arithmetic.lanes.libm_circle import Pair
-from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, splat_double
-from verify.arithmetic.processor import LANES
+from verify.arithmetic.lanes.libm_circle import DoubleDouble
+from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, LANES, splat_double
 from verify.arithmetic.wide.limbs import Value, constant
 
 BOTH = "def kernel(steps, x, s, c):\n    for k in range(steps):\n{}    return steps, x, s, c\n"
@@ -259,7 +258,7 @@ def test_a_sine_near_0_has_its_own_room(monkeypatch: pytest.MonkeyPatch) -> None
 def test_beside_a_power_of_two_nothing_is_sure(high: float) -> None:
     def sure(b: ir.IRBuilder, x: Value) -> list[Value]:
         low = b.fmul(x, splat_double(2.0**-60))
-        return [libm_circle._round(b, Pair(x, low), splat_double(1.0))[1]]
+        return [libm_circle._round(b, DoubleDouble(x, low), splat_double(1.0))[1]]
 
     beside, other = called(sure)(np.array([high, high * 0.99] * (LANES // 2)))[0][:2]
     assert (beside, other) == (0, 1)

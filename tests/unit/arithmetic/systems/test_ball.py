@@ -25,7 +25,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
 from verify.runs import digits_on_demand
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
 

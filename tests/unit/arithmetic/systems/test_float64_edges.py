@@ -12,7 +12,7 @@ import pytest
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.runs.run import run
+from verify.runs.requested_run import run
 
 ASKED = frozenset({"lambda", "lambda_plain", "mse", "delta_j_max"})
 FORMULAS = [

@@ -20,8 +20,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
 from verify.runs.digits_on_demand import measure
-from verify.runs.float64 import bound_errors
-from verify.runs.run import run
+from verify.runs.float64_bounds import bound_errors
+from verify.runs.requested_run import run
 from verify.scenes.observables import REPORTED
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + 7*q**4/12")

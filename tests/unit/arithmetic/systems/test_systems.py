@@ -28,7 +28,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.commands.run import run as run_command
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.observables import REPORTED
 
 DIGITS = {"fixed": (17, 36)}  # to compile it for more takes long; tests/property has all widths

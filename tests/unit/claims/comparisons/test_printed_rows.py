@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from tests.helpers.constructed.runs import CLAIM, FLAT, STEP_SIZES, Given, check, growing
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.kinds.comparisons.printed_power import PrintedPowerClaim
 from verify.claims.kinds.comparisons.table_until import TableUntilClaim
 from verify.scenes.results.claim import ClaimResult

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from tests.helpers.constructed.runs import CLAIM, Given, check, growing
 from verify.arithmetic.arb import precision
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
 from verify.claims.kinds.comparisons.shifted import ShiftedClaim
 from verify.hamiltonians import systems
 from verify.scenes.scene import scene_from
@@ -49,7 +49,7 @@ def test_a_verdict_that_hangs_on_one_step_is_refuted() -> None:
 def test_the_other_count_is_that_of_the_run_itself_one_step_on(tmp_path: Any) -> None:
     """Λ and MSE over z_1 … z_N, by a run of N steps that starts at z_1."""
     from verify.claims.kinds.comparisons import shifted as module
-    from verify.runs.run import run
+    from verify.runs.requested_run import run
     from verify.studies.kinds.grid import grid_task
 
     exact, steps = systems.get("pendulum").hamiltonian(), 50

@@ -9,9 +9,9 @@ import pytest
 from pydantic import ValidationError
 
 from tests.helpers.constructed.runs import CLAIM, FLAT, STARTS, Given, check
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
+from verify.claims.claims_file import load_claims
 from verify.claims.kinds.comparisons.solution_error import SolutionErrorClaim
+from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.file import load_claims
-from verify.claims.judging import prepare
+from verify.claims.claims_file import load_claims
+from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

@@ -16,7 +16,7 @@ from tests.unit.exploration.properties.test_properties import (
 )
 from verify.exploration import properties
 from verify.exploration.sample import Sample
-from verify.flows.extrapolation import Flow
+from verify.flows.extrapolation import NumericalFlow
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import scene_from
 from verify.schemes import get
@@ -89,9 +89,9 @@ def blind(sample: Sample, patch: Patch) -> None:
 
 def half_a_flow(_: Sample, patch: Patch) -> None:
     """Forwards, by half the time."""
-    true = Flow.follow
+    true = NumericalFlow.follow
     patch.setattr(
-        Flow,
+        NumericalFlow,
         "follow",
         lambda self, z, time, most: true(self, z, time / 2 if time > 0 else time, most),
     )

@@ -14,7 +14,7 @@ from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane import growth_law as growth
 from verify.scenes.scene import scene_from
 from verify.schemes import get
@@ -138,7 +138,7 @@ def twice_the_potential(sample: Sample, patch: Patch) -> Sample:
 
 def blind(sample: Sample, patch: Patch) -> Sample:
     """A proof that never sees that an order is missed."""
-    from verify.proof.claimed import Convergence
+    from verify.proof.proof_for_one_h import Convergence
 
     assert sample.proof
     patch.setattr(Convergence, "misses", lambda self, claimed: False)
@@ -185,15 +185,15 @@ def half_a_flow(sample: Sample, patch: Patch) -> Sample:
 
 def values_too_large(sample: Sample, patch: Patch) -> Sample:
     """The averaged function by a thousandth larger along the orbit."""
-    from verify.flows.closed_orbit import Orbit
+    from verify.flows.closed_orbit import ClosedOrbit
 
-    true = Orbit.values
+    true = ClosedOrbit.values
 
-    def wrong(self: Orbit, g: Any) -> Any:
+    def wrong(self: ClosedOrbit, g: Any) -> Any:
         with self.flow.arithmetic.context():
             return [x + x / 1000 for x in true(self, g)]
 
-    patch.setattr(Orbit, "values", wrong)
+    patch.setattr(ClosedOrbit, "values", wrong)
     return sample
 
 

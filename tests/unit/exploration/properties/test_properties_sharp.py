@@ -17,8 +17,7 @@ from tests.unit.exploration.properties.test_properties import (
     with_added,
 )
 from verify.arithmetic.exact import decimal
-from verify.exploration import properties
-from verify.exploration.oracles import mpfr_runs
+from verify.exploration import properties, reference_steps
 from verify.exploration.properties.numbers import number_systems_agree, results_read_back
 from verify.exploration.properties.orders import planted_errors
 from verify.exploration.properties.plane import growth_laws
@@ -26,7 +25,7 @@ from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.proof.expansion import VANISHES
 from verify.proof.plane.growth_law import GrowthLaw
-from verify.proof.proof import Proof
+from verify.proof.proof_for_one_h import Proof
 from verify.studies.separation.chain import Chain
 
 
@@ -235,5 +234,5 @@ def test_what_more_digits_solve_otherwise_is_not_held_against_the_scheme(
     sample = example_of("implicit-midpoint", formula).with_place((Fraction(-2), Fraction(-1, 5)))
     sample = replace(sample, step_size=Fraction(1, 10))
     assert properties.get("symplectic-schemes").holds(sample)
-    monkeypatch.setattr(mpfr_runs, "_DIGITS", 80)
+    monkeypatch.setattr(reference_steps, "_DIGITS", 80)
     assert not properties.get("symplectic-schemes").holds(sample)

@@ -12,8 +12,9 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.calls.inputs import hamiltonian_from
 from verify.flows.solution import exact_solution, numerical_solution
-from verify.hamiltonians import forced_motion, systems
-from verify.proof.order import prove
+from verify.hamiltonians import systems
+from verify.hamiltonians.systems.driven import forced_oscillator
+from verify.proof.order_for_one_h import prove
 from verify.scenes.scene import Scene
 from verify.schemes import get
 
@@ -84,9 +85,9 @@ def test_a_wrong_resonance_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     near = {**values, "omega": values["omega"] + Fraction(1, 10**12)}
     beside = exact_solution(FORCED.hamiltonian(near), **asked)
     assert abs(right.q - beside.q) < Fraction(1, 10**10)  # it is the limit from outside
-    whole = forced_motion.rational_ball
+    whole = forced_oscillator.rational_ball
     monkeypatch.setattr(
-        forced_motion, "rational_ball", lambda x: whole(x * 2 if x == Fraction(4) else x)
+        forced_oscillator, "rational_ball", lambda x: whole(x * 2 if x == Fraction(4) else x)
     )
     assert abs(right.q - exact_solution(hamiltonian, **asked).q) > Fraction(1, 100)
 

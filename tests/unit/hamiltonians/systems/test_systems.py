@@ -17,11 +17,11 @@ from tests.helpers.flow_checks import (
     start_defect,
 )
 from verify.errors import InputError
-from verify.flows.closed_form import blow_up
-from verify.flows.extrapolation import Flow
+from verify.flows.ball_evaluation import blow_up
+from verify.flows.extrapolation import NumericalFlow
 from verify.hamiltonians import elliptic, systems
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.hamiltonians.motion import Motion
+from verify.hamiltonians.named_system import Motion
 from verify.hamiltonians.systems.plane import morse, pendulum
 from verify.hamiltonians.systems.plane import twist as twist_module
 
@@ -73,7 +73,7 @@ def test_a_system_explains_its_parameters_and_shows_its_orbits(name: str) -> Non
 def test_h_is_defined_in_every_example(name: str, regime: str) -> None:
     values, p, q = ALL[name].regime(regime)
     field, _ = canonical_field(ALL[name].hamiltonian(values))
-    flow = Flow(field, 20)
+    flow = NumericalFlow(field, 20)
     flow.slope(tuple(flow.number(Fraction(x)) for x in (p, q, *([0] if field.timed else []))))
 
 
@@ -115,7 +115,7 @@ def test_the_flow_is_a_group_to_45_digits(name: str, regime: str) -> None:
 @every_regime
 def test_the_numerical_flow_agrees(name: str, regime: str) -> None:
     case = example(ALL[name], regime)
-    flow = Flow(canonical_field(ALL[name].hamiltonian(case.values))[0], 40)
+    flow = NumericalFlow(canonical_field(ALL[name].hamiltonian(case.values))[0], 40)
     for time in within(case, [Fraction(-7, 3), Fraction(11, 4)]):
         z = flow.follow((flow.number(case.p), flow.number(case.q)), time, 10_000)
         found = case.at(time, 50)

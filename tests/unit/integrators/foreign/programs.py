@@ -6,9 +6,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from verify.integrators.foreign.called import ForeignFunction, step_of_command, step_of_library
-from verify.integrators.user_code.number_type import DOUBLE, NumberType
+from verify.integrators.foreign.foreign_function import (
+    ForeignFunction,
+    step_of_command,
+    step_of_library,
+)
 from verify.integrators.user_code.step import StepError
+from verify.integrators.user_code.user_map import DOUBLE, NumberType
 
 ANSWER = "t, h, p, q = map(float, line.split())\n    print(p - h * q, q + h * p, flush=True)"
 IN_STEP = f"import sys\nfor line in sys.stdin:\n    {ANSWER}\n"

@@ -14,9 +14,9 @@ from tests.paths import ROOT
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.foreign import process
-from verify.integrators.foreign.called import is_library, step_of_command, step_of_library
+from verify.integrators.foreign.foreign_function import is_library, step_of_command, step_of_library
 from verify.integrators.results import Claims, Finding
-from verify.integrators.user_code.number_type import DOUBLE, NumberType, type_of
+from verify.integrators.user_code.user_map import DOUBLE, NumberType, type_of
 from verify.verdict import Verdict
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")

@@ -11,8 +11,8 @@ import pytest
 from tests.unit.integrators.foreign.programs import HERE, IN_STEP, THERE, program, python, said
 from verify.errors import InputError
 from verify.integrators.foreign import process
-from verify.integrators.foreign.called import step_of_command
-from verify.integrators.user_code.number_type import DOUBLE
+from verify.integrators.foreign.foreign_function import step_of_command
+from verify.integrators.user_code.user_map import DOUBLE
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="Linux gives orphans to the guard")
 
@@ -81,8 +81,8 @@ def test_a_program_and_its_daemon_end_where_we_are_killed(tmp_path: Path) -> Non
     file = tmp_path / "pid"
     ours = (
         "import os, signal, sys\n"
-        "from verify.integrators.foreign.called import step_of_command\n"
-        "from verify.integrators.user_code.number_type import DOUBLE\n"
+        "from verify.integrators.foreign.foreign_function import step_of_command\n"
+        "from verify.integrators.user_code.user_map import DOUBLE\n"
         "step = step_of_command(sys.argv[1], DOUBLE, 60).function\n"
         "step(0.5, 0.25, 0.0, 0.125)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"

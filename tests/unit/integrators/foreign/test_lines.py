@@ -14,7 +14,8 @@ from verify.integrators.foreign.lines import (
     numbers_of,
     read_digits,
 )
-from verify.integrators.user_code.number_type import (
+from verify.integrators.user_code.step import StepError
+from verify.integrators.user_code.user_map import (
     DOUBLE,
     DOUBLE_DOUBLE,
     FLOAT128,
@@ -22,7 +23,6 @@ from verify.integrators.user_code.number_type import (
     TYPES,
     NumberType,
 )
-from verify.integrators.user_code.step import StepError
 
 FLOATS = st.floats(-1e6, 1e6, allow_nan=False).map(Fraction)
 

@@ -8,8 +8,8 @@ import pytest
 
 from tests.helpers.programs.compilers import library
 from tests.unit.integrators.foreign.programs import HERE, IN_STEP, THERE, library_step, program
-from verify.integrators.foreign.called import ForeignFunction
-from verify.integrators.user_code.number_type import LONG_DOUBLE
+from verify.integrators.foreign.foreign_function import ForeignFunction
+from verify.integrators.user_code.user_map import LONG_DOUBLE
 
 STEP = """
 void step(int n, double t, double h, double *p, double *q)

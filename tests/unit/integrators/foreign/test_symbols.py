@@ -7,8 +7,8 @@ import pytest
 from tests.helpers.programs.compilers import library
 from tests.unit.integrators.foreign.programs import HERE, library_step, said
 from verify.errors import InputError
-from verify.integrators.foreign.called import functions_of, prototype, step_of_library
-from verify.integrators.user_code.number_type import (
+from verify.integrators.foreign.foreign_function import functions_of, prototype, step_of_library
+from verify.integrators.user_code.user_map import (
     DOUBLE,
     DOUBLE_DOUBLE,
     FLOAT128,

@@ -6,15 +6,15 @@ import pytest
 
 from tests.unit.integrators.test_in_time import DRIVEN, as_float, verlet_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measures.order import probe_of
-from verify.integrators.measures.still_clock import _mean_time, _order_at
-from verify.integrators.places.place import Place
+from verify.integrators.clocks import _mean_time, _order_at
+from verify.integrators.measures.probes import probe_of
+from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.user_code.loading import callee_from
 
 EXACT = Hamiltonian.parse(DRIVEN)
 ONE, THIRD = Fraction(1), Fraction(1, 3)
 PLACES = [
-    Place((Fraction(p, 5), Fraction(q, 7)), THIRD, (ONE, ONE), (THIRD, THIRD), Fraction(1, 4))
+    TrialPlace((Fraction(p, 5), Fraction(q, 7)), THIRD, (ONE, ONE), (THIRD, THIRD), Fraction(1, 4))
     for p, q in ((3, 5), (-2, 4))
 ]
 

@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.integrators.tables import kinds
 from verify.integrators.tables.table_claim import TableClaim
 from verify.schemes.printed.condition_set import ConditionSet
-from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.judgement import Judgement, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
@@ -588,11 +588,11 @@ def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds(
     a[2][1] = "0.0591751719536137"
     counts: list[int] = []
 
-    def counted(numbers: PrintedNumbers, asked: ConditionSet, order: int) -> Judged:
+    def counted(numbers: PrintedNumbers, asked: ConditionSet, order: int) -> Judgement:
         counts.append(len(asked.equations))
         return judge(numbers, asked, order)
 
-    monkeypatch.setattr("verify.integrators.tables.tableaux.order.judge", counted)
+    monkeypatch.setattr("verify.integrators.tables.tableau_orders.judge", counted)
     found = claims({**ORDER_8, "a": a})
     assert 100 < max(counts) < 300
     assert found["row sums"].verdict is Verdict.REFUTED

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from verify.errors import InputError
-from verify.integrators.tables.check import check_table, read_tables
+from verify.integrators.tables.table_file import check_table, read_tables
 from verify.verdict import Verdict
 
 GOOD = """title = "x"

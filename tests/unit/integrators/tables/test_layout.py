@@ -2,8 +2,7 @@
 
 import pytest
 
-from verify.integrators.tables.layout import parse_tableau
-from verify.integrators.tables.signs import plain
+from verify.integrators.tables.entry import parse_tableau, plain
 
 BLANKS = "\u00a0\u2009\u202f\u2002\u2003 "
 

@@ -6,10 +6,10 @@ from fractions import Fraction
 import flint
 import pytest
 
-from verify.algebra.series.power_series import Series
+from verify.algebra.power_series import Series
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.clocks import _rounded_order
+from verify.integrators.clocks import _rounded_order
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
 MOST = 4

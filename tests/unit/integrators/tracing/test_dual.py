@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from verify.integrators.tracing.dual import Duals
-from verify.integrators.tracing.number import UntraceableError
+from verify.integrators.tracing.traced_number import UntraceableError
 
 MP = mpmath.mp.clone()
 MP.dps = 60

@@ -10,14 +10,14 @@ import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
 from verify.integrators.tracing import purity
-from verify.integrators.tracing.functions import copy_function
+from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.trace import Tape
 
 
 def impure(function: Callable[..., Any]) -> list[str]:
     tape = Tape()
     copy_function(function, tape)(tape.symbol("p"), tape.symbol("q"))
-    return tape.outside.texts
+    return tape.surroundings.texts
 
 
 @pytest.mark.parametrize("name", impure_maps.BY_NAME)
@@ -61,7 +61,7 @@ def test_copies_are_of_one_world() -> None:
     tape = Tape()
     p, q = tape.symbol("p"), tape.symbol("q")
     assert copy_function(step, tape)(p, q)[0] is p
-    assert tape.outside.texts == ["table is changed"]
+    assert tape.surroundings.texts == ["table is changed"]
     assert table == []
 
 

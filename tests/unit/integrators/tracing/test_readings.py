@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.clocks import misread
-from verify.integrators.tracing.functions import copy_function
+from verify.integrators.clocks import misread
+from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.readings import NoReadingsError, Readings
 from verify.integrators.tracing.trace import Node, Tape
 

@@ -14,11 +14,11 @@ from tests.helpers.programs import user_steps as own_steps
 from verify.algebra.formula import symbol
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.functions import copy_function
-from verify.integrators.tracing.number import UntraceableError, constant, reading
-from verify.integrators.tracing.series import TracedSeries
-from verify.integrators.tracing.step_map import _Peeler, shears_of, traced_map
+from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.trace import Tape, expressions, in_order
+from verify.integrators.tracing.traced_map import _Peeler, shears_of, traced_map
+from verify.integrators.tracing.traced_number import UntraceableError, constant, reading
+from verify.integrators.tracing.traced_series import TracedSeries
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 P, Q, H = symbol("p"), symbol("q"), symbol("h")

@@ -17,7 +17,7 @@ from tests.unit.pages.test_page import claim, real, run
 from verify.errors import InputError
 from verify.pages import plotting
 from verify.scenes.results.separation import SeparationGrid
-from verify.studies.separation.separate import as_grid
+from verify.studies.separation.truncation_and_rounding import as_grid
 
 SCENE = real().scenes[0]
 RUNS = [r for r in SCENE.runs if r.scheme == "lie2"]

@@ -12,7 +12,7 @@ from verify.pages.figures.orbit_points_figure import select_points
 from verify.pages.plotting import plot_flow
 from verify.pages.sections.flow_finding import finding, findings
 from verify.pages.sections.scene.flow import SECTION
-from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit, PoincareResult
+from verify.scenes.results.orbit_points import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.regions import FlowResult, Projection
 from verify.scenes.results.report import SceneResult
 

@@ -12,10 +12,10 @@ from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, claim, proof, report, run, scene
 from verify.pages.figures.flow_figure import draw_flow
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.svg import page_style
+from verify.pages.figures.sheet import page_style
 from verify.pages.page import render
 from verify.pages.text.typography import number
-from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.paper_sections import PaperFigure
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import Report
@@ -168,10 +168,12 @@ def test_what_keeps_its_shape_stands_together_and_what_does_not_upon_the_exact_i
     assert apart.counts == ("N = 5,000, t = 50.0", "N = 10,000, t = 100.0")
     assert [panel.name for panel in apart.panels] == ["lie2", "symplectic-euler"] * 2
     assert [len(panel.images) for panel in apart.panels] == [1] * 4
-    assert all(panel.exact for panel in apart.panels), "under each image that of the exact flow"
+    assert all(panel.exact_curves for panel in apart.panels), (
+        "under each image that of the exact flow"
+    )
     stretched = grid_of(flow(image(**LONG), image(steps=200, **LONG)))
     assert len(stretched.counts) == 2
-    assert not any(panel.exact for panel in stretched.panels)
+    assert not any(panel.exact_curves for panel in stretched.panels)
 
 
 def test_of_many_numbers_of_steps_a_few_are_drawn_and_it_is_said() -> None:

@@ -27,8 +27,8 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.figures.growth_figure"}),
-        ("scene(growth_laws=(LOST,))", {"verify.pages.figures.growth_figure", "matplotlib"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.step_size_figures"}),
+        ("scene(growth_laws=(LOST,))", {"verify.pages.figures.step_size_figures", "matplotlib"}),
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:

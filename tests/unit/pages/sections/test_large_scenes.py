@@ -9,9 +9,9 @@ import pytest
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_separation_view import text_of
 from tests.unit.pages.test_page import report, run, scene
-from verify.pages.figures.figures import MOST_LINES, Line, select_lines
+from verify.pages.figures.step_size_figures import MOST_LINES, LogarithmicLine, select_lines
 from verify.pages.page import render
-from verify.pages.sections.rows import MOST_ROWS, select_members
+from verify.pages.sections.table_rows import MOST_ROWS, select_members
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
@@ -94,7 +94,7 @@ def test_a_figure_draws_so_many_lines_with_both_extremes_and_says_so() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, MOST_LINES, MOST_LINES + 1, 1000])
 def test_thinned_lines_keep_the_highest_and_the_lowest(count: int) -> None:
-    made = [Line(str(k), (("1", float(k * 7919 % count)),)) for k in range(count)]
+    made = [LogarithmicLine(str(k), (("1", float(k * 7919 % count)),)) for k in range(count)]
     kept = select_lines(made)
     assert len(kept) == min(count, MOST_LINES)
     heights = [line.points[0][1] for line in kept]

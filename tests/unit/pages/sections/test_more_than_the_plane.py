@@ -5,12 +5,12 @@ from pathlib import Path
 
 from verify.pages.sections.scene.more_than_the_plane import SECTION, BeyondView
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.proof import FormResult, ProofResult
+from verify.scenes.results.proof_result import FormResult, ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
 from verify.scenes.scene import load_scene
 from verify.structures import SYMPLECTIC
-from verify.studies.work_precision.lines import lambda_slope
+from verify.studies.work_precision.work_lines import lambda_slope
 
 PAPER = Path(__file__).parents[4] / "reports" / "paper"
 

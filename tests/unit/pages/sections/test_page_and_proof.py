@@ -6,11 +6,11 @@ from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import proof, report, scene
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.pages.page import render
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import potential_of
 from verify.scenes.results.growth import GrowthLawResult
 from verify.schemes import get
-from verify.studies.growth.prediction import compute_average
+from verify.studies.growth_prediction import compute_average
 
 PENDULUM = "p**2/2 - cos(q)"
 MIDPOINT = "p_next = p - h*sin(q + h*p/2); q_next = q + h*(p - h*sin(q)/2)"

@@ -11,9 +11,9 @@ from verify.pages.sections.section import SectionPlace, sections, select_section
 
 _PLANTED = """
 from markupsafe import Markup
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
 
-SECTION = Section(order={order}, title="T", anchor="a", view=lambda given: given or None,
+SECTION = ReportSection(order={order}, title="T", anchor="a", view=lambda given: given or None,
                   terms=lambda views: {{"{order}": Markup("it")}})
 """
 

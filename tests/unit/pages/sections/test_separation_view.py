@@ -18,13 +18,13 @@ from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.pages.page import render
-from verify.pages.sections.separation_finding import finding
+from verify.pages.sections.separation_summary import describe_separation
 from verify.pages.text.typography import group_digits, step
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import SeriesPoint
 from verify.scenes.results.separation import SeparationGrid
-from verify.studies.separation.separate import as_grid
+from verify.studies.separation.truncation_and_rounding import as_grid
 
 
 def page_of(*own: SeparationGrid, wide: tuple[SeparationGrid, ...] = (), **changes: Any) -> str:
@@ -51,8 +51,8 @@ def test_a_page_without_runs_has_no_terms_of_runs() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.figures.crossover_figure", "matplotlib"}),
-        ("scene(separations=(BELOW,))", {"verify.pages.figures.crossover_figure", "matplotlib"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.step_size_figures", "matplotlib"}),
+        ("scene(separations=(BELOW,))", {"verify.pages.figures.step_size_figures", "matplotlib"}),
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
@@ -217,7 +217,7 @@ def test_how_often_the_closed_form_gains_is_said_of_all_that_have_it(unknown: in
     silent = [evaluation("1.000e-02", "0"), evaluation("1.000e-02", "0")]
     points = [point("0.1", *gained), point("0.2", *gained)]
     points += [point(f"0.{3 + k}", *silent) for k in range(unknown)]
-    said = " ".join(finding(points))
+    said = " ".join(describe_separation(points))
     among = f"{2 + unknown} entries" if unknown else "all 2 entries"
     said = said.partition("log1p summation")[2]
     assert f"smaller in {f'2 of {among}' if unknown else among}" in said

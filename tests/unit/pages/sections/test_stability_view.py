@@ -22,8 +22,8 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.figures.stability_figure"}),
-        ("scene(stability=(LEFT,))", {"verify.pages.figures.stability_figure", "matplotlib"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.kind_map_figure"}),
+        ("scene(stability=(LEFT,))", {"verify.pages.figures.kind_map_figure", "matplotlib"}),
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:

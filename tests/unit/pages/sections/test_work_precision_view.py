@@ -13,7 +13,7 @@ from tests.unit.pages.test_page import EVIL, report, run, scene
 from verify.pages.figures.work_precision_plots import standalone
 from verify.pages.page import render
 from verify.scenes.results.work_precision import WorkLine
-from verify.studies.work_precision.lines import compare_all
+from verify.studies.work_precision.work_lines import compare_all
 
 FAILED = point(
     limited_by="failed", lambda_limited_by="failed", failed_step=7, seconds=None,

@@ -21,7 +21,7 @@ from tests.helpers.constructed.stability import MAP, case
 from tests.helpers.constructed.work import ladder, result
 from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
-from verify.pages.markdown.from_markup import Markdown, escape_markdown, markdown, table
+from verify.pages.markdown.inline_text import Markdown, escape_markdown, markdown, table
 from verify.pages.markdown.page import render, write
 from verify.pages.page import page_view
 from verify.pages.page import render as page_as_html
@@ -306,7 +306,7 @@ def test_figures_of_an_earlier_report_do_not_stay(tmp_path: Path) -> None:
 
 def test_a_proof_is_written_without_matplotlib() -> None:
     code = "from verify.pages.markdown.page import render; render(REPORTS['proof only']())"
-    assert not {"matplotlib", "verify.pages.figures.figures"} & imported_by(code)
+    assert not {"matplotlib", "verify.pages.figures.step_size_figures"} & imported_by(code)
 
 
 def test_the_same_report_gives_the_same_text() -> None:

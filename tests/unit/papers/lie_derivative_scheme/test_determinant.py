@@ -6,7 +6,7 @@ import sympy
 from tests.helpers.planted.theorem_controls import refused
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.lie_derivative_scheme import classification, determinant, developables, families
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 
 

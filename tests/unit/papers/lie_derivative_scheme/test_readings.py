@@ -18,8 +18,12 @@ from verify.papers.lie_derivative_scheme import (
     motion,
     two_norm,
 )
-from verify.papers.lie_derivative_scheme.criteria import area, of_the_scheme, read_otherwise
-from verify.papers.lie_derivative_scheme.criteria_examples import COMPENSATED, FRICTION, TO_AND_FRO
+from verify.papers.lie_derivative_scheme.criteria import (
+    area_preservation,
+    consequences,
+    other_readings,
+)
+from verify.papers.lie_derivative_scheme.examples import COMPENSATED, FRICTION, TO_AND_FRO
 
 # -- smooth consistency ---------------------------------------------------------------------------
 
@@ -122,12 +126,12 @@ def test_the_terms_of_the_step_in_h_are_not_the_identity() -> None:
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("formula", ["p**2/2 + q**2/2", "p**2/2 + q**4/4"])
 def test_a_step_that_changes_areas_is_no_example_of_criterion_1(formula: str) -> None:
-    assert refused(area.area_definition(formula))
-    assert refused(area.criterion_1(formula))
+    assert refused(area_preservation.area_definition(formula))
+    assert refused(area_preservation.criterion_1(formula))
 
 
 def test_the_identity_neither_changes_the_flow_nor_areas() -> None:
-    assert refused(area.area_definition_flow(factor=1))
+    assert refused(area_preservation.area_definition_flow(factor=1))
 
 
 @pytest.mark.parametrize(
@@ -141,7 +145,7 @@ def test_the_identity_neither_changes_the_flow_nor_areas() -> None:
 def test_a_map_that_is_one_to_one_or_changes_areas_says_nothing_against_criterion_1(
     formulas: tuple[str, str],
 ) -> None:
-    assert refused(area.criterion_1_any_map(formulas))
+    assert refused(area_preservation.criterion_1_any_map(formulas))
 
 
 # -- Eq. 14–16 and the criteria -------------------------------------------------------------------
@@ -161,9 +165,9 @@ def test_the_chain_rule_notices_another_determinant() -> None:
 
 
 def test_criteria_2_and_3_are_not_those_of_another_field_or_map() -> None:
-    assert refused(of_the_scheme.criterion_3(hamiltonian=False))
-    assert refused(of_the_scheme.criterion_2(replace(FRICTION, q_next="q")))
-    assert refused(of_the_scheme.criterion_3_any_map(replace(FRICTION, p_next="p - h*q")))
+    assert refused(consequences.criterion_3(hamiltonian=False))
+    assert refused(consequences.criterion_2(replace(FRICTION, q_next="q")))
+    assert refused(consequences.criterion_3_any_map(replace(FRICTION, p_next="p - h*q")))
 
 
 def test_the_smaller_lambda_is_the_worse_only_where_areas_change_more_in_each_step() -> None:
@@ -172,11 +176,11 @@ def test_the_smaller_lambda_is_the_worse_only_where_areas_change_more_in_each_st
 
 
 def test_maps_that_are_small_for_each_k_and_at_once_do_not_tell_the_senses_apart() -> None:
-    assert refused(read_otherwise.criterion_2_implies_3_pointwise(COMPENSATED))
-    assert refused(read_otherwise.criterion_2_implies_3_pointwise(FRICTION))
-    assert refused(read_otherwise.criterion_4_and_2_pointwise(COMPENSATED))
-    assert refused(read_otherwise.criterion_4_and_2_pointwise(alternating=[FRICTION]))
-    assert refused(read_otherwise.criterion_4_against_2_smooth(hamiltonian=True))
-    assert refused(read_otherwise.criterion_4_against_3_smooth(hamiltonian=True))
+    assert refused(other_readings.criterion_2_implies_3_pointwise(COMPENSATED))
+    assert refused(other_readings.criterion_2_implies_3_pointwise(FRICTION))
+    assert refused(other_readings.criterion_4_and_2_pointwise(COMPENSATED))
+    assert refused(other_readings.criterion_4_and_2_pointwise(alternating=[FRICTION]))
+    assert refused(other_readings.criterion_4_against_2_smooth(hamiltonian=True))
+    assert refused(other_readings.criterion_4_against_3_smooth(hamiltonian=True))
     planted = replace(FRICTION, p_next="p", q_next="q + h*p")
-    assert refused(read_otherwise.criterion_4_against_3_smooth(friction=planted))
+    assert refused(other_readings.criterion_4_against_3_smooth(friction=planted))

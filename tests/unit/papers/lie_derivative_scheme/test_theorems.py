@@ -10,20 +10,19 @@ import sympy
 
 from tests.helpers.planted.theorem_controls import refused
 from tests.paths import ROOT
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
+from verify.claims.base_claim import Findings
+from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers import check_theorem, names
-from verify.papers.argument import Argument, proof, step
-from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import Flow, flow_of_every_hamiltonian
-from verify.papers.exact_maps import Areas, Point, value
+from verify.papers.argument import Argument, Check, proof, step, vanishes
+from verify.papers.differential_polynomials import DifferentialFlow, flow_of_every_hamiltonian
+from verify.papers.exact_maps import Areas, RationalPoint, value
 from verify.papers.lie_derivative_scheme import (
-    by_components,
+    components,
     consistency,
     convergence,
-    criteria_examples,
+    examples,
     lie_series,
     lipschitz,
     matrix_vector,
@@ -32,7 +31,7 @@ from verify.papers.lie_derivative_scheme import (
     two_norm,
 )
 from verify.papers.lie_derivative_scheme.criteria import connections
-from verify.papers.lie_derivative_scheme.criteria_examples import ExampleMap
+from verify.papers.lie_derivative_scheme.examples import ExampleMap
 from verify.scenes.toml_file import read_toml
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -196,7 +195,7 @@ def test_a_derivative_beyond_the_order_of_a_generic_h_is_an_error_and_not_zero()
 
 
 def test_a_recursion_by_one_operator_alone_is_not_the_exponential() -> None:
-    def one_operator(flow: Flow, y: Any) -> Any:
+    def one_operator(flow: DifferentialFlow, y: Any) -> Any:
         return flow.h_p * flow.ring.diff(y, "q")
 
     assert refused(lie_series.lie_exponential(one_operator))
@@ -225,13 +224,13 @@ def test_eq_10_with_the_index_that_is_meant_is_not_refuted() -> None:
 @pytest.mark.parametrize(
     "pair",
     [
-        (Point(Fraction(0), Fraction(1)), Point(Fraction(0), Fraction(1))),
-        (Point(Fraction(0), Fraction(0)), Point(Fraction(1), Fraction(1))),
-        (Point(Fraction(0), Fraction(0)), Point(Fraction(1), Fraction(0))),
+        (RationalPoint(Fraction(0), Fraction(1)), RationalPoint(Fraction(0), Fraction(1))),
+        (RationalPoint(Fraction(0), Fraction(0)), RationalPoint(Fraction(1), Fraction(1))),
+        (RationalPoint(Fraction(0), Fraction(0)), RationalPoint(Fraction(1), Fraction(0))),
     ],
 )
 def test_a_pair_with_different_p_or_the_same_q_does_not_refute_eq_9(
-    pair: tuple[Point, Point],
+    pair: tuple[RationalPoint, RationalPoint],
 ) -> None:
     assert refused(lipschitz.eq_9(pair))
 
@@ -246,20 +245,20 @@ def test_a_pair_with_different_p_or_the_same_q_does_not_refute_eq_9(
     ],
 )
 def test_eq_10_and_11_are_refuted_by_components_for_that_h_alone(formula: str) -> None:
-    assert refused(by_components.eq_11(formula))
-    assert refused(by_components.eq_10_components(formula))
+    assert refused(components.eq_11(formula))
+    assert refused(components.eq_10_components(formula))
 
 
 def test_eq_9_with_z_tilde_is_not_refuted_by_a_step_without_a_local_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(by_components, "errors", lambda eta, h, steps: [flint.acb(0)] * (steps + 1))
-    assert refused(by_components.eq_9_kept())
+    monkeypatch.setattr(components, "errors", lambda eta, h, steps: [flint.acb(0)] * (steps + 1))
+    assert refused(components.eq_9_kept())
 
 
 def test_the_two_norm_is_not_refuted_where_the_step_does_not_stretch() -> None:
-    assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(0))))
-    assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(1, 2))))
+    assert refused(two_norm.two_norm(RationalPoint(Fraction(0), Fraction(0))))
+    assert refused(two_norm.two_norm(RationalPoint(Fraction(0), Fraction(1, 2))))
 
 
 # -- Eq. 12 ---------------------------------------------------------------------------------------
@@ -267,7 +266,7 @@ def test_the_two_norm_is_not_refuted_where_the_step_does_not_stretch() -> None:
 
 def test_eq_12_is_not_refuted_by_a_quadratic_h_or_by_the_origin() -> None:
     assert refused(matrix_vector.eq_12(Hamiltonian.parse("p**2/2 + p*q + q**2")))
-    assert refused(matrix_vector.eq_12(point=Point(Fraction(0), Fraction(0))))
+    assert refused(matrix_vector.eq_12(point=RationalPoint(Fraction(0), Fraction(0))))
 
 
 @pytest.mark.parametrize(("p_next", "q_next"), [("-2*q", "p"), ("p - h*q", "q + h*p"), ("p", "q")])
@@ -279,7 +278,7 @@ def test_a_map_that_changes_areas_or_moves_little_does_not_refute_near_identity(
 
 # -- the criteria ---------------------------------------------------------------------------------
 
-EXAMPLES = [x for x in vars(criteria_examples).values() if isinstance(x, ExampleMap)]
+EXAMPLES = [x for x in vars(examples).values() if isinstance(x, ExampleMap)]
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda e: e.name)
@@ -298,17 +297,15 @@ def test_each_number_said_of_an_example_is_held_against_its_run(
 
 
 def test_the_criteria_are_not_told_apart_by_maps_with_other_numbers() -> None:
-    area_preserving = replace(criteria_examples.FRICTION, p_next="p", q_next="q + h*p")
-    assert refused(
-        connections.criterion_2_implies_3(replace(criteria_examples.NOT_UNIFORM, q_next="q"))
-    )
+    area_preserving = replace(examples.FRICTION, p_next="p", q_next="q + h*p")
+    assert refused(connections.criterion_2_implies_3(replace(examples.NOT_UNIFORM, q_next="q")))
     assert refused(connections.criterion_4_and_3(friction=area_preserving))
     assert refused(connections.criterion_4_and_3(alternating=[area_preserving]))
     assert refused(connections.criterion_4_against_2(compensated=area_preserving))
     assert refused(connections.criterion_4_against_2(alternating=[area_preserving]))
     assert refused(connections.criterion_4_against_3(friction=area_preserving))
     assert refused(connections.criterion_4_against_3(alternating=[area_preserving]))
-    drifting = replace(criteria_examples.COMPENSATED, p_next="p*(1 + h*(3/4 - q))")
+    drifting = replace(examples.COMPENSATED, p_next="p*(1 + h*(3/4 - q))")
     assert refused(connections.criterion_4_against_2(compensated=drifting))
 
 
@@ -353,14 +350,14 @@ def test_no_other_examples_pass_for_the_sentences_beside_equations() -> None:
 
 
 def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:
-    point = Point(Fraction(1), Fraction(1, 5))
+    point = RationalPoint(Fraction(1), Fraction(1, 5))
     assert refused(sentences_of_section_3.total_error_increases(point))
 
 
 def test_a_value_that_is_not_rational_is_not_taken_for_one() -> None:
     p = sympy.Symbol("p", real=True)
     with pytest.raises(ValueError, match="not rational"):
-        value(sympy.sqrt(p), Point(Fraction(2), Fraction(0)), Fraction(1))
+        value(sympy.sqrt(p), RationalPoint(Fraction(2), Fraction(0)), Fraction(1))
 
 
 def test_vanishes_tells_a_zero_from_what_is_not() -> None:

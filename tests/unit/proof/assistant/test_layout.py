@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers.rocq.assumptions import without_comments
 from tests.helpers.rocq.exports import ALL, export
-from verify.proof.assistant.shipped import files, text_of
+from verify.proof.assistant.shipped_theory import files, text_of
 
 _STATED = re.compile(r"^(?:Theorem|Lemma) (\w+)", re.MULTILINE)
 _DEFINED = re.compile(

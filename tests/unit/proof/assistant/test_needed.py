@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import pytest
 
 from tests.helpers.rocq.exports import ALL, export
-from verify.proof.assistant.shipped import (
+from verify.proof.assistant.shipped_theory import (
     files,
     format_modules,
     parts_of,
@@ -120,5 +120,5 @@ def test_an_export_holds_what_its_files_name_and_no_lemma_that_nothing_names(nam
 
 
 def test_most_of_the_theory_is_left_out_where_little_is_needed() -> None:
-    assert format_modules(["Theorems"], by="").count("Lemma ") < 5
-    assert format_modules(["Totals"], by="total_zero").count("Lemma total_") == 1
+    assert format_modules(["Theorems"], user_text="").count("Lemma ") < 5
+    assert format_modules(["Totals"], user_text="total_zero").count("Lemma total_") == 1

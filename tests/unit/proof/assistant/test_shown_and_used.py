@@ -7,7 +7,7 @@ import pytest
 
 from tests.helpers.rocq.exports import certificate, export, export_of, proved
 from verify.errors import InputError
-from verify.proof.assistant.nonzero import energy_that_shows
+from verify.proof.assistant.nonzero_witness import energy_that_shows
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.entries import Expansion
 

@@ -5,8 +5,7 @@ import re
 import pytest
 
 from tests.paths import ROOT
-from verify.proof.assistant.shipped import files, text_of
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem, files, text_of
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,13 @@ import pytest
 
 from tests.helpers.sampled.certificates import as_read, of_text
 from verify.proof.certificates import checker
+from verify.proof.certificates.certification import certify_for_every_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.every import certify_every
-from verify.proof.every import prove_every
+from verify.proof.order_for_every_h import prove_for_every_h
 
 
 def forged(**changes: Any) -> dict[str, Any]:
-    return as_read(certify_every(prove_every("lie1"))) | changes
+    return as_read(certify_for_every_h(prove_for_every_h("lie1"))) | changes
 
 
 def refused(data: dict[str, Any], why: str) -> None:

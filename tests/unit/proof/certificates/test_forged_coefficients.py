@@ -10,17 +10,17 @@ import pytest
 
 from tests.helpers.sampled.certificates import as_read, of_every_in_time
 from tests.oracle.printed_certificates import is_true
-from verify.proof.certificates import numbers
+from verify.proof.certificates import named_numbers
+from verify.proof.certificates.certification import certify_for_every_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import EstablishedStatement, state_theorem
-from verify.proof.certificates.every import certify_every
-from verify.proof.every import prove_every
+from verify.proof.certificates.established_statement import EstablishedStatement, state_theorem
+from verify.proof.order_for_every_h import prove_for_every_h
 
 TABLEAUX = ["gauss4", "gauss6"]
 
 
 def certificate(name: str) -> dict[str, Any]:
-    return as_read(certify_every(prove_every(name)))
+    return as_read(certify_for_every_h(prove_for_every_h(name)))
 
 
 def accepted(data: dict[str, Any]) -> EstablishedStatement:
@@ -170,7 +170,7 @@ def test_every_number_is_named_once_and_used() -> None:
     refused(data | {"numbers": []}, "tableau: 'w' stands for nothing")
     refused(data | {"numbers": [[f"w{k}", *ROOT[1:]] for k in range(9)]}, "more than 8")
     refused(data | {"numbers": {}}, "numbers: dict is no list")
-    lie = as_read(certify_every(prove_every("lie1")))
+    lie = as_read(certify_for_every_h(prove_for_every_h("lie1")))
     refused(lie | {"numbers": [ROOT]}, "no entry of this name: 'numbers'")
 
 
@@ -204,7 +204,7 @@ def test_what_grows_too_long_is_refused_quickly(monkeypatch: pytest.MonkeyPatch)
     data["numbers"] = [["w", ["-3", "9" * 199, "7"], "0", "1"]]
     data["tableau"]["a"][0][1] = [["1", *["w"] * 200]]
     refused(data, "is too large to be checked here")
-    monkeypatch.setattr(numbers, "_MOST_WORK", 20)
+    monkeypatch.setattr(named_numbers, "_MOST_WORK", 20)
     refused(certificate("gauss6"), "is too large to be checked here")
 
 
@@ -214,7 +214,8 @@ def test_a_sum_that_grows_with_each_of_its_terms_is_refused_quickly() -> None:
     data["stages"][0][0] = terms
     refused(data, "stages: a coefficient grows too long")
     refused(
-        as_read(certify_every(prove_every("lie1"))) | {"leading": terms}, "leading: a coefficient"
+        as_read(certify_for_every_h(prove_for_every_h("lie1"))) | {"leading": terms},
+        "leading: a coefficient",
     )
 
 

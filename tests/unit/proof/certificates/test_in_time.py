@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.sampled.certificates import of_every_in_time, of_text
 from tests.oracle.printed_certificates import is_true
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import state_theorem
+from verify.proof.certificates.established_statement import state_theorem
 
 DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 FROZEN = DRIVEN.replace("t)/2", "d)/2")

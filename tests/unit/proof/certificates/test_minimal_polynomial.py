@@ -6,7 +6,7 @@ import pytest
 import sympy
 
 from verify.algebra.embedding import embed
-from verify.proof.certificates.minimal_polynomial import MinimalPolynomials
+from verify.proof.certificates.coefficient_entries import MinimalPolynomials
 
 X = sympy.Symbol("x")
 R, S, T = sympy.sqrt(2), sympy.sqrt(3), sympy.cbrt(2)

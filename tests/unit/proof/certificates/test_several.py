@@ -8,12 +8,12 @@ import pytest
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.certificates.certification import certify_for_every_h as certificate_of_every
+from verify.proof.certificates.certification import certify_for_one_h as certificate_of_one
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import EstablishedStatement, state_theorem
-from verify.proof.certificates.every import certify_every as certificate_of_every
-from verify.proof.certificates.one import certify_one as certificate_of_one
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.certificates.established_statement import EstablishedStatement, state_theorem
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes import get
 
 HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
@@ -42,7 +42,7 @@ def of_one(formula: str, scheme: str) -> dict[str, Any]:
 
 @cache
 def of_every(scheme: str, degrees: int, timed: bool) -> dict[str, Any]:
-    return certificate_of_every(prove_every(scheme, degrees=degrees, timed=timed))
+    return certificate_of_every(prove_for_every_h(scheme, degrees=degrees, timed=timed))
 
 
 def accepted(data: dict[str, Any]) -> EstablishedStatement:

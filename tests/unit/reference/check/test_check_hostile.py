@@ -14,12 +14,12 @@ import pytest
 from tests.helpers.constructed.reference import changed, made, put, repaired
 from verify.errors import InputError
 from verify.files import write_atomically
-from verify.reference.check.check import CheckResult, check
-from verify.reference.check.recompute import recompute_unit
-from verify.reference.compare.published import load as published
-from verify.reference.make.make import check_is_alone, load
+from verify.reference.check.folder_check import CheckResult, check
+from verify.reference.check.recomputation import recompute_unit
+from verify.reference.compare.published_data import load as published
+from verify.reference.make.data_files import MANIFEST
+from verify.reference.make.data_folder import check_is_alone, load
 from verify.reference.make.models import Data
-from verify.reference.make.writing import MANIFEST
 
 SCENES = {
     "mine": """
@@ -119,7 +119,7 @@ def test_a_name_cannot_command_a_terminal(folder: Path) -> None:
 def test_files_that_fill_the_memory_together_are_not_read(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("verify.reference.check.check._MOST_BYTES_OF_ALL", 1000)
+    monkeypatch.setattr("verify.reference.check.folder_check._MOST_BYTES_OF_ALL", 1000)
     with pytest.raises(InputError, match="more than 1000 bytes"):
         look(folder)
 
@@ -226,7 +226,7 @@ def test_a_table_that_would_fill_the_memory_is_one_line(
     import pyarrow
     from pyarrow import parquet
 
-    from verify.reference.make.parquet import parquet_bytes, parquet_rows
+    from verify.reference.make.file_contents import parquet_bytes, parquet_rows
 
     rows = [("a", "b"), ("1", ""), ("2", "x")]
     assert parquet_rows(parquet_bytes(rows), "mine.parquet") == rows

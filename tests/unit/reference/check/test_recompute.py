@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed.reference import SCENES, changed, made
-from verify.reference.check.difference import DataFindings, Difference
-from verify.reference.check.recompute import recompute_unit
-from verify.reference.make.models import Data
+from tests.helpers.constructed.reference import IN_DEGREES, POLES, SCENES, changed, made
+from verify.reference.check.difference import DataFindings, FileDifference
+from verify.reference.check.recomputation import recompute_unit
+from verify.reference.make.models import AnyData
 
 KINDS = {"proof": "proofs", "run": "runs", "flow": "flow"}
 _SCHEMES = '["lie3", "lie4", "yoshida4", "position-verlet", "explicit-midpoint", "euler"]'
@@ -46,16 +46,16 @@ steps = [1, 12]
 }
 
 
-def data(name: str) -> Data:
-    return made({name: (SCENES | OTHERS)[name]})[0]
+def data(name: str) -> AnyData:
+    return made({name: (SCENES | IN_DEGREES | POLES | OTHERS)[name]})[0]
 
 
-def units(of: Data) -> Iterator[tuple[str, int]]:
+def units(of: AnyData) -> Iterator[tuple[str, int]]:
     for kind, field in KINDS.items():
         yield from ((kind, k) for k in range(len(getattr(of, field))))
 
 
-def again(of: Data, kind: str, index: int) -> DataFindings:
+def again(of: AnyData, kind: str, index: int) -> DataFindings:
     return recompute_unit(of, "file", kind, index)
 
 
@@ -94,21 +94,26 @@ steps = [0, 1, 12]
     assert sum(each.recomputed for each in findings) == of.count
 
 
-def cells(of: Data, kind: str) -> Iterator[list[Any]]:
-    """The places of all printed numbers that are not 0."""
+def cells(of: AnyData, kind: str) -> Iterator[tuple[list[Any], str]]:
+    """The places of all printed numbers that are not 0, and the columns that they are in."""
     raw = of.model_dump(mode="json", by_alias=True)
     for k, item in enumerate(raw[KINDS[kind]]):
         for j, row in enumerate(item["rows"]):
-            for name, cell in row.items():
-                if isinstance(cell, dict) and cell["value"] != "0":
-                    yield [KINDS[kind], k, "rows", j, name]
+            numbers = [([name], name, x) for name, x in row.items() if isinstance(x, dict)]
+            for name in ("p", "q"):
+                entries = enumerate(row[name] if isinstance(row[name], list) else ())
+                numbers += [([name, i], f"{name}{i + 1}", x) for i, x in entries]
+            for place, column, cell in numbers:
+                if cell["value"] != "0":
+                    yield [KINDS[kind], k, "rows", j, *place], column
 
 
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("kind", ["run", "flow"])
-def test_any_other_digit_of_any_number_is_found(kind: str) -> None:
-    draw, of = random.Random(5), data("mine")  # noqa: S311 - no secret
-    for place in cells(of, kind):
+@pytest.mark.parametrize("name", ["mine", "heiles"])
+def test_any_other_digit_of_any_number_is_found(name: str, kind: str) -> None:
+    draw, of = random.Random(5), data(name)  # noqa: S311 - no secret
+    for place, column in cells(of, kind):
         cell = of.model_dump(mode="json", by_alias=True)
         for part in place:
             cell = cell[part]
@@ -119,28 +124,31 @@ def test_any_other_digit_of_any_number_is_found(kind: str) -> None:
         other = draw.choice([c for c in "123456789" if c != text[at]])
         wrong = changed(of, [*place, "value"], text[:at] + other + text[at + 1 :])
         found = again(wrong, kind, place[1])
-        assert [x.column for x in found.differences] == [place[-1]], (place, text, at, other)
+        assert [x.column for x in found.differences] == [column], (place, text, at, other)
 
 
 @pytest.mark.parametrize(
-    ("path", "value", "column"),
+    ("name", "path", "value", "column"),
     [
-        (["runs", 2, "scheme"], "lie3", "q"),
-        (["runs", 2, "step_size"], "0.100001", "q"),
-        (["runs", 2, "q"], "1.500001", "q"),
-        (["parameters", "a"], "1.500001", "p"),
-        (["hamiltonian"], "p**2/2 - a*sin(q)", "p"),
+        ("mine", ["runs", 2, "scheme"], "lie3", "q"),
+        ("mine", ["runs", 2, "step_size"], "0.100001", "q"),
+        ("mine", ["runs", 2, "q"], "1.500001", "q"),
+        ("mine", ["parameters", "a"], "1.500001", "p"),
+        ("mine", ["hamiltonian"], "p**2/2 - a*sin(q)", "p"),
+        ("heiles", ["runs", 2, "q"], ["0.3", "0.2"], "q2"),
     ],
 )
-def test_another_input_gives_other_numbers(path: list[Any], value: str, column: str) -> None:
-    found = again(changed(data("mine"), path, value), "run", 2)
+def test_another_input_gives_other_numbers(
+    name: str, path: list[Any], value: Any, column: str
+) -> None:
+    found = again(changed(data(name), path, value), "run", 2)
     assert column in {x.column for x in found.differences}
 
 
 @pytest.mark.parametrize("kind", ["run", "flow"])
 def test_another_time_at_the_start_gives_other_numbers(kind: str) -> None:
     of = data("driven")
-    assert of.timed
+    assert of.time_dependent
     items = getattr(of, KINDS[kind])
     for k in range(len(items)):
         found = again(changed(of, [KINDS[kind], k, "t0"], "0.6666"), kind, k)
@@ -149,73 +157,87 @@ def test_another_time_at_the_start_gives_other_numbers(kind: str) -> None:
 
 def test_an_h_without_t_has_no_t0() -> None:
     raw = data("mine").model_dump(mode="json", by_alias=True)
-    assert not data("mine").timed
+    assert not data("mine").time_dependent
     assert all("t0" not in x for x in (*raw["runs"], *raw["flow"]))
 
 
+LEADING = {"dp1∧dq1": "p2", "dp1∧dq2": "p1", "dp2∧dq1": "p1", "dp2∧dq2": "-p2"}  # by hand
+
+
 @pytest.mark.parametrize(
-    ("scheme", "field", "value"),
+    ("name", "scheme", "field", "value"),
     [
-        (0, "order", 1),
-        (0, "order", 3),
-        (1, "leading", "-3*p*sin(q)/4 + p"),
-        (1, "leading", "0"),
-        (1, "convergence_order", 1),
-        (1, "convergence_order", 3),
-        (1, "order", 4),
-        (1, "order", 10**9),
-        (2, "order", 5),
-        (2, "convergence_order", 10**9),
-        (3, "convergence_order", 1),
-        (3, "convergence_order", None),
-        (3, "order", 3),
+        ("mine", 0, "order", 1),
+        ("mine", 0, "order", 3),
+        ("mine", 1, "leading", "-3*p*sin(q)/4 + p"),
+        ("mine", 1, "leading", "0"),
+        ("mine", 1, "convergence_order", 1),
+        ("mine", 1, "convergence_order", 3),
+        ("mine", 1, "order", 4),
+        ("mine", 1, "order", 10**9),
+        ("mine", 2, "order", 5),
+        ("mine", 2, "convergence_order", 10**9),
+        ("mine", 3, "convergence_order", 1),
+        ("mine", 3, "convergence_order", None),
+        ("mine", 3, "order", 3),
+        ("heiles", 1, "order", 2),
+        ("heiles", 1, "leading", LEADING | {"dp1∧dq1": "2*p2"}),
+        ("heiles", 1, "leading", {name: x for name, x in LEADING.items() if name != "dp1∧dq2"}),
+        ("heiles", 2, "convergence_order", 3),
     ],
 )
-def test_a_wrong_order_or_coefficient_is_found(scheme: int, field: str, value: Any) -> None:
-    found = again(changed(data("mine"), ["proofs", scheme, field], value), "proof", scheme)
-    columns = {x.column for x in found.differences}
+def test_a_wrong_order_or_coefficient_is_found(
+    name: str, scheme: int, field: str, value: Any
+) -> None:
+    found = again(changed(data(name), ["proofs", scheme, field], value), "proof", scheme)
+    columns = {x.column.partition(" ")[0] for x in found.differences}
     assert columns <= {"order", "leading", "convergence_order"}
     assert columns
 
 
-def test_an_area_that_is_said_to_be_preserved_and_is_not_is_found() -> None:
-    of = data("mine")
-    of = changed(of, ["proofs", 1, "area_preserving"], True)
-    of = changed(of, ["proofs", 1, "order"], None)
-    found = again(changed(of, ["proofs", 1, "leading"], "0"), "proof", 1)
-    assert found.differences[0].column == "order"
+def test_the_leading_coefficient_is_the_one_by_hand() -> None:
+    assert data("heiles").proofs[1].leading == LEADING
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("mine", {"area_preserving": True, "order": None, "leading": "0"}),
+        ("heiles", {"symplectic": True, "area_preserving": True, "order": None, "leading": {}}),
+    ],
+)
+def test_what_is_said_to_be_preserved_and_is_not_is_found(
+    name: str, changes: dict[str, Any]
+) -> None:
+    of = data(name)
+    for field, value in changes.items():
+        of = changed(of, ["proofs", 1, field], value)
+    assert again(of, "proof", 1).differences[0].column == "order"
 
 
 @pytest.mark.parametrize("step", [-1, 1])
-def test_the_step_that_left_the_range_is_found_again(step: int) -> None:
-    of = data("leaves")
-    place = next(
+@pytest.mark.parametrize("name", ["leaves", "pole-in-degrees"])
+def test_the_step_that_left_the_range_is_found_again(name: str, step: int) -> None:
+    of = data(name)
+    places = [
         ["runs", k, "rows", j, "failed_step"]
         for k, run in enumerate(of.runs)
         for j, row in enumerate(run.rows)
         if row.failed_step
-    )
-    row = of.runs[place[1]].rows[place[3]]
-    assert row.failed_step is not None
-    found = again(changed(of, place, row.failed_step + step), "run", place[1])
-    assert found.differences
+    ]
+    assert places
+    for place in places:
+        found = again(changed(of, place, lambda own: own + step), "run", place[1])
+        columns = [x.column for x in found.differences]
+        assert columns == ["failed_step"] or (step < 0 and columns == ["status"])
 
 
-def test_an_orbit_that_is_not_defined_any_more_has_left() -> None:
-    toml = """
-hamiltonian = "p**2/2 + q*log(q) - q"
-schemes = ["lie2"]
-[[reference]]
-step_sizes = [1]
-initial_values = [{ q = "0.5", p = "-2" }]
-steps = [0, 1, 3, 5]
-digits = 8
-flow = false
-"""
-    of = made({"pole": toml})[0]
+@pytest.mark.parametrize("name", POLES)
+def test_an_orbit_that_is_not_defined_any_more_has_left(name: str) -> None:
+    """All rows after are of the step that left."""
+    of = data(name)
     statuses = [row.status for row in of.runs[0].rows]
-    assert statuses[0] == "finished"
-    assert "left range" in statuses
+    assert statuses == ["finished", "finished", "left range", "left range"]
     found = again(of, "run", 0)
     assert (found.differences, found.not_recomputed, found.recomputed) == ([], [], 4)
 
@@ -225,7 +247,7 @@ def test_an_orbit_that_is_said_to_leave_and_does_not_is_found() -> None:
     nothing = dict.fromkeys(("kind", "p", "q", "delta_j", "mse", "lambda"))
     row = {"step": 30, "status": "left range", "failed_step": 12, **nothing}
     found = again(changed(of, ["runs", 1, "rows", 3], row), "run", 1)
-    assert isinstance(found.differences[0], Difference)
+    assert isinstance(found.differences[0], FileDifference)
     assert found.differences[0].column == "status"
 
 

@@ -6,8 +6,8 @@ import flint
 import pytest
 import sympy
 
-from verify.reference.check.tape import NotReadError, Tape
-from verify.reference.check.taylor import Expansion
+from verify.reference.check.tape import FormulaTape, NotReadError
+from verify.reference.check.taylor import TapeExpansion
 
 P, Q, T = sympy.symbols("p q t")
 FORMULAS = [
@@ -35,12 +35,12 @@ def rational(x: Fraction) -> sympy.Rational:
 
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_values_and_derivatives_are_those_of_sympy(formula: str) -> None:
-    tape, expression = Tape({"a": A}), theirs(formula)
+    tape, expression = FormulaTape({"a": A}), theirs(formula)
     h = tape.read(formula)
     nodes = {(): h, ("p",): tape.diff(h, "p"), ("q",): tape.diff(h, "q")}
     nodes["p", "q"] = tape.diff(nodes["p",], "q")
     nodes["q", "q"] = tape.diff(nodes["q",], "q")
-    known = Expansion(tape, list(nodes.values()))
+    known = TapeExpansion(tape, list(nodes.values()))
     with flint.ctx.workprec(200):
         known.begin([*(flint.arb(flint.fmpq(x.numerator, x.denominator)) for x in AT), 0])
         for names, node in nodes.items():
@@ -52,9 +52,9 @@ def test_values_and_derivatives_are_those_of_sympy(formula: str) -> None:
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_taylor_coefficients_are_those_of_sympy(formula: str) -> None:
-    tape = Tape({"a": A})
+    tape = FormulaTape({"a": A})
     h = tape.read(formula)
-    known = Expansion(tape, [h])
+    known = TapeExpansion(tape, [h])
     p, q = (rational(AT[0]) + 2 * T - T**2), (rational(AT[1]) - T / 3 + T**3)
     along = theirs(formula).subs({P: p, Q: q}, simultaneous=True)
     with flint.ctx.workprec(200):
@@ -71,4 +71,4 @@ def test_taylor_coefficients_are_those_of_sympy(formula: str) -> None:
 @pytest.mark.parametrize("formula", ["p +", "__import__('os')", "b*q", "p.real", "q**p", "f(q)"])
 def test_what_is_not_known_is_named(formula: str) -> None:
     with pytest.raises(NotReadError):
-        Tape({"a": A}).read(formula)
+        FormulaTape({"a": A}).read(formula)

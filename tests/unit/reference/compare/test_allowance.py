@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from verify.reference.compare.allowance import USUAL, WORST, Allowance
-from verify.reference.compare.column_meanings import _predict_sum, readings
-from verify.reference.compare.findings import DOUBLE, Spread
+from verify.reference.compare.scatter import Spread
+from verify.reference.compare.setting import _predict_sum, readings
+from verify.reference.compare.table_agreement import DOUBLE
 from verify.structures import AREA, SYMPLECTIC
 
 KNOWN = {"p": (Fraction(1, 3), Fraction(0)), "q": (Fraction(-7, 2), Fraction(0)),
@@ -33,22 +34,25 @@ def test_what_is_carried_is_added_to_what_there_is_in_any_case(step: int, planar
     name = "q" if planar else "q1"
     moved = Spread(Fraction(3, 7), Fraction(11, 5))
     made, still = (allowance({name: x}, planar=planar) for x in (moved, Spread(0, 0)))
-    least = made.at_once(name, step, KNOWN)
+    least = made.unavoidable_rounding(name, step, KNOWN)
     many, few = 1 + isqrt(step), 4 if planar else 8
     smallest = Fraction(1, 2**1022)
     assert least == (few * DOUBLE * Fraction(7, 2) + smallest) * many
-    found, nothing = made.after_steps(name, step, KNOWN), still.after_steps(name, step, KNOWN)
+    found, nothing = (
+        made.accumulated_rounding(name, step, KNOWN),
+        still.accumulated_rounding(name, step, KNOWN),
+    )
     long = least if planar else least * many
     assert (nothing.usual, nothing.worst) == (least, long)
     assert found.usual == least + USUAL * moved.usual * DOUBLE
     assert found.worst == long + WORST * moved.worst * DOUBLE
-    assert allowance(None, planar=planar).after_steps(name, step, KNOWN) is None
-    assert allowance({}, planar=planar).after_steps(name, step, KNOWN) == nothing
+    assert allowance(None, planar=planar).accumulated_rounding(name, step, KNOWN) is None
+    assert allowance({}, planar=planar).accumulated_rounding(name, step, KNOWN) == nothing
 
 
 def test_of_a_coarser_unit_all_is_more_but_what_underflows() -> None:
     one, other = (allowance({}, planar=True, unit=x) for x in (DOUBLE, 2**10 * DOUBLE))
-    a, b = (x.at_once("q", 1, KNOWN) for x in (one, other))
+    a, b = (x.unavoidable_rounding("q", 1, KNOWN) for x in (one, other))
     assert abs(b / a / 2**10 - 1) < Fraction(1, 2**100)
 
 
@@ -63,7 +67,7 @@ def test_a_sum_of_all_delta_j_is_foretold_within_its_radius(seed: int, late: int
         product *= 1 + x
     known = {"lambda": (product - 1, Fraction(0)),
              "mse": (sum(x * x for x in changes) / len(changes), Fraction(0))}  # fmt: skip
-    setting: Any = SimpleNamespace(numbers=lambda *_: known, late=late)
+    setting: Any = SimpleNamespace(numbers=lambda *_: known, delay=late)
     found = _predict_sum(setting, 30, len(changes) - late)
     assert found is not None
     off, cubes = abs(found.value - sum(changes)), sum(abs(x) ** 3 for x in changes)
@@ -72,10 +76,10 @@ def test_a_sum_of_all_delta_j_is_foretold_within_its_radius(seed: int, late: int
     assert off <= cubes / 3 * (1 + Fraction(1, 2))
     for missing in ("lambda", "mse"):
         less = {n: x for n, x in known.items() if n != missing}
-        lacking: Any = SimpleNamespace(numbers=lambda *_, less=less: less, late=late)
+        lacking: Any = SimpleNamespace(numbers=lambda *_, less=less: less, delay=late)
         assert _predict_sum(lacking, 30, len(changes) - late) is None
     at_start: Any = SimpleNamespace(
-        numbers=lambda *_: {"lambda": (Fraction(0), Fraction(0))}, late=0
+        numbers=lambda *_: {"lambda": (Fraction(0), Fraction(0))}, delay=0
     )
     begun = _predict_sum(at_start, 30, 0)
     assert begun is not None
@@ -87,7 +91,7 @@ def test_another_reading_is_as_near_as_what_it_is_made_of(name: str) -> None:
     """A radius is magnified by the slope: of x ↦ n x by n, of √x by 1/(2√x)."""
     value, radius, step = Fraction(1, 100), Fraction(1, 10**20), 9
     setting: Any = SimpleNamespace(
-        late=0, numbers=lambda *_: {"lambda": (value, radius), "mse": (value, radius)},
+        delay=0, numbers=lambda *_: {"lambda": (value, radius), "mse": (value, radius)},
         known=lambda *_: {}, orbit=None,
     )  # fmt: skip
     slopes = {"whole-sum": step, "root": 5, "one-more": Fraction(9, 10), "one-less": Fraction(9, 8),

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from verify.reference.compare.findings import DOUBLE
 from verify.reference.compare.scatter import CarriedRounding, _Row
+from verify.reference.compare.table_agreement import DOUBLE
 
 NAMES = ("p1", "p2", "q1", "q2")
 SIZE = Fraction(3, 2)

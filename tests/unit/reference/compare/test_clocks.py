@@ -11,11 +11,11 @@ import pytest
 
 from tests.unit.reference.compare.test_compare import named
 from verify.errors import InputError
-from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import ColumnVerdict
-from verify.reference.compare.published import Published, load
-from verify.reference.compare.submitted import read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.comparison import TableComparison, compare
+from verify.reference.compare.published_data import Published, load
+from verify.reference.compare.submitted_table import read
+from verify.reference.compare.table_agreement import ColumnVerdict
+from verify.reference.make.data_folder import PUBLISHED
 
 H, STEPS = 0.01, 100
 Force = Callable[[float, float], float]
@@ -82,7 +82,7 @@ WELL = {"scene": "driven-duffing", "step_size": "0.01", "q0": "0.5", "p0": "-0.5
 MATHIEU = {"scene": "driven-mathieu", "step_size": "0.01", "q0": "1", "p0": "0"}
 
 
-def of(ours: Published, folder: Path, text: str, **given: str) -> Comparison:
+def of(ours: Published, folder: Path, text: str, **given: str) -> TableComparison:
     path = folder / "theirs.csv"
     path.write_text(text)
     return compare(ours, read(path, ours, given, {}))

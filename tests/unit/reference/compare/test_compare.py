@@ -20,14 +20,13 @@ from tests.helpers.programs.submitted_programs import (
     lie2,
     lie3,
 )
-from verify.reference.compare.column_meanings import readings
-from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import ColumnVerdict
-from verify.reference.compare.mistakes import state_mistakes
-from verify.reference.compare.published import Published, load
-from verify.reference.compare.setting import Points, Setting
-from verify.reference.compare.submitted import read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.comparison import TableComparison, compare
+from verify.reference.compare.published_data import Published, load
+from verify.reference.compare.run_mistakes import state_mistakes
+from verify.reference.compare.setting import OrbitPoints, Setting, readings
+from verify.reference.compare.submitted_table import read
+from verify.reference.compare.table_agreement import ColumnVerdict
+from verify.reference.make.data_folder import PUBLISHED
 
 ALL_AREAS: Mapping[str, Callable[[Areas], Any]] = {
     "delta_j": lambda x: x.now - 1,
@@ -45,7 +44,7 @@ def ours() -> Published:
 
 def of(
     ours: Published, folder: Path, program: Program, table: str = "", **given: str
-) -> Comparison:
+) -> TableComparison:
     path = folder / "theirs.csv"
     path.write_text(table or program.table())
     said = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", **given}
@@ -53,7 +52,7 @@ def of(
     return compare(ours, read(path, ours, said, {}))
 
 
-def named(found: Comparison) -> list[set[str]]:
+def named(found: TableComparison) -> list[set[str]]:
     return [{name for name, _ in x.mistakes} for x in found.diagnoses]
 
 
@@ -248,7 +247,7 @@ def test_another_reading_of_an_area_error_is_named(
 
 def test_every_mistake_has_its_table(ours: Published) -> None:
     run = next(x for x in ours.scene("duffing") if x.run.scheme == "lie2" and x.run.p == "1.5")
-    names = {x.name for x in state_mistakes(Setting(run.orbit, Points({})))}
+    names = {x.name for x in state_mistakes(Setting(run.orbit, OrbitPoints({})))}
     assert {n for n in names if not n.startswith("scheme ")} == {
         n for n in MISTAKES if not n.startswith("scheme ") and n not in ("double-h", "single")
     }

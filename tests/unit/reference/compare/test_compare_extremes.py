@@ -9,14 +9,13 @@ from typing import Any
 import pytest
 
 from verify.errors import InputError
-from verify.reference.compare.agreement import is_single, number
-from verify.reference.compare.compare import Comparison, compare
-from verify.reference.compare.findings import ColumnVerdict
+from verify.reference.compare.comparison import TableComparison, compare
 from verify.reference.compare.judge import may_overflow
-from verify.reference.compare.published import PublishedRun, load
+from verify.reference.compare.published_data import PublishedRun, load
 from verify.reference.compare.scatter import Scatter
-from verify.reference.compare.submitted import read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.submitted_table import read
+from verify.reference.compare.table_agreement import ColumnVerdict, is_single, number
+from verify.reference.make.data_folder import PUBLISHED
 
 BEYOND = float("nan")
 Step = Callable[[Any, Any, Any], tuple[Any, Any]]
@@ -39,7 +38,7 @@ def run_of(scene: str, scheme: str, h: float, q: float) -> PublishedRun:
 
 def of(
     folder: Path, run: PublishedRun, step: Step, change: Callable[[int, Any], Any]
-) -> Comparison:
+) -> TableComparison:
     """A table of p and q by the step in doubles, p of each row changed."""
     _, h, q, p = run.inputs.values()
     lines = ["step,p,q"]
@@ -132,7 +131,7 @@ def test_an_exponent_may_not_be_huge() -> None:
 RIM = "9999999999999999999999/10000000000000000000000"  # q = 1 is an unstable equilibrium
 
 
-def soft(folder: Path, rows: str) -> Comparison:
+def soft(folder: Path, rows: str) -> TableComparison:
     ours = load(PUBLISHED, "extreme-soft-duffing")
     path = folder / "theirs.csv"
     path.write_text(f"step,p,q\n{rows}\n")

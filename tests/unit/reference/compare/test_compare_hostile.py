@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from verify.errors import InputError
-from verify.reference.compare.published import load
-from verify.reference.compare.setting import Points
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.published_data import load
+from verify.reference.compare.setting import OrbitPoints
+from verify.reference.make.data_folder import PUBLISHED
 
 
 @pytest.mark.parametrize("part", ["value", "radius"])
@@ -23,5 +23,5 @@ def test_a_number_of_very_many_digits_is_refused(tmp_path: Path, part: str) -> N
 
 def test_a_mistake_is_not_run_for_very_many_steps() -> None:
     case = next(load(PUBLISHED, "extreme-zero").runs()).orbit
-    assert Points({}).point_at(case, 10**30, 30) is None
-    assert Points({}).point_at(case, 10, 30) is not None
+    assert OrbitPoints({}).point_at(case, 10**30, 30) is None
+    assert OrbitPoints({}).point_at(case, 10, 30) is not None

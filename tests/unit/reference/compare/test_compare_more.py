@@ -16,12 +16,12 @@ from tests.helpers.programs.submitted_programs import (
     lie3,
 )
 from tests.unit.reference.compare.test_compare import CORNER, ORIGIN, named, of, single
-from verify.reference.compare.compare import compare
-from verify.reference.compare.mistakes import state_mistakes
-from verify.reference.compare.published import Published, load
-from verify.reference.compare.setting import Points, Setting
-from verify.reference.compare.submitted import read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.comparison import compare
+from verify.reference.compare.published_data import Published, load
+from verify.reference.compare.run_mistakes import state_mistakes
+from verify.reference.compare.setting import OrbitPoints, Setting
+from verify.reference.compare.submitted_table import read
+from verify.reference.make.data_folder import PUBLISHED
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def test_a_leapfrogs_half_step_is_named(
 
 def test_a_half_step_of_position_verlet_is_of_q(ours: Published) -> None:
     case = next(x for x in ours.scene("duffing") if x.run.scheme == "stormer-verlet").orbit
-    found = state_mistakes(Setting(replace(case, scheme="position-verlet"), Points({})))
+    found = state_mistakes(Setting(replace(case, scheme="position-verlet"), OrbitPoints({})))
     assert {x.name for x in found if x.name.startswith("half-q")} == {
         "half-q-ahead",
         "half-q-behind",

@@ -8,7 +8,7 @@ import pytest
 
 from verify.reference.compare import diagnosis
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import (
+from verify.reference.compare.table_agreement import (
     DOUBLE,
     ColumnFindings,
     ColumnVerdict,
@@ -38,8 +38,8 @@ def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
         return near if len(asked) == 1 else wrong
 
     judge = SimpleNamespace(
-        fit=fit, digits=lambda _: 17, cells={PLACE: SimpleNamespace(theirs=THEIRS)},
-        names=["lambda"], right=None, state=[],
+        fit=fit, digits=lambda _: 17, cells={PLACE: SimpleNamespace(submitted=THEIRS)},
+        names=["lambda"], right_setting=None, state=[],
     )  # fmt: skip
     findings = RunFindings(
         "a run", {"lambda": ColumnFindings(ColumnVerdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT
@@ -72,7 +72,8 @@ def test_a_mistake_of_the_state_is_told_by_the_same_rule(
     late = SimpleNamespace(name="late", says="a step late", setting="late", synonyms=())
     judge = SimpleNamespace(
         fit=lambda setting, *_, **__: other if setting == "late" else right,
-        units=lambda: [UNIT], right="right", cells={PLACE: SimpleNamespace(theirs=THEIRS)},
+        units=lambda: [UNIT], right_setting="right",
+        cells={PLACE: SimpleNamespace(submitted=THEIRS)},
         numbers=lambda *_: {},
     )  # fmt: skip
     for where in ("input_mistakes", "state_mistakes"):

@@ -8,10 +8,9 @@ import pytest
 
 from tests.helpers.programs.submitted_programs import Program
 from verify.errors import InputError
-from verify.reference.compare.published import Published, load
-from verify.reference.compare.rows import SubmittedTable
-from verify.reference.compare.submitted import read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.compare.published_data import Published, load
+from verify.reference.compare.submitted_table import SubmittedTable, read
+from verify.reference.make.data_folder import PUBLISHED
 
 GIVEN = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", "p0": "0"}
 GOOD = Program().table()

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from verify.reference.make.correct_rounding import correctly_rounded, exactly, near_zero
+from verify.reference.make.row_values import correctly_rounded, exactly, near_zero
 from verify.scenes.results.reference import Rounded
 
 

@@ -1,15 +1,18 @@
 """An orbit at chosen steps against exact rationals; the flow against closed forms."""
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 
-from verify.execution.keeping import NOTHING
-from verify.reference.make.tasks import OrbitTask, SolutionTask
+from verify.execution.keeper import NOTHING
+from verify.reference.make.scene_plan import OrbitTask, SolutionTask
 from verify.scenes.results.reference import OrbitPoint, Rounded
 
 H = Fraction(1, 10)
+Cells = dict[tuple[int, str], tuple[Rounded, Fraction]]
 QUARTIC = "p**2/2 + q**4/4"
+HEILES = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3"
 
 
 def lie2(p: Fraction, q: Fraction) -> tuple[Fraction, Fraction, Fraction]:
@@ -21,14 +24,52 @@ def lie2(p: Fraction, q: Fraction) -> tuple[Fraction, Fraction, Fraction]:
     return p_next, q_next, a * d - b * c - 1
 
 
-def by_hand(steps: int) -> dict[str, Fraction]:
+def in_the_plane(steps: int) -> dict[str, Fraction]:
     p, q = Fraction(1, 3), Fraction(6, 5)
-    squares, product = Fraction(0), Fraction(1)
+    squares, volume = Fraction(0), Fraction(1)
     for _ in range(steps):
         p, q, change = lie2(p, q)
-        squares, product = squares + change**2, product * (1 + change)
-    found = {"p": p, "q": q, "delta_j": lie2(p, q)[2], "lam": product - 1}
+        squares, volume = squares + change**2, volume * (1 + change)
+    found = {"p": p, "q": q, "delta_j": lie2(p, q)[2], "lam": volume - 1}
     return found | ({"mse": squares / steps} if steps else {})
+
+
+def in_degrees(steps: int) -> dict[str, Fraction | list[Fraction]]:
+    """lie1 for Hénon and Heiles: z' = z + h f, J = 1 + h A, W = MᵀΩM − Ω."""
+    h = Fraction(1, 20)
+    z = [Fraction(0), Fraction(1, 3), Fraction(3, 10), Fraction(1, 10)]
+    one = [[Fraction(a == b) for b in range(4)] for a in range(4)]
+    m, largest, volume = one, Fraction(0), Fraction(1)
+    for _ in range(steps):
+        p1, p2, q1, q2 = z
+        f = [-(q1 + 2 * q1 * q2), -(q2 + q1**2 - q2**2), p1, p2]
+        a = [[0, 0, -(1 + 2 * q2), -2 * q1], [0, 0, -2 * q1, -(1 - 2 * q2)],
+             [1, 0, 0, 0], [0, 1, 0, 0]]  # fmt: skip
+        j = [[one[r][c] + h * a[r][c] for c in range(4)] for r in range(4)]
+        largest = max(largest, greatest(j))
+        volume *= determinant(j)
+        m = [[sum(j[r][k] * m[k][c] for k in range(4)) for c in range(4)] for r in range(4)]
+        z = [x + h * y for x, y in zip(z, f, strict=True)]
+    p1, p2, q1, q2 = z
+    energy = (p1**2 + p2**2 + q1**2 + q2**2) / 2 + q1**2 * q2 - q2**3 / 3
+    numbers = {"p": z[:2], "q": z[2:], "energy": energy, "symplectic_defect": greatest(m),
+               "lam": volume - 1}  # fmt: skip
+    return numbers | ({"symplectic_defect_max": largest} if steps else {})
+
+
+def greatest(j: list[list[Fraction]]) -> Fraction:
+    def entry(a: int, b: int) -> Fraction:
+        own = sum((j[i][a] * j[2 + i][b] - j[2 + i][a] * j[i][b] for i in (0, 1)), Fraction(0))
+        return own - ((b == a + 2) - (a == b + 2))
+
+    return max(abs(entry(a, b)) for a, b in product(range(4), repeat=2))
+
+
+def determinant(j: list[list[Fraction]]) -> Fraction:
+    if len(j) == 1:
+        return j[0][0]
+    minors = ([row[:c] + row[c + 1 :] for row in j[1:]] for c in range(len(j)))
+    return sum(((-1) ** c * j[0][c] * determinant(x) for c, x in enumerate(minors)), Fraction(0))
 
 
 def task(scheme: str = "lie2", formula: str = QUARTIC, **more: object) -> OrbitTask:
@@ -42,24 +83,51 @@ def points(asked: OrbitTask) -> tuple[OrbitPoint, ...]:
     return asked.compute(NOTHING).points
 
 
+def heiles() -> OrbitTask:
+    start = {"q": ["0.3", "0.1"], "p": [0, "1/3"], "step_size": "1/20"}
+    return task("lie1", HEILES, **start, steps=(0, 1, 20), digits=18)
+
+
 def holds(cell: Rounded | None, value: Fraction) -> bool:
     assert cell is not None
     return abs(Fraction(cell.value) - value) <= Fraction(cell.radius)
 
 
-def test_every_number_is_the_exact_one_rounded() -> None:
-    for point in points(task()):
+@pytest.fixture(scope="module", params=[task(), heiles()], ids=["plane", "degrees"])
+def asked(request: pytest.FixtureRequest) -> OrbitTask:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def cells(asked: OrbitTask) -> Cells:
+    """Every number by its step and name, and what it is by hand."""
+    by_hand = in_the_plane if asked.scheme == "lie2" else in_degrees
+    numbers: Cells = {}
+    for point in points(asked):
         assert (point.status, point.kind) == ("finished", "enclosed")
         for name, value in by_hand(point.step).items():
-            assert holds(getattr(point, name), value), (point.step, name)
+            own = getattr(point, name)
+            pairs = zip(own, value, strict=True) if isinstance(value, list) else [(own, value)]
+            numbers |= {(point.step, f"{name}{k}"): pair for k, pair in enumerate(pairs, start=1)}
+    return numbers
+
+
+def test_every_number_is_the_exact_one_rounded(cells: Cells) -> None:
+    assert len(cells) in (4 * 4 + 3, 3 * 7 + 2)
+    for place, (cell, value) in cells.items():
+        assert holds(cell, value), place
+
+
+def test_a_neighbouring_value_would_not_hold(asked: OrbitTask, cells: Cells) -> None:
+    off = Fraction(100, 10**asked.digits)
+    for place, (cell, value) in cells.items():
+        if value:
+            assert not holds(cell, value * (1 + off)), place
+
+
+def test_before_the_first_step_nothing_of_steps_is_summed_up() -> None:
     assert points(task())[0].mse is None
-
-
-def test_a_neighbouring_value_would_not_hold() -> None:
-    for point in points(task()):
-        for name, value in by_hand(point.step).items():
-            if value:
-                assert not holds(getattr(point, name), value * (1 + Fraction(1, 10**23)))
+    assert points(heiles())[0].symplectic_defect_max is None
 
 
 @pytest.mark.parametrize("digits", [1, 7, 60])

@@ -1,4 +1,5 @@
-"""The published schemas are current, describe every key, and hold for the committed set."""
+"""The published schemas are current, describe every key, and hold for the committed set and
+for what is made anew."""
 
 import json
 from collections.abc import Iterator
@@ -7,9 +8,10 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.constructed.reference import IN_DEGREES, SCENES, made, put
 from verify.content import content
-from verify.reference.make.make import PUBLISHED
-from verify.reference.make.writing import MANIFEST, OF_DEGREES, SCHEMAS, schema_text
+from verify.reference.make.data_files import MANIFEST, OF_DEGREES, SCHEMAS, schema_text
+from verify.reference.make.data_folder import PUBLISHED
 
 FOLDER = content("reference")
 every_schema = pytest.mark.parametrize("name", SCHEMAS)
@@ -43,6 +45,27 @@ def test_every_key_is_described_and_no_other_is_allowed(name: str) -> None:
         assert part["type"] != "object" or part["additionalProperties"] is False
 
 
+@pytest.mark.parametrize(
+    ("name", "scenes"),
+    [("data.schema.json", SCENES), (OF_DEGREES, IN_DEGREES)],
+    ids=["plane", "degrees"],
+)
+def test_it_holds_for_what_is_made(name: str, scenes: dict[str, str], tmp_path: Path) -> None:
+    validator = validator_of(name)
+    put(tmp_path / "set", made(scenes), scenes)
+    for scene in scenes:
+        data = json.loads((tmp_path / "set" / f"{scene}.json").read_text())
+        validator.validate(data)
+        assert not validator.is_valid(data | {"planted": 1})
+
+
+def validator_of(name: str) -> Any:
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads(schema_text(name))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
 def of_schema(path: Path, name: str) -> bool:
     """Whether a committed file is of this schema: the manifest, of the plane, of n degrees."""
     if path.name in SCHEMAS or (path.name == MANIFEST) != (name[0] == "m"):
@@ -53,10 +76,7 @@ def of_schema(path: Path, name: str) -> bool:
 @pytest.mark.left_to_ci
 @every_schema
 def test_it_is_a_schema_and_the_committed_files_are_of_it(name: str) -> None:
-    jsonschema = pytest.importorskip("jsonschema")
-    schema = json.loads(schema_text(name))
-    jsonschema.Draft202012Validator.check_schema(schema)
-    validator = jsonschema.Draft202012Validator(schema)
+    validator = validator_of(name)
     wanted = [path for path in sorted(PUBLISHED.glob("*.json")) if of_schema(path, name)]
     assert wanted
     for path in wanted:

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from tests.helpers.svg_reader import PLACES, by_de_casteljau, by_the_centre, drawn
 from verify.arithmetic.float_context import FLOAT
 from verify.errors import InputError
-from verify.scenes.shapes.elliptical_arc import EllipticalArc
-from verify.scenes.shapes.outline import Outline
+from verify.scenes.shapes.outline import EllipticalArc, Outline
 from verify.scenes.shapes.svg_path import MAX_LENGTH, MAX_SEGMENTS, subpaths
 from verify.scenes.shapes.user_outline import svg_path
 

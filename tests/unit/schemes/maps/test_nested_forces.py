@@ -8,13 +8,13 @@ import time
 import pytest
 
 from verify.algebra import formula as formulas
-from verify.algebra.domain import Domain
+from verify.algebra.domain import FormulaDomain
+from verify.algebra.expressions.function_nodes import Requirement
 from verify.algebra.formula import parse, read, symbol
-from verify.algebra.requirement import Requirement
 from verify.effort import limit_effort
 from verify.errors import LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.schemes import get
 
 FORCES = {
@@ -73,9 +73,12 @@ def test_what_is_not_simplified_in_time_is_asked_for_as_it_is_written() -> None:
 
 def test_a_sign_that_is_seen_in_time_is_still_seen() -> None:
     q, h = symbol("q"), symbol("h")
-    assert Domain.from_requirements([Requirement(1 + q**2 + h**4, "!=")]) == Domain()
-    assert Domain.from_requirements([Requirement(parse("q**4 + 2*q**2 + 3"), ">")]) == Domain()
-    assert Domain.from_requirements([Requirement(parse("q**2 - 1"), ">")]).texts == (
+    assert FormulaDomain.from_requirements([Requirement(1 + q**2 + h**4, "!=")]) == FormulaDomain()
+    assert (
+        FormulaDomain.from_requirements([Requirement(parse("q**4 + 2*q**2 + 3"), ">")])
+        == FormulaDomain()
+    )
+    assert FormulaDomain.from_requirements([Requirement(parse("q**2 - 1"), ">")]).texts == (
         "q**2 - 1 > 0",
     )
 

@@ -22,10 +22,11 @@ from tests.helpers.sampled.formulas import (
 )
 from tests.helpers.sampled.identities.drawn import HIDDEN
 from verify import schemes
+from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.proof import Proof
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.defect import DefectSeries
 from verify.verdict import Verdict
@@ -345,3 +346,12 @@ def test_an_error_planted_in_a_lie_map_is_refuted_whatever_its_field_has_made(et
     for wrong in ((p + slip, q), (p, q - slip), (less, q)):
         proof = prove(replace(right, formulas=wrong), scheme)
         assert (proof.verdict, proof.convergence_order) == (Verdict.REFUTED, eta - 1)
+
+
+def test_delta_j_of_two_degrees_is_the_determinants_however_many_terms_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("verify.schemes.maps.step_map._MOST_FACTORED", -1)
+    text = "p1**2/2 + p2**2/2 + q1**4/4 + q1**2*q2 + q2**2/2"
+    step_map = schemes.get("lie2").step_map(Hamiltonian.parse(text))
+    assert step_map.delta_j_text == to_text(step_map.delta_j) != "0"

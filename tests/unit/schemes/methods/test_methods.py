@@ -11,9 +11,9 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import prove
-from verify.proof.proof import Proof
-from verify.proof.symmetry import judge_symmetry
+from verify.proof.map_symmetry import judge_symmetry
+from verify.proof.order_for_one_h import prove
+from verify.proof.proof_for_one_h import Proof
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict
 

@@ -5,8 +5,8 @@ import pytest
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.verdict import Verdict
 
 VERLET = "kick 1/2; drift 1; kick 1/2; order 2"
@@ -25,7 +25,7 @@ def test_one_that_is_named_too_is_that_scheme(name: str, twin: str) -> None:
     for (kind, size), (second, length) in zip(own.parts, other.parts, strict=True):
         assert kind == second
         assert abs((size - length).evalf(60)) < 1e-50
-    proof = prove_every(name)
+    proof = prove_for_every_h(name)
     assert (proof.verdict, proof.area_preserving) == (Verdict.PROVED, True)
     assert proof.convergence_order == schemes.get(twin).order
 
@@ -35,15 +35,15 @@ def test_one_that_is_named_too_is_that_scheme(name: str, twin: str) -> None:
     [("drift 1;", "drift 1.000000000500;"), ("kick 1/2; order", "kick 0.500001; order")],
 )
 def test_an_error_in_a_coefficient_is_refuted_with_its_residue(old: str, new: str) -> None:
-    proof = prove_every(VERLET.replace(old, new))
+    proof = prove_for_every_h(VERLET.replace(old, new))
     assert proof.verdict is Verdict.REFUTED
     wrong = next(c for c in proof.conditions if not c.holds)
     assert wrong.residue in ("5.00000000000e-10", "1.00000000000e-06")
 
 
 def test_an_order_that_is_one_too_high_is_refuted() -> None:
-    assert prove_every(VERLET.replace("order 2", "order 3")).verdict is Verdict.REFUTED
-    assert prove_every(VERLET).verdict is Verdict.PROVED
+    assert prove_for_every_h(VERLET.replace("order 2", "order 3")).verdict is Verdict.REFUTED
+    assert prove_for_every_h(VERLET).verdict is Verdict.PROVED
 
 
 def triple(root: int, steps: list[str]) -> list[str]:
@@ -56,7 +56,7 @@ def triple(root: int, steps: list[str]) -> list[str]:
 def test_order_8_is_proved_though_no_condition_beyond_it_is_known() -> None:
     steps = triple(7, triple(5, triple(3, ["1"])))
     parts = "; ".join(f"kick {x}/2; drift {x}; kick {x}/2" for x in steps)
-    proof = prove_every(f"{parts}; order 8")
+    proof = prove_for_every_h(f"{parts}; order 8")
     assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, 8)
 
 

@@ -7,8 +7,8 @@ import pytest
 from verify import modified_hamiltonian, schemes
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.every import prove_every
-from verify.proof.order import prove
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.order_for_one_h import prove
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
@@ -41,15 +41,15 @@ def test_the_order_of_exact_sizes_near_the_printed_ones_is_told_everywhere(
     scheme = schemes.get(name)
     for proof in (
         prove(scheme.step_map(PENDULUM), scheme),
-        prove_every(name),
-        prove_every(name, timed=True),
+        prove_for_every_h(name),
+        prove_for_every_h(name, timed=True),
         prove(scheme.step_map(HENON), scheme),
-        prove_every(name, degrees=2),
+        prove_for_every_h(name, degrees=2),
     ):
         assert (proof.verdict, proof.convergence_order) == (ENCLOSED, 4), proof
         assert proof.convergence_decided
         assert "whose residues are up to" in proof.reason
-        assert prove_every(scheme_of(half, 5)).verdict is REFUTED
+        assert prove_for_every_h(scheme_of(half, 5)).verdict is REFUTED
 
 
 @pytest.mark.parametrize("half", HALVES[1:])
@@ -61,7 +61,7 @@ def test_a_wrong_digit_is_refuted(half: tuple[str, ...], place: int, digit: int)
     wrong = half[place][:at] + other + half[place][at + 1 :]
     name = scheme_of((*half[:place], wrong, *half[place + 1 :]))
     scheme = schemes.get(name)
-    assert prove_every(name).verdict is REFUTED
+    assert prove_for_every_h(name).verdict is REFUTED
     assert prove(scheme.step_map(PENDULUM), scheme).verdict is REFUTED
     assert prove(scheme.step_map(HENON), scheme).verdict is REFUTED
 
@@ -69,19 +69,19 @@ def test_a_wrong_digit_is_refuted(half: tuple[str, ...], place: int, digit: int)
 def test_short_decimals_and_quotients_are_what_they_are() -> None:
     short = [("kick", "0.5", None), ("drift", "1.000001", None), ("kick", "1/2", None)]
     assert nearby_of(short) is None
-    assert prove_every("kick 0.5; drift 1.000001; kick 1/2; order 2").verdict is REFUTED
-    assert prove_every("kick 0.5; drift 1.00000001; kick 1/2; order 2").verdict is ENCLOSED
-    assert prove_every("kick 0.5; drift 1; kick 1/2; order 2").verdict is PROVED
+    assert prove_for_every_h("kick 0.5; drift 1.000001; kick 1/2; order 2").verdict is REFUTED
+    assert prove_for_every_h("kick 0.5; drift 1.00000001; kick 1/2; order 2").verdict is ENCLOSED
+    assert prove_for_every_h("kick 0.5; drift 1; kick 1/2; order 2").verdict is PROVED
 
 
 def test_what_holds_exactly_as_it_is_printed_is_proved() -> None:
     name = "kick 0.123456789; drift 0.5; kick 0.753086422; drift 0.5; kick 0.123456789; order 2"
-    assert prove_every(name).verdict is PROVED
+    assert prove_for_every_h(name).verdict is PROVED
 
 
 def test_a_size_that_is_no_polynomial_in_its_decimals_is_exact() -> None:
     assert nearby_of([("kick", "1/(2.0000000001)", None), ("drift", "1", None)]) is None
-    assert prove_every("kick 1/(2.0000000001); drift 1; kick 0.5; order 2").verdict is REFUTED
+    assert prove_for_every_h("kick 1/(2.0000000001); drift 1; kick 0.5; order 2").verdict is REFUTED
 
 
 def test_one_h_may_have_a_higher_order_than_every_h() -> None:
@@ -120,7 +120,7 @@ def test_times_that_are_given_count_where_h_depends_on_time() -> None:
         assert prove(scheme.step_map(PENDULUM), scheme).verdict is ENCLOSED
     found = {name: schemes.get(name) for name in (right, frozen)}
     verdicts = {
-        name: {prove(x.step_map(DRIVEN), x).verdict, prove_every(name, timed=True).verdict}
+        name: {prove(x.step_map(DRIVEN), x).verdict, prove_for_every_h(name, timed=True).verdict}
         for name, x in found.items()
     }
     assert verdicts == {right: {ENCLOSED}, frozen: {REFUTED}}
@@ -149,7 +149,7 @@ def test_times_with_many_digits_stand_for_those_near_them(
 ) -> None:
     name = GAUSS.format(first, second)
     scheme = schemes.get(name)
-    proofs = prove(scheme.step_map(DRIVEN), scheme), prove_every(name, timed=True)
+    proofs = prove(scheme.step_map(DRIVEN), scheme), prove_for_every_h(name, timed=True)
     assert {proof.verdict for proof in proofs} == {verdict}
     orders = {proof.convergence_order for proof in proofs}
     assert orders == ({1} if verdict is REFUTED else {2})
@@ -160,7 +160,7 @@ def test_times_with_many_digits_stand_for_those_near_them(
 )
 def test_a_time_alone_may_be_printed_with_many_digits(time: str, verdict: Verdict) -> None:
     name = f"drift 1/2; kick 1 at {time}; drift 1/2; order 2"
-    assert prove_every(name, timed=True).verdict is verdict
+    assert prove_for_every_h(name, timed=True).verdict is verdict
 
 
 @pytest.mark.parametrize("system", ["pendulum", None])
@@ -187,6 +187,6 @@ def test_what_has_few_digits_beside_others_is_read_as_exact_first() -> None:
     (alone,) = PrintedNumbers({"c": "0.5", "b": third}).of_a_method()
     assert set(alone.units) == {"b"}
     name = f"kick 0.037109375; drift {third}; kick 0.962890625; drift {third}; drift {third}"
-    found = prove_every(f"{name}; order 1")
+    found = prove_for_every_h(f"{name}; order 1")
     assert found.verdict is ENCLOSED
     assert "of those printed to 17 decimals" in found.reason

@@ -6,15 +6,18 @@ from fractions import Fraction
 
 import pytest
 
-from verify.audits.claims import claims_of
 from verify.audits.libraries import literature
+from verify.audits.library_claims import claims_of
 from verify.errors import InputError
-from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.words.equations import (
+    LETTERS_BY_KIND,
+    MOST_ORDER_BY_KIND,
+    logarithm_equations,
+)
 from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
 from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluate
-from verify.schemes.printed.splitting_order import judge_order
-from verify.schemes.printed.splitting_table import PrintedTable
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}
@@ -56,7 +59,7 @@ def test_the_printed_tables_hold_but_for_those_that_are_known_to_be_wrong(name: 
 def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
     order = TABLES[name].order
     assert order is not None
-    if order < MOST_ORDER[table(name).kind]:
+    if order < MOST_ORDER_BY_KIND[table(name).kind]:
         found = judge_order(table(name), order + 1)
         assert found.verdict is Verdict.REFUTED
         assert found.order == order
@@ -204,8 +207,8 @@ def test_an_order_beyond_those_looked_at_is_bad_input() -> None:
 def test_there_are_as_many_conditions_as_the_lie_algebras_have_dimensions(
     kind: str, counts: list[int]
 ) -> None:
-    assert kind in KINDS
-    found = [c.order for c in conditions(kind, len(counts))]
+    assert kind in LETTERS_BY_KIND
+    found = [c.order for c in logarithm_equations(kind, len(counts))]
     assert [found.count(n) for n in range(1, len(counts) + 1)] == counts
 
 
@@ -230,7 +233,7 @@ def test_orders_are_those_of_the_words_of_the_step_itself(sizes: tuple[str, ...]
 
 def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
     one = StepWords(PlainNumbers(Fraction(1)), [("K", Fraction(1), Fraction(0))])
-    values = {c.name: c.residue(one) for c in conditions("splitting", 4)}
+    values = {c.name: c.residual(one) for c in logarithm_equations("splitting", 4)}
     assert values.pop("Σ drifts = 1") == -1
     assert set(values.values()) == {0}
 

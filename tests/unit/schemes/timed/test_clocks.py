@@ -8,8 +8,8 @@ import sympy
 import verify
 from verify.schemes import get, names
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.scheme_clocks import conditions_for
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.for_scheme import conditions_for
 
 H, T0, POWERS = Fraction(1, 4), Fraction(5), (1, 2, 3)
 WITH_TIMES = [n for n in names() if not isinstance(get(n).every_h, TaylorSeries)]

@@ -7,9 +7,9 @@ import sympy
 
 from verify.schemes import get
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.scheme_clocks import ClockReading, find_mistakes, mistake_of_clock
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.mistakes import Reading, find_mistakes, name_of
-from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.words import Kinetic
 
 R, ZERO, ONE, HALF = sympy.Rational, sympy.S.Zero, sympy.S.One, sympy.S.Half
 PARTS = get("yoshida4").every_h.parts
@@ -76,8 +76,8 @@ def named_stages(clock=None):
     ring, weights = numbers.ring, numbers.b
     right = [ring.reduce(sum(row, ring.zero)) for row in numbers.a]
     before = [sum(weights[:k], ring.zero) for k in range(4)]
-    stages = Reading(ring, "force", "stage", numbers.clock, right, before, [ring.one] * 4)
-    return name_of(stages, Fraction(0))
+    stages = ClockReading(ring, "force", "stage", numbers.clock, right, before, [ring.one] * 4)
+    return mistake_of_clock(stages, Fraction(0))
 
 
 @pytest.mark.parametrize(

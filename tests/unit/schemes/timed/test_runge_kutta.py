@@ -8,14 +8,14 @@ import sympy
 
 from tests.helpers.stepping.steps_in_time import agreement, flow, problem, runge_kutta_step
 from verify.errors import InputError
-from verify.proof.by_conditions import agreed_order
+from verify.proof.order_conditions import agreed_order
 from verify.schemes import get
 from verify.schemes.conditions.coloured_trees import all_trees, equation_text, unrestricted_grammar
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
-from verify.schemes.conditions.timed.for_scheme import conditions_for
+from verify.schemes.conditions.scheme_clocks import conditions_for
 from verify.schemes.conditions.tree_conditions import TreeConditions
-from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.words import Kinetic
 
 R, F = sympy.Rational, Fraction
 TIMED = unrestricted_grammar(1, timed=True)

@@ -10,14 +10,13 @@ import sympy
 from tests.helpers.planted.splittings import SPLITTINGS, parts_of
 from tests.helpers.stepping.steps_in_time import agreement, flow, problem, splitting_step
 from verify.errors import InputError
-from verify.proof.by_conditions import agreed_order
+from verify.proof.order_conditions import agreed_order
 from verify.schemes import get
-from verify.schemes.conditions.free_lie_words import conditions as plain_conditions
+from verify.schemes.conditions.scheme_clocks import conditions_for
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.for_scheme import conditions_for
-from verify.schemes.conditions.words.kinetic import Kinetic
-from verify.schemes.conditions.words.quadratic import combinations
-from verify.schemes.conditions.words.words import concatenate, lyndon, text, words
+from verify.schemes.conditions.words.equations import combinations
+from verify.schemes.conditions.words.equations import logarithm_equations as plain_conditions
+from verify.schemes.conditions.words.words import Kinetic, concatenate, lyndon, text, words
 
 R, F = sympy.Rational, Fraction
 KINDS = {

@@ -14,15 +14,20 @@ from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.pages.sections.scene.poincare import SECTION
-from verify.scenes.results.orbit_sections import MapSections, PoincareResult
+from verify.scenes.results.orbit_points import MapSections, PoincareResult
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene
+from verify.studies import section_points
 from verify.studies.kinds.orbits import STUDY
-from verify.studies.orbits import by_exact_flow, by_scheme
-from verify.studies.orbits.at_surface import SectionRequest, sections_of
-from verify.studies.orbits.passes import Surface, count_agreeing
-from verify.studies.plan import plan_scenes
+from verify.studies.section_points import SectionRequest, sections_at_surface
+from verify.studies.surface_passes import (
+    Surface,
+    count_agreeing,
+    find_passes_of_exact_flow,
+    find_passes_of_scheme,
+)
+from verify.studies.tasks_of_scenes import plan_scenes
 
 OSCILLATORS = Hamiltonian.parse("(p1**2 + q1**2)/2 + p2**2/2 + q2**2")
 HENON_HEILES = get("henon-heiles").hamiltonian({})
@@ -38,7 +43,9 @@ def made(
     name: str, *starts: Any, of: Hamiltonian = HENON_HEILES, surface: Surface = RISING,
     steps: int = 500, digits: int = 25, h: Fraction = H,
 ) -> MapSections:  # fmt: skip
-    return sections_of(SectionRequest(of, surface, ("q2", "p2"), h, steps, digits), name, starts)
+    return sections_at_surface(
+        SectionRequest(of, surface, ("q2", "p2"), h, steps, digits), name, starts
+    )
 
 
 @pytest.mark.parametrize(("rising", "value"), [(True, 0), (False, 0), (True, Fraction(1, 4))])
@@ -59,7 +66,7 @@ def test_the_exact_flow_passes_where_algebra_says(rising: bool, value: Fraction)
 
 def test_a_scheme_passes_on_the_surface_by_a_step_of_its_own() -> None:
     given = {"step_size": H, "steps": 100, "digits": 30}
-    passes = by_scheme.find_passes(OSCILLATORS, "lie2", CALM, RISING, **given)  # type: ignore[arg-type]
+    passes = find_passes_of_scheme(OSCILLATORS, "lie2", CALM, RISING, **given)  # type: ignore[arg-type]
     assert len(passes.states) == 1
     assert not passes.left
     (state,) = passes.states
@@ -138,13 +145,13 @@ def test_passes_are_known_as_far_as_both_reckonings_have_them(
 
 def test_a_pass_elsewhere_is_no_longer_the_same_point(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control of `known`: a second reckoning that is off by 10⁻⁵ confirms nothing."""
-    right, calls = by_exact_flow.find_all_passes, iter(range(2))
+    right, calls = find_passes_of_exact_flow, iter(range(2))
 
     def planted(h: Any, starts: Any, surface: Surface, *rest: Any) -> Any:
         off = Fraction(next(calls), 10**5)
         return right(h, starts, Surface(surface.names, "q1", off, rising=True), *rest)
 
-    monkeypatch.setattr(by_exact_flow, "find_all_passes", planted)
+    monkeypatch.setattr(section_points, "find_passes_of_exact_flow", planted)
     assert made(EXACT_FLOW, CALM).orbits[0].known == 0
 
 

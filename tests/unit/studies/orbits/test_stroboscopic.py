@@ -11,12 +11,12 @@ from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import check_period, is_angle
 from verify.pages.sections.scene.stroboscopic import SECTION
-from verify.runs.run import run
-from verify.scenes.results.orbit_sections import StroboscopicResult
+from verify.runs.requested_run import run
+from verify.scenes.results.orbit_points import StroboscopicResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene
 from verify.studies.kinds.orbits import STUDY
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 
 KICKED = "p**2/2 - (1 + 3*cos(2*pi*t)/2)*cos(q)"
 LONG = 500  # periods, in which a wild orbit loses more digits than there are

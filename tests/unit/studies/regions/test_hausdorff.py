@@ -8,8 +8,17 @@ import pytest
 
 from verify.errors import InputError
 from verify.studies.regions import hausdorff as module
-from verify.studies.regions.hausdorff import RELATIVE, Distance, _enclose_directed, hausdorff
-from verify.studies.regions.segment_tree import boxes, nearest, new_stack, segments, to_segment
+from verify.studies.regions.hausdorff import (
+    RELATIVE,
+    Distance,
+    _enclose_directed,
+    boxes,
+    hausdorff,
+    nearest,
+    new_stack,
+    segments,
+    to_segment,
+)
 
 Array = Any
 SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -18,8 +18,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions import mean_lambda as region_mean
-from verify.studies.regions.area import Goal
 from verify.studies.regions.mean_lambda import _sample_cells, find_middle, mean_over
+from verify.studies.regions.region_area import Goal
 
 CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))

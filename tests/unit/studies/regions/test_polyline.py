@@ -6,8 +6,8 @@ import pytest
 from tests.helpers.known_areas import measured, still
 from verify.scenes.shapes import named as shapes
 from verify.studies.regions.hausdorff import hausdorff
+from verify.studies.regions.panels import densify
 from verify.studies.regions.polyline import (
-    densify,
     format_points,
     parse_points,
     thin,

@@ -9,9 +9,9 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_parts import TangentGrowth
-from verify.studies.separation.growth import classify_motion, fit_power_law
-from verify.studies.separation.separate import separate
-from verify.studies.separation.ways.matrices import compute_size, entries_of_defect
+from verify.studies.separation.growth_fits import classify_motion, fit_power_law
+from verify.studies.separation.matrix_products import compute_size, entries_of_defect
+from verify.studies.separation.truncation_and_rounding import separate
 
 MARKS = tuple(range(4, 2049, 4))
 HENON = systems.get("henon-heiles").hamiltonian({})

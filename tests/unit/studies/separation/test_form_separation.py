@@ -17,9 +17,9 @@ from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.links import Chains, separate_chains
-from verify.studies.separation.separate import separate
-from verify.studies.separation.stepper.run import MixedRun
-from verify.studies.separation.ways.matrices import Matrices
+from verify.studies.separation.matrix_products import Matrices
+from verify.studies.separation.mixed_run import MixedRun
+from verify.studies.separation.truncation_and_rounding import separate
 
 DIGITS = 30
 TINY = MP.mpf(10) ** -70  # of the oracle itself

@@ -26,9 +26,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
 from verify.studies.separation.links import separate_chains
-from verify.studies.separation.separate import separate
-from verify.studies.separation.stepper.run import MixedRun
-from verify.studies.separation.ways.matrices import Matrices
+from verify.studies.separation.matrix_products import Matrices
+from verify.studies.separation.mixed_run import MixedRun
+from verify.studies.separation.truncation_and_rounding import separate
 
 HENON = systems.get("henon-heiles").hamiltonian({})
 START = {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}

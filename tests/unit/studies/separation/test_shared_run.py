@@ -11,18 +11,19 @@ from tests.helpers.constructed.plans import kept_in, plain
 from tests.helpers.constructed.scenes import HEAD, load
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
-from verify.execution.keeping import NOTHING
+from verify.execution.keeper import NOTHING
 from verify.execution.plan import Plan, keys_supplied_by
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measurement
-from verify.runs.run import RequestedRun
+from verify.runs.requested_run import RequestedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
-from verify.studies.plan import plan_scenes
-from verify.studies.separation.task import SeparationTask, serves_first_link
+from verify.studies.kinds.grid import serves_first_link
+from verify.studies.kinds.separation import SeparationTask
+from verify.studies.tasks_of_scenes import plan_scenes
 
 STEPS = 300
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.separate import separate
+from verify.studies.separation.truncation_and_rounding import separate
 
 PLANE = Hamiltonian.parse("p**2/2 + a*q**2/2 + q**4/4", {"a": "1/3"})
 BESIDE = Hamiltonian.parse("p1**2/2 + a*q1**2/2 + q1**4/4 + p2**2/2", {"a": "1/3"})

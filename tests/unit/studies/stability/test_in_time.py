@@ -8,12 +8,12 @@ import pytest
 import verify
 from verify.arithmetic.exact import rational
 from verify.flows import orbit_search as orbits
-from verify.flows.orbit import exact_orbit
+from verify.flows.exact_orbit import exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability.limits import largest_step, stability_map
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run
+from verify.studies.stability.trail import StabilityRun
 from verify.studies.stability.verdict_on_run import RunJudgement, judge
+from verify.studies.stability.verdict_results import largest_step, stability_map
 
 FORCED = "p**2/2 + q**2/2 - q*cos(2*t)"
 DUFFING = "p**2/2 + q**2/2 + q**4/4 - q*cos(7*t/5)/2"
@@ -24,9 +24,9 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 def case(
     text: str, scheme: str, h: str, steps: int, q: str = "1", p: str = "0", t0: str = "0"
-) -> Run:
+) -> StabilityRun:
     exact = Hamiltonian.parse(text)
-    return Run(exact, scheme, rational(h), (rational(p), rational(q)), steps, rational(t0))
+    return StabilityRun(exact, scheme, rational(h), (rational(p), rational(q)), steps, rational(t0))
 
 
 def judged(*given: str | int, **more: str) -> RunJudgement:

@@ -8,10 +8,10 @@ import pytest
 from tests.helpers.constructed.scenes import load
 from verify.commands.shared.input import load_target
 from verify.errors import InputError
-from verify.execution.study import plan_of
+from verify.execution.plan import plan_of
 from verify.scenes.stability_sections import Stability, StabilityMap
 from verify.studies.kinds.stability import need_stability, stability_tasks
-from verify.studies.plan import plan_scenes
+from verify.studies.tasks_of_scenes import plan_scenes
 
 HEAD = """
 hamiltonian = "p**2/2 + q**2/2 + d*q**4/4"

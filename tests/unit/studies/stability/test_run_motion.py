@@ -9,16 +9,16 @@ import pytest
 
 from verify.arithmetic.exact import fraction
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability import energy_drift
+from verify.studies.stability import run_motion
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Point, Run, Trail
+from verify.studies.stability.trail import RunTrail, StabilityRun, TrailPoint
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
-CASE = Run(DUFFING, "lie2", Fraction(1, 20), (Fraction(-1, 7), Fraction(2, 3)), 700)
+CASE = StabilityRun(DUFFING, "lie2", Fraction(1, 20), (Fraction(-1, 7), Fraction(2, 3)), 700)
 EXACT = Fraction(1, 10**75)
 
 
-def states(trail: Trail) -> list[tuple[Fraction, ...]]:
+def states(trail: RunTrail) -> list[tuple[Fraction, ...]]:
     return [tuple(map(fraction, point.state)) for point in trail.points]
 
 
@@ -26,7 +26,7 @@ def energy(p: Fraction, q: Fraction) -> Fraction:
     return p**2 / 2 + q**2 / 2 + q**4 / 4
 
 
-def changed(trail: Trail, index: int, k: int, x: Any) -> Trail:
+def changed(trail: RunTrail, index: int, k: int, x: Any) -> RunTrail:
     """The trail with another number at one place, for p where k = 0."""
     columns = [list(column) for column in trail.columns]
     columns[k][index] = x
@@ -80,7 +80,7 @@ def test_one_point_with_too_much_energy_is_enough(motion: RunMotion) -> None:
     high = fraction(motion.precise.points[20].state[1]) + 9 * motion.orbit.reach[1]
     assert motion.stays(motion.precise)
     assert not motion.stays(changed(motion.precise, 20, 1, high))
-    assert not motion.is_outside(Point(0, (Fraction(0), high)))
+    assert not motion.is_outside(TrailPoint(0, (Fraction(0), high)))
 
 
 @pytest.mark.parametrize("k", [0, 1])
@@ -98,8 +98,9 @@ def test_runs_are_together_up_to_a_tenth_of_the_reach_at_every_point(
 
 
 def test_where_h_has_no_value_at_a_point_the_run_does_not_stay() -> None:
-    well = RunMotion(Run(Hamiltonian.parse("p**2/2 + q**2/2 + 1/q"), "lie2", Fraction(1, 50),
-                         (Fraction(0), Fraction(3, 2)), 200))  # fmt: skip
+    pole = Hamiltonian.parse("p**2/2 + q**2/2 + 1/q")
+    start = Fraction(0), Fraction(3, 2)
+    well = RunMotion(StabilityRun(pole, "lie2", Fraction(1, 50), start, 200))
     assert well.stays(well.precise)
     undefined = changed(well.precise, 20, 1, Fraction(0))
     assert not well.is_outside(undefined.points[20])
@@ -119,9 +120,11 @@ def test_a_motion_that_rests_for_a_few_steps_only_has_not_died(
 ) -> None:
     text, scheme, h, steps, q = case
     motion = RunMotion(
-        Run(Hamiltonian.parse(text), scheme, Fraction(h), (Fraction(0), Fraction(q)), steps)
+        StabilityRun(
+            Hamiltonian.parse(text), scheme, Fraction(h), (Fraction(0), Fraction(q)), steps
+        )
     )
     trail, period = motion.precise, motion.orbit.period
     assert period is not None
-    assert energy_drift.is_at_rest(motion, trail.onwards(trail.point(-1), energy_drift._FEW))
-    assert energy_drift.has_died(motion, trail, period) is died
+    assert run_motion.is_at_rest(motion, trail.onwards(trail.point(-1), run_motion._FEW))
+    assert run_motion.has_died(motion, trail, period) is died

@@ -11,8 +11,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.studies.stability import trail as trails
 from verify.studies.stability.trail import (
-    Point,
-    Run,
+    StabilityRun,
+    TrailPoint,
     find_first_apart,
     find_first_step,
     follow,
@@ -20,12 +20,12 @@ from verify.studies.stability.trail import (
 )
 
 FLOAT = arithmetic.get("float64", 17)
-GROWING = Run(
+GROWING = StabilityRun(
     Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), (Fraction(0), Fraction(1)), 3000
 )
 
 
-def stepped(case: Run, steps: int) -> tuple[float, float]:
+def stepped(case: StabilityRun, steps: int) -> tuple[float, float]:
     """lie1 on the harmonic oscillator, in float64."""
     p, q, h = *map(float, case.state), float(case.step_size)
     for _ in range(steps):
@@ -36,7 +36,7 @@ def stepped(case: Run, steps: int) -> tuple[float, float]:
 def test_a_trail_has_the_states_of_a_plain_loop() -> None:
     trail = follow(GROWING, FLOAT)
     assert trail.is_finished
-    assert trail.points[0] == Point(0, (Fraction(0), Fraction(1)))
+    assert trail.points[0] == TrailPoint(0, (Fraction(0), Fraction(1)))
     assert trail.points[-1].step == GROWING.steps
     assert len(trail.points) > 100
     for point in trail.points[:: len(trail.points) // 5]:
@@ -47,7 +47,9 @@ def test_a_trail_has_the_states_of_a_plain_loop() -> None:
 @pytest.mark.parametrize("text", ["p**2/2 + q**2/2 + q**4/4", "p**2/2 + q**2/2 - q*cos(2*t)"])
 def test_its_points_are_the_exact_numbers_that_the_run_notes(name: str, text: str) -> None:
     made = arithmetic.get(name, 30)
-    case = Run(Hamiltonian.parse(text), "lie2", Fraction(1, 30), (Fraction(0), Fraction(1, 3)), 700)
+    case = StabilityRun(
+        Hamiltonian.parse(text), "lie2", Fraction(1, 30), (Fraction(0), Fraction(1, 3)), 700
+    )
     trail, every = follow(case, made), 7
     noted = KernelRun(
         case.hamiltonian, "lie2", {**case.start}, 700, frozenset(), 0, sections=100
@@ -62,7 +64,7 @@ def test_its_points_are_the_exact_numbers_that_the_run_notes(name: str, text: st
 
 @pytest.mark.parametrize("size", [2, 100, 10**5])
 def test_the_first_step_is_found_exactly(size: int) -> None:
-    def far(point: Point) -> bool:
+    def far(point: TrailPoint) -> bool:
         return sum(x**2 for x in point.state) > size
 
     # The square of the radius grows by 1 + h² at each step.
@@ -97,7 +99,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
     case = replace(GROWING, steps=2500)
     one, other = follow(case, coarse), follow(case, fine)
 
-    def apart(x: Point, y: Point) -> bool:
+    def apart(x: TrailPoint, y: TrailPoint) -> bool:
         return abs(x.state[0] - y.state[0]) > Fraction(1, 10)
 
     found = find_first_apart(one, other, apart)
@@ -118,7 +120,9 @@ def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so(
 ) -> None:
     monkeypatch.setattr(trails, "MOST_INTERPRETED", 3000)
     hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
-    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), (Fraction(0), Fraction(1)), 400_000)
+    case = StabilityRun(
+        hamiltonian, "lie1", Fraction(1, 10**6), (Fraction(0), Fraction(1)), 400_000
+    )
     trail = follow_precisely(case, 30)
     assert trail.arithmetic.name == "mpfr"
     assert trail.is_finished

@@ -10,7 +10,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability import verdict_on_run as blame
 from verify.studies.stability.rounded_start import nearest_equilibrium
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run, follow_precisely
+from verify.studies.stability.trail import StabilityRun, follow_precisely
 from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
 HARMONIC = "p**2/2 + q**2/2"
@@ -22,9 +22,11 @@ EXPONENTIAL = "p**2/2 + exp(q) + exp(-q)"
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620")
 
 
-def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Run:
+def case(
+    text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0"
+) -> StabilityRun:
     at = q if isinstance(q, Fraction) else rational(q)
-    return Run(Hamiltonian.parse(text), scheme, rational(h), (rational(p), at), steps)
+    return StabilityRun(Hamiltonian.parse(text), scheme, rational(h), (rational(p), at), steps)
 
 
 def judged(*given: object) -> RunJudgement:
@@ -235,7 +237,7 @@ def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
     top = PENDULUM, "stormer-verlet", "0.02", 2000, PI - Fraction(1, 10**16)
     assert judged(*top).kind == "unstable: arithmetic"
 
-    def elsewhere(case: Run, digits: int) -> object:
+    def elsewhere(case: StabilityRun, digits: int) -> object:
         return follow_precisely(replace(case, state=(case.state[0], 1000 * case.state[1])), digits)
 
     monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more

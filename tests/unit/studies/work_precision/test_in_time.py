@@ -10,18 +10,13 @@ import pytest
 from tests.helpers.constructed.work import work_task
 from tests.paths import ROOT
 from verify.execution.execute import compute_task
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.scene import Scene, load_scene
-from verify.studies.work_precision import peers
-from verify.studies.work_precision.peer_interface import InitialValueProblem
-from verify.studies.work_precision.runs import Ladder, Problem, reference
+from verify.studies.work_precision.ladder import SchemeLadder
+from verify.studies.work_precision.problem import ReferenceProblem, reference
 
 DRIVEN = ROOT / "reports" / "driven"
-DUFFING = "p**2/2 + q**2/2 + q**4/4 - q*cos(7*t/5)/2"
 SLOPES = {"stormer-verlet": 2, "forest-ruth": 4, "triple-jump6": 6, "gauss4": 4, "rk4": 4}
-
-
 WRONG = (
     "stormer-verlet, clock frozen", "forest-ruth, clock exchanged", "blanes-moan4, clock frozen",
 )  # fmt: skip
@@ -35,11 +30,11 @@ def scenes() -> dict[str, Scene]:
     return {name: scene for name, scene in files.items() if scene.work_precision}
 
 
-def problem(scene: Scene) -> Problem:
+def problem(scene: Scene) -> ReferenceProblem:
     assert scene.work_precision is not None
     exact, time = scene.exact_hamiltonian(), Fraction(scene.work_precision.time)
     start = {"p": Fraction(0), "q": Fraction(1)}
-    return Problem(exact, start, time, scene.t0, reference(exact, start, time, scene.t0))
+    return ReferenceProblem(exact, start, time, scene.t0, reference(exact, start, time, scene.t0))
 
 
 CASES = [("duffing", x) for x in (*SLOPES, *WRONG)]
@@ -50,7 +45,7 @@ CASES += [("mathieu", x) for x in ("stormer-verlet", "rk4", WRONG[0])]
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "scheme"), CASES)
 def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:
-    ladder = Ladder(problem(scenes()[name]), scheme)
+    ladder = SchemeLadder(problem(scenes()[name]), scheme)
     coarse, fine = (ladder.point(Fraction(1, n)) for n in (40, 80))
     assert coarse.error is not None
     assert fine.error is not None
@@ -77,22 +72,3 @@ def test_energy_is_none_and_t0_counts() -> None:
     errors = [point.error for point in points]
     assert errors[0] != errors[2]
     assert (early.t0, late.t0) == ("0", "2")
-
-
-@pytest.mark.sample(2)
-@pytest.mark.parametrize("name", peers.libraries())
-@pytest.mark.parametrize("t0", [Fraction(1, 3), Fraction(1000)])
-def test_a_peer_solves_it_from_its_t0(name: str, t0: Fraction) -> None:
-    pytest.importorskip(peers.libraries()[name])
-    hamiltonian, start = Hamiltonian.parse(DUFFING), {"p": Fraction(0), "q": Fraction(1)}
-    solver = peers.get(name).make(
-        InitialValueProblem(hamiltonian, start, Fraction(10), t0), Fraction(1, 10**12)
-    )
-    exact = reference(hamiltonian, start, Fraction(10), t0)
-    other = reference(hamiltonian, start, Fraction(10), t0 + 1)
-    first, again = solver.solve(), solver.solve()
-    assert first.state == again.state
-    three = (first.state, exact.point.values(), other.point.values())
-    for found, right, wrong in zip(*three, strict=True):
-        assert abs(Fraction(found) - right) < Fraction(1, 10**10)
-        assert abs(Fraction(found) - wrong) > Fraction(1, 10)

@@ -19,8 +19,8 @@ from verify.execution.executors import THIS_PROCESS
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.studies.kinds import work_precision as section_plan
-from verify.studies.plan import Plan, plan_scenes
-from verify.studies.work_precision.task import WorkPrecisionTask
+from verify.studies.kinds.work_precision import WorkPrecisionTask
+from verify.studies.tasks_of_scenes import Plan, plan_scenes
 
 START = "initial_value = { q = 1, p = 0 }"
 SECTION = f"[work_precision]\ntime = 1\nstep_sizes = [0.01, 0.005]\n{START}\n"
@@ -120,7 +120,7 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     path.write_text(GOOD + "peers = false\nrepeats = 1")
     code = (
         "import sys; from pathlib import Path; from verify.scenes.scene import load_scene;"
-        "from verify.studies.plan import plan_scenes;"
+        "from verify.studies.tasks_of_scenes import plan_scenes;"
         "from verify.execution.execute import Store, execute;"
         "from verify.execution.executors import THIS_PROCESS;"
         f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=THIS_PROCESS);"

@@ -3,19 +3,19 @@
 from itertools import pairwise
 from typing import Literal
 
-from verify.claims.findings import Findings
-from verify.claims.on_runs import QuantityClaim
-from verify.claims.runs import QUANTITIES, all_hold, sign, table_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, all_hold, sign, table_of
+from verify.claims.run_claims import QuantityClaim
 from verify.prose import Number, join_prose, prose
 from verify.scenes.results.claim import ClaimResult
 
-_WAYS = {True: "rises", False: "falls"}
+_DIRECTIONS = {True: "rises", False: "falls"}
 
 
 class AlikeClaim(QuantityClaim):
     """One pattern over the step sizes, whatever the initial value."""
 
-    only_here = "a pattern is over the initial values of its own scene"
+    obstacle = "a pattern is over the initial values of its own scene"
     kind: Literal["alike"]
 
     def compare(self, findings: Findings) -> ClaimResult:
@@ -23,24 +23,26 @@ class AlikeClaim(QuantityClaim):
         verdicts: list[bool | None] = []
         parts = []
         for column in zip(*(list(pairwise(row)) for row in rows), strict=True):
-            ways = [sign(quantity(two) - quantity(one)) for one, two in column]
+            directions = [sign(quantity(coarser) - quantity(finer)) for finer, coarser in column]
             # If one of the changes is undecided, so is the pattern between these step sizes.
-            same = None if None in ways else len(set(ways)) == 1
+            same = None if None in directions else len(set(directions)) == 1
             verdicts.append(same)
-            one, two = column[0]
-            way = "is not told apart" if same is None else _way(ways)
-            parts.append(prose("from h = ", Number(one.step_size), " to ", Number(two.step_size),
-                              f" it {way}"))  # fmt: skip
+            finer, coarser = column[0]
+            pattern = "is not told apart" if same is None else _describe(directions)
+            parts.append(prose(
+                "from h = ", Number(finer.step_size), " to ", Number(coarser.step_size),
+                f" it {pattern}",
+            ))  # fmt: skip
         evidence = prose(
             f"{quantity.label} from {len(rows)} initial values: ", join_prose(", ", parts)
         )
         return self.result(all_hold(verdicts), evidence, table_of(rows, self.quantity))
 
 
-def _way(ways: list[bool | None]) -> str:
-    if len(set(ways)) == 1:
-        return f"{_WAYS[bool(ways[0])]} from all"
-    return f"rises from {ways.count(True)} and falls from {ways.count(False)}"
+def _describe(directions: list[bool | None]) -> str:
+    if len(set(directions)) == 1:
+        return f"{_DIRECTIONS[bool(directions[0])]} from all"
+    return f"rises from {directions.count(True)} and falls from {directions.count(False)}"
 
 
 CLAIM = AlikeClaim

@@ -11,9 +11,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from verify.arithmetic.arb import format_ball
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, Quantity, all_hold, sign
+from verify.claims.run_claims import RunClaim
 from verify.prose import Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
@@ -25,7 +25,7 @@ On = Literal["step_size", "initial_value"]
 class DependsClaim(RunClaim):
     """The claim that values are not all the same."""
 
-    only_here = "on what values depend is seen on the grid of its own scene"
+    obstacle = "on what values depend is seen on the grid of its own scene"
     kind: Literal["depends"]
     of: Annotated[tuple[Quantity, ...], Field(min_length=1)]
     """The quantities that vary."""
@@ -58,21 +58,21 @@ def _find_different(name: str, groups: Sequence[Sequence[RunResult]]) -> tuple[b
     Returns False if all values are the same, and None if neither is decided.
     """
     quantity, same = QUANTITIES[name], True
-    for one, two in _pairs(groups):
-        first, second = quantity(one), quantity(two)
-        if sign(second - first, zero=None) is not None:
-            values = (number(format_ball(first, 3)), " and ", number(format_ball(second, 3)))
+    for run, other_run in _pairs(groups):
+        value, other_value = quantity(run), quantity(other_run)
+        if sign(other_value - value, zero=None) is not None:
+            values = (number(format_ball(value, 3)), " and ", number(format_ball(other_value, 3)))
             return True, prose(*values)
         # Exact values with equal decimals are the same; enclosures that overlap decide nothing.
-        same = same and _equal(one, two, quantity.needs)
+        same = same and _equal(run, other_run, quantity.needs)
     return (False, prose("all the same")) if same else (None, prose("not told apart"))
 
 
-def _equal(one: RunResult, two: RunResult, names: Sequence[str]) -> bool:
+def _equal(run: RunResult, other_run: RunResult, names: Sequence[str]) -> bool:
     """Return True if the values are exact, and their decimals equal."""
-    both = [(one.values[name], two.values[name]) for name in names]
-    exact = all(Fraction(each.bound) == 0 for pair in both for each in pair)
-    return exact and all(Fraction(a.value) == Fraction(b.value) for a, b in both)
+    pairs = [(run.values[name], other_run.values[name]) for name in names]
+    are_exact = all(Fraction(value.bound) == 0 for pair in pairs for value in pair)
+    return are_exact and all(Fraction(a.value) == Fraction(b.value) for a, b in pairs)
 
 
 def _pairs(groups: Sequence[Sequence[RunResult]]) -> Iterator[tuple[RunResult, RunResult]]:

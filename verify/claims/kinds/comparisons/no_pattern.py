@@ -13,13 +13,13 @@ from typing import Literal
 
 from verify.algebra.enclosure import enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, middle, start_of, table_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import QUANTITIES, middle, start_of, table_of
+from verify.claims.run_claims import RunClaim
 from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Number, Prose, join_prose, prose
-from verify.runs.start import Start
+from verify.runs.run_start import Start
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
@@ -31,7 +31,7 @@ class NoPatternClaim(RunClaim):
     """No one order of the initial values by |Λ|."""
 
     compares = (_QUANTITY,)
-    only_here = "a pattern is over the initial values of its own scene"
+    obstacle = "a pattern is over the initial values of its own scene"
     kind: Literal["no_pattern"]
 
     def compare(self, findings: Findings) -> ClaimResult:
@@ -40,12 +40,12 @@ class NoPatternClaim(RunClaim):
         orders = [_order([QUANTITIES[_QUANTITY](run) for run in column]) for column in columns]
         details = table_of(rows, _QUANTITY)
         certain = [(c, order) for c, order in zip(columns, orders, strict=True) if order]
-        for (column, one), (other, two) in pairwise(certain):
-            if one != two:
+        for (column, first_order), (other_column, other_order) in pairwise(certain):
+            if first_order != other_order:
                 disagreement = prose(
-                    "by |Λ| the initial values stand in the order ", _format_order(one),
-                    " with h = ", Number(column[0].step_size), " and ", _format_order(two),
-                    " with h = ", Number(other[0].step_size),
+                    "by |Λ| the initial values stand in the order ", _format_order(first_order),
+                    " with h = ", Number(column[0].step_size), " and ", _format_order(other_order),
+                    " with h = ", Number(other_column[0].step_size),
                     ", as they are counted in the table: none is that of every step size",
                 )  # fmt: skip
                 return self.result(Verdict.MEASURED, disagreement, details)
@@ -53,13 +53,13 @@ class NoPatternClaim(RunClaim):
             evidence = f"the order is known at {len(certain)} of {len(columns)} step sizes alone"
             return self.result(Verdict.UNDECIDED, evidence, details)
         order = certain[0][1]
-        exact = findings.scene(self.scene).exact_hamiltonian()
-        energies = [_energy(exact, row[0]) for row in rows]
+        hamiltonian = findings.scene(self.scene).exact_hamiltonian()
+        energies = [_energy(hamiltonian, row[0]) for row in rows]
         of_h = ", which is that of H" if order == _order(energies) else ""
-        first = join_prose(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
+        starts = join_prose(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
         evidence = prose(
             f"at all {len(columns)} step sizes the initial values stand in one order by |Λ|: ",
-            first, of_h,
+            starts, of_h,
         )  # fmt: skip
         return self.result(Verdict.REFUTED, evidence, details)
 

@@ -11,9 +11,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from verify.arithmetic.arb import Ball, bounds, format_fixed, lg, precision, rational_ball
-from verify.claims.claim import Claim
-from verify.claims.findings import Findings
-from verify.claims.printed import Row, places
+from verify.claims.base_claim import Claim, Findings
+from verify.claims.quantities import PrintedRow, places
 from verify.errors import InputError
 from verify.prose import Formula, Number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -25,13 +24,13 @@ class PrintedPowerClaim(Claim):
     """A row of printed logarithms, one a step size."""
 
     on_scene = False
-    only_here = "printed numbers say nothing of drawn Hamiltonians"
+    obstacle = "printed numbers say nothing of drawn Hamiltonians"
     kind: Literal["printed_power"]
     scheme: str = ""
     """None: only what is printed is looked at."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2)]
     """The step sizes of the row."""
-    lg_printed: Row
+    lg_printed: PrintedRow
     """The printed logarithms, one a step size."""
     beyond_power: Annotated[int, Field(ge=0, le=64, strict=True)]
     """The power of the step size."""

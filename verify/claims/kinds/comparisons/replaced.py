@@ -15,9 +15,9 @@ from verify.algebra.enclosure import enclose_over
 from verify.algebra.formula import parse
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import ball, midpoint_and_radius, rational_ball
-from verify.claims.again import AgainClaim
-from verify.claims.findings import Findings
-from verify.claims.runs import NoValueError, all_hold
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import NoValueError, all_hold
+from verify.claims.run_claims import AgainClaim
 from verify.prose import Formula, prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
@@ -41,7 +41,7 @@ class ReplacedClaim(AgainClaim):
         return self
 
     def quantities(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(name for each in self.claims() for name in each.quantities()))
+        return tuple(dict.fromkeys(name for claim in self.claims() for name in claim.quantities()))
 
     def observables(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(("mse", *super().observables())))
@@ -53,15 +53,15 @@ class ReplacedClaim(AgainClaim):
         changed_runs = {
             k: _with_mse(run, *formula) for k, run in runs if isinstance(run, RunResult)
         }
-        both = self.compare_twice(findings, changed_runs)
+        pairs = self.compare_twice(findings, changed_runs)
         introduction = prose("with ", Formula(self.mse), " in place of MSE: ")
-        if len(both) == 1:
-            ((_, after),) = both
+        if len(pairs) == 1:
+            ((_, after),) = pairs
             return self.result(after.verdict, introduction + after.evidence, after.details)
-        details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(both)]
-        verdicts = [after.verdict for _, after in both]
+        details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(pairs)]
+        verdicts = [after.verdict for _, after in pairs]
         holds = [None if v is Verdict.UNDECIDED else v.holds for v in verdicts]
-        evidence = introduction + f"{holds.count(True)} of {len(both)} of these claims hold"
+        evidence = introduction + f"{holds.count(True)} of {len(pairs)} of these claims hold"
         return self.result(all_hold(holds), evidence, details)
 
 

@@ -17,11 +17,10 @@ from verify.arithmetic.arb import (
     midpoint_and_radius,
     rational_ball,
 )
-from verify.claims.again import AgainClaim
-from verify.claims.findings import Findings
-from verify.claims.formulas import step_map_of
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, NoValueError, all_hold, middle
+from verify.claims.base_claim import Findings
+from verify.claims.formula_claims import step_map_of
+from verify.claims.quantities import QUANTITIES, NoValueError, all_hold, middle
+from verify.claims.run_claims import AgainClaim, RunClaim
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -43,7 +42,7 @@ class ShiftedClaim(AgainClaim):
     kind: Literal["shifted"]
 
     def refuses(self, claim: RunClaim) -> str:
-        if claim.always_own or set(claim.observables()) - set(_SHIFTED):
+        if claim.separate_runs or set(claim.observables()) - set(_SHIFTED):
             return f"is not made of {' and '.join(_SHIFTED)} of the scene’s runs alone"
         return ""
 
@@ -51,9 +50,9 @@ class ShiftedClaim(AgainClaim):
         scene = findings.scene_of(self)
         tasks = grid_tasks(scene, self.scheme)
         changed_runs, changes = _shift_runs(findings, tasks, scene.exact_hamiltonian(), self.scheme)
-        both = self.compare_twice(findings, changed_runs)
-        details = [["claim", "k = 0 … N − 1", "k = 1 … N"], *self.rows(both)]
-        verdicts: list[bool | None] = [x.verdict is y.verdict for x, y in both]
+        pairs = self.compare_twice(findings, changed_runs)
+        details = [["claim", "k = 0 … N − 1", "k = 1 … N"], *self.rows(pairs)]
+        verdicts: list[bool | None] = [x.verdict is y.verdict for x, y in pairs]
         evidence = prose(
             f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count "
             "Λ changes by ", number(format_ball(changes["lambda"], 2)),
@@ -64,10 +63,10 @@ class ShiftedClaim(AgainClaim):
 
 
 def _shift_runs(
-    findings: Findings, tasks: list[Any], exact: Hamiltonian, scheme: str
+    findings: Findings, tasks: list[Any], hamiltonian: Hamiltonian, scheme: str
 ) -> tuple[dict[str, RunResult], dict[str, Ball]]:
     """Return the runs counted from z_1, by task key, and the greatest relative changes."""
-    delta_j, changed_runs = _delta_j(exact, scheme), {}
+    delta_j, changed_runs = _delta_j(hamiltonian, scheme), {}
     largest: dict[str, Ball] = {name: rational_ball(Fraction(0)) for name in _SHIFTED}
     for task in tasks:
         run = findings.results[task.key]
@@ -92,17 +91,17 @@ def _shift_runs(
 def _values(run: RunResult, delta_j: DeltaJ) -> dict[str, Ball]:
     h = rational_ball(Fraction(run.step_size))
     q, p = map(Fraction, run.plane_start)
-    first = delta_j(rational_ball(p), rational_ball(q), h)
-    last = delta_j(ball(run.values["p"]), ball(run.values["q"]), h)
+    at_start = delta_j(rational_ball(p), rational_ball(q), h)
+    at_end = delta_j(ball(run.values["p"]), ball(run.values["q"]), h)
     lam, mse = QUANTITIES["lambda"](run), QUANTITIES["mse"](run)
     return {
-        "lambda": (1 + lam) * (1 + last) / (1 + first) - 1,
-        "mse": mse + (last**2 - first**2) / run.steps,
+        "lambda": (1 + lam) * (1 + at_end) / (1 + at_start) - 1,
+        "mse": mse + (at_end**2 - at_start**2) / run.steps,
     }
 
 
-def _delta_j(exact: Hamiltonian, scheme: str) -> DeltaJ:
-    step_map = step_map_of(exact, scheme)
+def _delta_j(hamiltonian: Hamiltonian, scheme: str) -> DeltaJ:
+    step_map = step_map_of(hamiltonian, scheme)
     field, (element,) = canonical_field(step_map.hamiltonian, step_map.delta_j)
 
     def evaluate(p: Ball, q: Ball, h: Ball) -> Ball:

@@ -6,7 +6,7 @@ the largest error over a period is taken: the run's last state and the exact one
 back through the orbit's last period by the exact flow. Errors grow at most like t², so that the
 error over the run's own last period differs from this one by at most a part 2/n, n the number of
 periods. In a run of fewer than ten periods, and if the orbit does not close, the error at the end
-is taken. The exact solution is in closed form where one is known.
+is taken. The exact solution is in closed form if one is known.
 """
 
 from collections.abc import Iterable, Sequence
@@ -17,14 +17,14 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import known_text, text, upper
-from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import all_hold, some_hold, start_of
+from verify.claims.base_claim import Findings
+from verify.claims.quantities import all_hold, some_hold, start_of
+from verify.claims.run_claims import RunClaim
 from verify.errors import NOT_GIVEN, InputError
-from verify.execution.study import results_of_tasks
+from verify.execution.plan import results_of_tasks
 from verify.execution.task import Task
+from verify.flows.exact_orbit import exact_orbit
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.orbit import exact_orbit
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Number, prose
@@ -32,8 +32,7 @@ from verify.runs.task import RunTask
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.scenes.values import Number as ExactNumber
-from verify.scenes.values import StepSize
+from verify.scenes.values import ExactNumber, StepSize
 from verify.studies.kinds.series import series_task
 from verify.verdict import Verdict
 
@@ -46,7 +45,7 @@ State = tuple[Fraction, Fraction]  # p, q
 
 
 class _Error(NamedTuple):
-    """Bounds of the greatest relative error of a run; None where it is unknown."""
+    """Bounds of the greatest relative error of a run; None if it is unknown."""
 
     run: RunResult
     low: Fraction | None
@@ -56,12 +55,12 @@ class _Error(NamedTuple):
 class SolutionErrorClaim(RunClaim):
     """The error is `within` or `beyond` a part of the reach, for every run of the grid or some run.
 
-    Only runs of `step_size` count, where it is given. The verdict is MEASURED at best, as the reach
+    Only runs of `step_size` count, if it is given. The verdict is MEASURED at best, as the reach
     is an estimate. The claim needs p and q at the end, which every computed run has.
     """
 
     planar = True
-    only_here = "an error at one time is that of its own runs"
+    obstacle = "an error at one time is that of its own runs"
     kind: Literal["solution_error"]
     step_size: StepSize | None = None
     """The step size of the grid's runs that the claim is about; by default all."""
@@ -87,17 +86,21 @@ class SolutionErrorClaim(RunClaim):
         if self.step_size is not None and sizes and self.step_size not in sizes:
             raise InputError("step_size", text(self.step_size), "is not in the scene's grid")
         if self.series and not self._series_tasks(scene):
-            sources = ", ".join(dict.fromkeys(each.source for each in scene.series if each.source))
+            sources = ", ".join(
+                dict.fromkeys(section.source for section in scene.series if section.source)
+            )
             problem = f"the scene has no such [[series]]; it has {sources or 'none'}"
             raise InputError("series", self.series, problem)
 
     def _series_tasks(self, scene: Scene) -> list[RunTask]:
-        sections = [each for each in scene.series if each.source == self.series]
-        longest = max((each.step_size * each.count for each in sections), default=Fraction(0))
+        sections = [section for section in scene.series if section.source == self.series]
+        longest = max(
+            (section.step_size * section.count for section in sections), default=Fraction(0)
+        )
         return [
-            series_task(scene, self.scheme, each)
-            for each in sections
-            if each.step_size * each.count == longest
+            series_task(scene, self.scheme, section)
+            for section in sections
+            if section.step_size * section.count == longest
         ]
 
     def tasks(self, scene: Scene) -> Iterable[Task]:
@@ -108,8 +111,8 @@ class SolutionErrorClaim(RunClaim):
         return self.compare_or_undecided(findings)
 
     def compare(self, findings: Findings) -> ClaimResult:
-        exact = findings.scene(self.scene).exact_hamiltonian()
-        errors = [_error_of(exact, run) for run in self._runs(findings)]
+        hamiltonian = findings.scene(self.scene).exact_hamiltonian()
+        errors = [_error_of(hamiltonian, run) for run in self._runs(findings)]
         holds = [self._holds(error) for error in errors]
         bounded_errors = [e for e in errors if e.high is not None and e.low is not None]
         head = ["initial value", "h", "t", "largest error over the last period, of the reach"]
@@ -134,8 +137,8 @@ class SolutionErrorClaim(RunClaim):
             Number(_format_error(least)), " (", _place(least), ") to ",
             Number(_format_error(greatest)), " (", _place(greatest), ")",
         )  # fmt: skip
-        every = self.quantifier == "every"
-        decided = all_hold(holds) if every else some_hold(holds)
+        of_every_run = self.quantifier == "every"
+        decided = all_hold(holds) if of_every_run else some_hold(holds)
         return self.result(decided, evidence, details)
 
     def _runs(self, findings: Findings) -> list[RunResult]:
@@ -156,14 +159,14 @@ class SolutionErrorClaim(RunClaim):
         return True if error.low > limit else False if error.high <= limit else None
 
 
-def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
+def _error_of(hamiltonian: Hamiltonian, run: RunResult) -> _Error:
     if not {"p", "q"} <= set(run.values):  # a scene's run that a proof was given for
         return _Error(run, None, None)
     (q, p), time = map(Fraction, run.plane_start), Fraction(run.step_size) * run.steps
     end = (Fraction(run.values["p"].value), Fraction(run.values["q"].value))
     unsure = max(Fraction(run.values[name].bound) for name in ("p", "q"))
     try:
-        bounds = _largest(exact, (p, q), end, time, Fraction(run.t0))
+        bounds = _largest(hamiltonian, (p, q), end, time, Fraction(run.t0))
     except (NoFlowError, InputError):
         bounds = None
     if bounds is None:
@@ -174,33 +177,35 @@ def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
 
 @lru_cache(maxsize=1024)  # several claims speak of the same runs
 def _largest(
-    exact: Hamiltonian, start: State, end: State, time: Fraction, t0: Fraction
+    hamiltonian: Hamiltonian, start: State, end: State, time: Fraction, t0: Fraction
 ) -> tuple[Fraction, Fraction, Fraction] | None:
     """Return bounds of the largest error, and the smaller reach; None if p or q is constant."""
     p, q = start
-    last = exact_solution(exact, p=p, q=q, time=time, digits=_DIGITS, t0=t0)
-    orbit = exact_orbit(exact, p, q, time, t0)
+    solution = exact_solution(hamiltonian, p=p, q=q, time=time, digits=_DIGITS, t0=t0)
+    orbit = exact_orbit(hamiltonian, p, q, time, t0)
     if not all(orbit.reach):
         return None
-    period = Fraction(0) if exact.time_dependent else orbit.period or Fraction(0)
+    period = Fraction(0) if hamiltonian.time_dependent else orbit.period or Fraction(0)
     # In a few periods alone the error changes too much within one: 2/n would be no small part.
     back = period if time >= _PERIODS * period else Fraction(0)
-    states = list(_carry_back(exact, end, (last.p, last.q), back))
+    states = list(_carry_back(hamiltonian, end, (solution.p, solution.q), back))
     # 2/n bounds by how much errors over the run's own last period may differ from these.
     low, high, drift = Fraction(0), Fraction(0), 2 * back / time
-    for k, rough in enumerate(orbit.reach):
-        distances = [abs(one[k] - other[k]) for one, other in states]
-        exact_values = [other[k] for _, other in states]
+    for k, rough_reach in enumerate(orbit.reach):
+        distances = [abs(state[k] - exact_state[k]) for state, exact_state in states]
+        exact_values = [exact_state[k] for _, exact_state in states]
         # The search sees p and q at its own steps alone, so that the reach may be larger by `more`.
-        reach, margin = rough, _COARSE * rough
+        reach, margin = rough_reach, _COARSE * rough_reach
         if back:
             reach = (max(exact_values) - min(exact_values)) / 2
             margin = (_crest(exact_values) + _crest([-x for x in exact_values])) / 2
-        at_end, greatest = distances[0] - last.bound, max(distances)
+        at_end, greatest = distances[0] - solution.bound, max(distances)
         low = max(
-            low, at_end / (reach + margin), (greatest - last.bound) * (1 - drift) / (reach + margin)
+            low,
+            at_end / (reach + margin),
+            (greatest - solution.bound) * (1 - drift) / (reach + margin),
         )
-        high = max(high, (greatest + _crest(distances) + last.bound) * (1 + drift) / reach)
+        high = max(high, (greatest + _crest(distances) + solution.bound) * (1 + drift) / reach)
     return low, high, min(orbit.reach) * (1 - _COARSE)
 
 
@@ -215,17 +220,18 @@ def _crest(samples: Sequence[Fraction]) -> Fraction:
 
 
 def _carry_back(
-    exact: Hamiltonian, one: State, other: State, back: Fraction
+    hamiltonian: Hamiltonian, state: State, exact_state: State, back: Fraction
 ) -> Iterable[tuple[State, State]]:
     """Yield both states at the end, and at earlier times, by the exact flow."""
-    yield one, other
+    yield state, exact_state
     for k in range(1, _SAMPLES + 1 if back else 1):
         s = -back * k / _SAMPLES
         solutions = (
-            exact_solution(exact, p=p, q=q, time=s, digits=_DIGITS) for p, q in (one, other)
+            exact_solution(hamiltonian, p=p, q=q, time=s, digits=_DIGITS)
+            for p, q in (state, exact_state)
         )
-        first, second = ((each.p, each.q) for each in solutions)
-        yield first, second
+        earlier, exact_earlier = ((solution.p, solution.q) for solution in solutions)
+        yield earlier, exact_earlier
 
 
 def _format_error(error: _Error) -> str:

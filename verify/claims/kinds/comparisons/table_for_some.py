@@ -7,24 +7,24 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.kinds.table import TableClaim
-from verify.claims.runs import NoValueError, all_hold
+from verify.claims.base_claim import Findings
+from verify.claims.kinds.table import PrintedTableClaim
+from verify.claims.quantities import NoValueError, all_hold
 from verify.errors import InputError, unknown_name
 from verify.execution.task import Task
 from verify.prose import Number, join_prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.scenes.values import Number as ExactNumber
+from verify.scenes.values import ExactNumber
 from verify.studies.kinds.grid import grid_tasks
 from verify.verdict import Verdict
 
 
-class TableForSomeClaim(TableClaim):
+class TableForSomeClaim(PrintedTableClaim):
     """A table with an unnamed parameter, REFUTED if it is refuted for each of the given values."""
 
-    only_here = "a printed table is that of its own runs"
+    obstacle = "a printed table is that of its own runs"
     kind: Literal["table_for_some"]  # type: ignore[assignment]
     parameter: str
     """A parameter of H."""
@@ -45,7 +45,11 @@ class TableForSomeClaim(TableClaim):
         ]
 
     def tasks(self, scene: Scene) -> Iterable[Task]:
-        return [task for each in self._scenes(scene) for task in grid_tasks(each, self.scheme)]
+        return [
+            task
+            for changed_scene in self._scenes(scene)
+            for task in grid_tasks(changed_scene, self.scheme)
+        ]
 
     def compare(self, findings: Findings) -> ClaimResult:
         verdicts: list[Verdict] = []
@@ -59,7 +63,7 @@ class TableForSomeClaim(TableClaim):
                 verdicts.append(Verdict.UNDECIDED)
                 parts.append(prose(setting, ": ", error.reason))
                 continue
-            verdicts.append(all_hold([each for row in entries.verdicts for each in row]))
+            verdicts.append(all_hold([entry for row in entries.verdicts for entry in row]))
             parts.append(prose(setting, ": ", self.describe_range(entries.values)))
             head, *rows = entries.details
             printed = [rows.pop(0)] if self.printed else []
@@ -74,7 +78,7 @@ class TableForSomeClaim(TableClaim):
 
     def runs(self, findings: Findings) -> list[RunResult]:
         scenes = self._scenes(findings.scene(self.scene))
-        return [run for each in scenes for run in findings.runs(each, self.scheme)]
+        return [run for scene in scenes for run in findings.runs(scene, self.scheme)]
 
 
 CLAIM = TableForSomeClaim

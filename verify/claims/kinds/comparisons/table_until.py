@@ -11,19 +11,18 @@ from typing import Literal
 
 from verify.arithmetic.arb import Ball, format_ball, is_representable, lg, rational_ball
 from verify.arithmetic.exact import text
-from verify.claims.findings import Findings
-from verify.claims.kinds.table import TableClaim
-from verify.claims.printed import places
-from verify.claims.runs import QUANTITIES, middle, sign, start_of
+from verify.claims.base_claim import Findings
+from verify.claims.kinds.table import PrintedTableClaim
+from verify.claims.quantities import QUANTITIES, middle, places, sign, start_of
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 
-class TableUntilClaim(TableClaim):
+class TableUntilClaim(PrintedTableClaim):
     """A printed row for a run whose length is not stated."""
 
-    only_here = "a printed table is that of its own runs"
+    obstacle = "a printed table is that of its own runs"
     kind: Literal["table_until"]  # type: ignore[assignment]
     quantity: Literal["lg_mse"] = "lg_mse"
     """The printed quantity."""

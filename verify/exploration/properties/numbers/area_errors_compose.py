@@ -9,7 +9,7 @@ from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 
 _DIGITS = 50
-_KNOWN = Fraction(1, 10**30)
+_ACCURACY = Fraction(1, 10**30)
 
 
 def holds(sample: Sample) -> None:
@@ -27,7 +27,7 @@ def holds(sample: Sample) -> None:
     )
     product = (1 + first["lambda"]) * (1 + second["lambda"])
     size = 1 + abs(first["lambda"]) + abs(second["lambda"])
-    if abs(1 + whole["lambda"] - product) > _KNOWN * size**2:
+    if abs(1 + whole["lambda"] - product) > _ACCURACY * size**2:
         computed, expected = decimal(whole["lambda"], 12), decimal(product - 1, 12)
         raise Violation(f"Λ over {sample.steps} steps is {computed}, and composed {expected}")
 

@@ -13,14 +13,14 @@ import flint
 from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, format_ball, make_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, largest
 from verify.exploration.property import Violation, only_if
+from verify.exploration.reference_steps import BITS, BallState, ball_steps, defect, largest
 from verify.exploration.sample import Sample
-from verify.runs.run import run
+from verify.runs.requested_run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
-_IN = 2  # one in so many samples, and not those that are taken apart
+_ONE_IN = 2  # one in so many samples, and not those that are taken apart
 _DIGITS = 30
 _COMPILED = 997  # of so many samples one is run in a number system that compiles
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
@@ -28,7 +28,7 @@ _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 def holds(sample: Sample) -> None:
     """Check one number system; W is computed from the tangent map of the run, not summed."""
-    only_if(sample.is_turn(_IN, after=1) and sample.short)
+    only_if(sample.is_turn(_ONE_IN, after=1) and sample.short)
     name = _turn(sample)
     expected = _enclose_values(sample)
     outcome = _run(sample, name, number_systems.about(name).digits or _DIGITS)
@@ -43,7 +43,7 @@ def _turn(sample: Sample) -> str:
     """Select the number system to test; those that compile each kernel get few samples."""
     seldom = sample.turn % _COMPILED == 0
     names = [n for n in number_systems.names() if number_systems.about(n).compiles == seldom]
-    return names[sample.turn // (_COMPILED if seldom else _IN) % len(names)]
+    return names[sample.turn // (_COMPILED if seldom else _ONE_IN) % len(names)]
 
 
 def _enclose_values(sample: Sample) -> dict[str, Ball]:

@@ -3,15 +3,14 @@
 from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import format_ball
-from verify.exploration.oracles.ball_steps import BITS
 from verify.exploration.property import Violation
+from verify.exploration.reference_steps import BITS
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.scene import Scene, scene_from
+from verify.scenes.scene import Scene, scene_from, scene_text
 from verify.scenes.toml_file import toml_data
-from verify.scenes.toml_text import scene_text
-from verify.schemes.maps.by_formulas import step_map_from_formulas
+from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.maps.parts import parts_of
 
 _LONGEST = 15  # terms of a map

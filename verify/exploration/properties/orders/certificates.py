@@ -12,8 +12,8 @@ from typing import Any
 from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.proof.certificates.certification import certify_for_one_h
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.one import certify_one
 
 _LONGEST = 20_000  # characters of a certificate that is checked here
 
@@ -21,7 +21,7 @@ _LONGEST = 20_000  # characters of a certificate that is checked here
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=10) and sample.in_closed_form)
     with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = certify_one(sample.proof, sample.potential)
+        data = certify_for_one_h(sample.proof, sample.potential)
     only_if(len(json.dumps(data)) <= _LONGEST)
     if sample.hamiltonian.planar:  # whose certificates have a form of their own
         _must_be_checked(data, data["leading"], {n: data[n] for n in ("p_next", "q_next")})

@@ -10,23 +10,25 @@ from fractions import Fraction
 
 from verify.arithmetic.arb import Ball, make_ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import ball_steps
 from verify.exploration.property import Violation, only_if, require_value, silent_at
+from verify.exploration.reference_steps import ball_steps
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 
 _STEP = Fraction(1, 2**96)
 _BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
 _DIGITS_A_BIT = Fraction(30103, 100000)
-_WITHIN = Fraction(1, 10)  # of a whole order
-_ASIDE = Fraction(3, 70)
+_TOLERANCE = Fraction(1, 10)  # of a whole order
+_NEIGHBOUR_SHIFT = Fraction(3, 70)
 Point = Mapping[str, Fraction]
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.in_closed_form)
     order = require_value(sample.proof.convergence_order)
-    neighbour = {name: x + _ASIDE / k for k, (name, x) in enumerate(sample.start.items(), start=2)}
+    neighbour = {
+        name: x + _NEIGHBOUR_SHIFT / k for k, (name, x) in enumerate(sample.start.items(), start=2)
+    }
     for point in (sample.start, neighbour):
         orders = _orders(sample, point, order)
         _must_reach(orders, order + 1)
@@ -38,14 +40,14 @@ def holds(sample: Sample) -> None:
 def _must_reach(orders: Mapping[str, Ball | None], order: int) -> None:
     """Raise Violation if the order of an error is lower."""
     for name, ball in orders.items():
-        if ball is not None and ball < rational_ball(order - _WITHIN):
+        if ball is not None and ball < rational_ball(order - _TOLERANCE):
             message = f"the step's error in {name} has order {float(ball.mid()):.2f}"
             raise Violation(f"{message}, and should have {order} at least")
 
 
 def _passes(orders: Mapping[str, Ball | None], order: int) -> bool:
     """Return True if the orders of the errors in all coordinates are higher."""
-    limit = rational_ball(order + _WITHIN)
+    limit = rational_ball(order + _TOLERANCE)
     return all(ball is None or ball > limit for ball in orders.values())
 
 

@@ -5,9 +5,9 @@ from functools import lru_cache
 from verify.errors import LimitError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.proof.every import prove_every
-from verify.proof.every_proof import EveryProof
-from verify.proof.proof import Proof
+from verify.proof.order_for_every_h import prove_for_every_h
+from verify.proof.proof_for_every_h import ProofForEveryH
+from verify.proof.proof_for_one_h import Proof
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
@@ -16,22 +16,22 @@ _MOST_ORDER = {AREA: 4, SYMPLECTIC: 3}
 
 
 @lru_cache(maxsize=128)
-def _prove_every(scheme: str, timed: bool, degrees: int) -> EveryProof:
-    return prove_every(scheme, timed=timed, degrees=degrees)
+def _prove_every(scheme: str, timed: bool, degrees: int) -> ProofForEveryH:
+    return prove_for_every_h(scheme, timed=timed, degrees=degrees)
 
 
 def holds(sample: Sample) -> None:
     scheme, limit = sample.scheme, _MOST_ORDER[sample.hamiltonian.structure]
     only_if(scheme.every_h is not None and scheme.order <= limit and sample.ordinary)
     with silent_at(LimitError):
-        every = _prove_every(scheme.name, sample.depends_on_time, sample.hamiltonian.degrees)
-    only_if(every.verdict is Verdict.PROVED)
-    wrong = _contradiction(every, sample.proof)
+        general = _prove_every(scheme.name, sample.depends_on_time, sample.hamiltonian.degrees)
+    only_if(general.verdict is Verdict.PROVED)
+    contradiction = _contradiction(general, sample.proof)
     # Where the leading coefficient for every H vanishes for this one, another one leads.
-    if every.telescopes and sample.proof.order == every.order and _telescopes(sample) is False:
-        wrong = wrong or "the leading coefficient does not telescope"
-    if wrong:
-        raise Violation(f"{wrong}, against what is proved for {every.quantifier}")
+    if general.telescopes and sample.proof.order == general.order and _telescopes(sample) is False:
+        contradiction = contradiction or "the leading coefficient does not telescope"
+    if contradiction:
+        raise Violation(f"{contradiction}, against what is proved for {general.quantifier}")
 
 
 def _telescopes(sample: Sample) -> bool | None:
@@ -44,16 +44,16 @@ def _telescopes(sample: Sample) -> bool | None:
     return sample.proof.telescopes
 
 
-def _contradiction(every: EveryProof, proof: Proof) -> str:
+def _contradiction(general: ProofForEveryH, proof: Proof) -> str:
     """Describe how the proof for one H contradicts that for every H; empty if it does not.
 
     Both are about S, which in the plane is ΔJ·Ω. An order None is beyond all examined ones.
     """
-    if every.symplectic and proof.symplectic is False:
+    if general.symplectic and proof.symplectic is False:
         return f"S has order {proof.order}"
-    if every.order is not None and proof.order is not None and proof.order < every.order:
-        return f"S has order {proof.order}, not {every.order}"
-    order, common_order = proof.convergence_order, every.convergence_order
+    if general.order is not None and proof.order is not None and proof.order < general.order:
+        return f"S has order {proof.order}, not {general.order}"
+    order, common_order = proof.convergence_order, general.convergence_order
     if order is not None and common_order is not None and order < common_order:
         return f"the map agrees with the flow up to h^{order}, not h^{common_order}"
     return ""

@@ -6,7 +6,7 @@ from typing import Any
 from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, require_value, silent_at
 from verify.exploration.sample import Sample
-from verify.proof.order import prove
+from verify.proof.order_for_one_h import prove
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.step_algebra import StepAlgebra
 from verify.verdict import Verdict
@@ -33,9 +33,9 @@ def _plant_error(true: StepMap, power: int, place: int) -> StepMap:
     paired = (place + true.degrees) % (2 * true.degrees)
     closed = true.closed if true.formulas is not None else None
     if closed is not None:
-        wrong = list(closed.elements)
-        wrong[paired] += closed.ring.variable("h") ** power * closed.field.slopes[place]
-        return StepMap(true.hamiltonian, closed.field, formulas=tuple(wrong))
+        elements = list(closed.elements)
+        elements[paired] += closed.ring.variable("h") ** power * closed.field.slopes[place]
+        return StepMap(true.hamiltonian, closed.field, formulas=tuple(elements))
     step = require_value(true.step)
 
     def changes(algebra: StepAlgebra[Any]) -> list[Any]:

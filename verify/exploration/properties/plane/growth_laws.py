@@ -10,8 +10,8 @@ from verify.algebra.enclosure import enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.exploration.oracles.ball_steps import BallState, ball_steps, sharp, unlike
 from verify.exploration.property import Violation, only_if, require_value, silent_at
+from verify.exploration.reference_steps import BallState, ball_steps, sharp, unlike
 from verify.exploration.sample import Sample
 from verify.proof.plane.growth_law import Element, GrowthLaw, NoLawError, growth_law
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
@@ -19,7 +19,7 @@ from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 _STEP, _STEPS = Fraction(1, 2**256), 3
 _BITS_A_POWER, _SPARE = 256, 320
 # Of 1 + |g|: what is left out is 2⁻²⁵⁶ times products of H's derivatives.
-_WITHIN = Fraction(1, 2**64)
+_TOLERANCE = Fraction(1, 2**64)
 _MOST_ORDER = 4
 
 
@@ -45,7 +45,7 @@ def _must_obey_law(law: GrowthLaw, *ends: BallState) -> None:
         measured_rate -= h ** (law.power - 1) * potential - h**law.power * leading / 2
     measured_rate /= h ** (law.power + 1) * _STEPS
     only_if(sharp(measured_rate) and sharp(rate))
-    if abs(measured_rate - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
+    if abs(measured_rate - rate) > (1 + abs(rate)) * rational_ball(_TOLERANCE):
         raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(measured_rate, rate)}, by the law")
 
 

@@ -11,12 +11,12 @@ from functools import cache, lru_cache
 import flint
 
 from verify.algebra.enclosure import enclose
-from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import Jets, Poly, Series
+from verify.algebra.identities.polynomials import terms_of
+from verify.algebra.jets import Jets, Poly, Series
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, must_overlap, sharp
 from verify.exploration.property import only_if, require_value
+from verify.exploration.reference_steps import BITS, must_overlap, sharp
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import (
     BySeries,
@@ -43,8 +43,8 @@ def holds(sample: Sample) -> None:
         expected = _value(x, derivatives)
         coefficient = _leading(sample) if n == proof.order else flint.arb(0)
         only_if(sharp(coefficient) and sharp(expected))
-        what = f"the coefficient of h^{n} in ΔJ is at the initial value"
-        must_overlap(what, coefficient, expected, ", by jets")
+        quantity = f"the coefficient of h^{n} in ΔJ is at the initial value"
+        must_overlap(quantity, coefficient, expected, ", by jets")
         if n == proof.order:
             return
 

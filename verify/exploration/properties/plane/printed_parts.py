@@ -8,7 +8,7 @@ from fractions import Fraction
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.scenes.results.separation_parts import PartsOfRun
-from verify.studies.separation.separate import separate
+from verify.studies.separation.truncation_and_rounding import separate
 
 _DIGITS = 6
 

@@ -13,14 +13,14 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, format_ball, make_ball, rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, take_step
 from verify.exploration.property import Silent, Violation, only_if, silent_at
+from verify.exploration.reference_steps import BITS, ball_steps, take_step
 from verify.exploration.sample import Sample
 from verify.lockstep import run_alone
 from verify.studies.separation.chain import Chain
+from verify.studies.separation.determinants import WORKING
 from verify.studies.separation.links import separate_chains
-from verify.studies.separation.stepper.run import Stopped
-from verify.studies.separation.ways.determinants import WORKING
+from verify.studies.separation.mixed_run import Stopped
 
 _DIGITS = 8
 
@@ -40,9 +40,10 @@ def holds(sample: Sample) -> None:
         return
     bare = sample.run("float64", 17, *WORKING).values["lambda_plain"]
     working_value = chains.plain[0].final("lambda_working")[0]
-    one, other = float(bare), float(working_value)  # the program's last subtraction, of 1, rounds
-    if one != other:
-        raise Violation(f"float64 gives {one!r}, and beside exact numbers {other!r}")
+    # The program's last subtraction, of 1, rounds.
+    alone, beside = float(bare), float(working_value)
+    if alone != beside:
+        raise Violation(f"float64 gives {alone!r}, and beside exact numbers {beside!r}")
 
 
 def _must_add_up(chain: Chain) -> None:
@@ -55,11 +56,11 @@ def _must_add_up(chain: Chain) -> None:
 def _lambda_by_balls(sample: Sample) -> list[Ball | None]:
     """Return Λ by balls, for the sample's numbers, for the nearest float64s, and for these with
     float64's own clock, if H depends on time."""
-    exact, values = sample.hamiltonian, dict(sample.hamiltonian.values)
+    hamiltonian, values = sample.hamiltonian, dict(sample.hamiltonian.values)
     nearest = {name: _nearest(x) for name, x in values.items()}
     rounded_sample = replace(
         sample,
-        hamiltonian=exact if nearest == values else exact.with_values(nearest),
+        hamiltonian=hamiltonian if nearest == values else hamiltonian.with_values(nearest),
         step_size=_nearest(sample.step_size),
         t0=_nearest(sample.t0),
         place=tuple(map(_nearest, sample.place)),

@@ -12,17 +12,18 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import (
+from verify.exploration.property import Violation, only_if
+from verify.exploration.reference_steps import (
     BITS,
     BallState,
     Matrix,
     ball_steps,
     defect,
+    end_of,
+    must_agree,
     must_overlap,
     overlap,
 )
-from verify.exploration.oracles.mpfr_runs import end_of, must_agree
-from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -41,19 +42,19 @@ def holds(sample: Sample) -> None:
         only_if(sample.short)
         _must_end_alike(whole, planes)
         return
-    last, *others = (_last_state(each) for each in (whole, *planes))
+    last, *plane_states = (_last_state(run) for run in (whole, *planes))
     with working_precision(BITS):
         # Without couplings each slope depends on its own plane alone, so that J consists of blocks.
-        _must_be_product(last, others)
+        _must_be_product(last, plane_states)
 
 
 def _terms_of_degree(sample: Sample, k: int) -> sympy.Expr:
     """Return the terms of H in the coordinates of degree k alone; Silent if there are none."""
-    every = list(map(symbol, sample.hamiltonian.coordinates))
-    coordinates = {every[k], every[sample.hamiltonian.degrees + k]}
-    others = set(every) - coordinates
+    symbols = list(map(symbol, sample.hamiltonian.coordinates))
+    coordinates = {symbols[k], symbols[sample.hamiltonian.degrees + k]}
+    outer = set(symbols) - coordinates
     terms = sympy.Add.make_args(sample.hamiltonian.exact)
-    own_terms = [x for x in terms if x.free_symbols & coordinates and not x.free_symbols & others]
+    own_terms = [x for x in terms if x.free_symbols & coordinates and not x.free_symbols & outer]
     only_if(bool(own_terms))
     return sympy.Add(*own_terms)
 

@@ -3,8 +3,13 @@
 Schemes that step p and q by turns are asked for M that scales p and q only.
 """
 
-from verify.exploration.oracles.equivariance import Change, knows_no_coordinates, must_be_same_steps
-from verify.exploration.oracles.symplectic_matrices import coordinate_change, symplectic
+from verify.exploration.equivariance import (
+    CoordinateChange,
+    coordinate_change,
+    knows_no_coordinates,
+    must_be_same_steps,
+    symplectic,
+)
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
@@ -16,4 +21,4 @@ def holds(sample: Sample) -> None:
     """
     only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
     matrix = symplectic if knows_no_coordinates(sample) else coordinate_change
-    must_be_same_steps(sample, Change(matrix(sample.turn, sample.hamiltonian.degrees)))
+    must_be_same_steps(sample, CoordinateChange(matrix(sample.turn, sample.hamiltonian.degrees)))

@@ -17,9 +17,9 @@ from verify.algebra.formula import symbol
 from verify.arithmetic.arb import midpoint_and_radius
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, Matrix, ball_steps, overlap
-from verify.exploration.oracles.symplectic_matrices import Exact, exact, identity
+from verify.exploration.equivariance import RationalMatrix, identity, to_flint
 from verify.exploration.property import Silent, Violation, only_if, require_value
+from verify.exploration.reference_steps import BITS, Matrix, ball_steps, overlap
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -93,9 +93,9 @@ def _stability_matrix(
     """Return R(hL), where L has −∂²H/∂q∂z in its upper half and ∂²H/∂p∂z in its lower."""
     n = len(form) // 2
     slopes = [[-h * x for x in row] for row in form[n:]] + [[h * x for x in r] for r in form[:n]]
-    matrix = Exact([[exact(x) for x in row] for row in slopes])
+    matrix = RationalMatrix([[to_flint(x) for x in row] for row in slopes])
     total, power = matrix * 0, identity(2 * n)
     for c in coefficients:
-        total, power = total + power * exact(c), power * matrix
+        total, power = total + power * to_flint(c), power * matrix
     with working_precision(BITS):
         return Matrix(total)

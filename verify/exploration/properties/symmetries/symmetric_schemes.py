@@ -2,10 +2,10 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, must_overlap, take_step
 from verify.exploration.property import Violation, only_if
+from verify.exploration.reference_steps import BITS, ball_steps, must_overlap, take_step
 from verify.exploration.sample import Sample
-from verify.proof.symmetry import judge_symmetry
+from verify.proof.map_symmetry import judge_symmetry
 from verify.verdict import Verdict
 
 

@@ -11,9 +11,16 @@ from operator import attrgetter
 
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, defect, entries, largest
-from verify.exploration.oracles.mpfr_runs import end_of, jacobian_of_run
 from verify.exploration.property import Violation, only_if
+from verify.exploration.reference_steps import (
+    BITS,
+    ball_steps,
+    defect,
+    end_of,
+    entries,
+    jacobian_of_run,
+    largest,
+)
 from verify.exploration.sample import Sample
 from verify.scenes.observables import carries
 from verify.structures import AREA, SYMPLECTIC
@@ -43,14 +50,14 @@ def _check_by_runs(sample: Sample) -> None:
     jacobian, error = jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
         greatest = largest(defect(jacobian))
-        wrong = greatest > error
-    if wrong:
+        is_wrong = greatest > error
+    if is_wrong:
         raise Violation(f"W is {greatest.str(6)} after two steps, by differences of runs")
     if carries(sample.hamiltonian, "lambda_plain"):
         end = end_of(sample, "lambda_plain")
         change, small = end["lambda_plain"], _SMALL * (1 + sum(abs(end[n]) for n in sample.point))
         if abs(change) > small:
             # Twice as many digits decide if the equations were solved, or if the map is at fault.
-            again = end_of(sample, times=2)
-            only_if(all(abs(x - end[name]) <= small for name, x in again.items()))
+            accurate_end = end_of(sample, times=2)
+            only_if(all(abs(x - end[name]) <= small for name, x in accurate_end.items()))
             raise Violation(f"Π det J − 1 is {decimal(change, 6)} after two steps")

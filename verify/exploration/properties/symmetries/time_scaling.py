@@ -6,8 +6,7 @@ c times H at t.
 
 from fractions import Fraction
 
-from verify.exploration.oracles.equivariance import Change, must_be_same_steps
-from verify.exploration.oracles.symplectic_matrices import identity
+from verify.exploration.equivariance import CoordinateChange, identity, must_be_same_steps
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
@@ -16,5 +15,5 @@ _FACTOR = Fraction(-2, 3)
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=2))
-    same = identity(2 * sample.hamiltonian.degrees)
-    must_be_same_steps(sample, Change(same, factor=_FACTOR, pace=1 / _FACTOR))
+    unit_matrix = identity(2 * sample.hamiltonian.degrees)
+    must_be_same_steps(sample, CoordinateChange(unit_matrix, factor=_FACTOR, pace=1 / _FACTOR))

@@ -12,8 +12,8 @@ import flint
 from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, must_overlap, sharp
 from verify.exploration.property import Silent, only_if, require_value
+from verify.exploration.reference_steps import BITS, ball_steps, must_overlap, sharp
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.conditions.splitting_conditions import Splitting
@@ -48,8 +48,8 @@ def _step_by_stages(sample: Sample, every_h: RungeKutta, start: Point) -> Point:
     def advance(weights: Sequence[Fraction], slopes: Sequence[Point]) -> Point:
         total = start
         for weight, k in zip(weights, slopes, strict=True):
-            by = h * rational_ball(weight)
-            total = tuple(x + by * y for x, y in zip(total, k, strict=True))
+            weighted_step = h * rational_ball(weight)
+            total = tuple(x + weighted_step * y for x, y in zip(total, k, strict=True))
         return total
 
     return every_h.step(lambda z: (*_slopes(sample, z), flint.arb(1)), advance)
@@ -60,12 +60,12 @@ def _step_by_flows(sample: Sample, every_h: Splitting, start: Point) -> Point:
     z, read = list(start[:-1]), {"K": start[-1], "D": start[-1]}  # the clock that each flow reads
     ring, parts = every_h.numbers
     for letter, size, _ in parts:
-        by = rational_ball(sample.step_size) * require_value(enclose_over(ring, size, {}))
+        increment = rational_ball(sample.step_size) * require_value(enclose_over(ring, size, {}))
         slopes = _slopes(sample, (*z, read[letter]))
         for k in range(n) if letter == "K" else range(n, 2 * n):
-            z[k] = z[k] + by * slopes[k]
+            z[k] = z[k] + increment * slopes[k]
         # Each flow of a splitting reads one clock and advances the other one.
-        read["D" if letter == "K" else "K"] += by
+        read["D" if letter == "K" else "K"] += increment
     return tuple(z)
 
 

@@ -10,11 +10,12 @@ from fractions import Fraction
 
 import flint
 
-from verify.algebra.generator import Generator
+from verify.algebra.identities.polynomials import Generator
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import (
+from verify.exploration.property import Violation, only_if, require_value
+from verify.exploration.reference_steps import (
     BITS,
     BallState,
     ball_steps,
@@ -23,7 +24,6 @@ from verify.exploration.oracles.ball_steps import (
     sharp,
     take_step,
 )
-from verify.exploration.property import Violation, only_if, require_value
 from verify.exploration.sample import Sample
 from verify.functions.function import CIRCLE
 

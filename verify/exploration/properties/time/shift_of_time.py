@@ -2,8 +2,7 @@
 
 from fractions import Fraction
 
-from verify.exploration.oracles.equivariance import Change, must_be_same_steps
-from verify.exploration.oracles.symplectic_matrices import identity
+from verify.exploration.equivariance import CoordinateChange, identity, must_be_same_steps
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
@@ -12,5 +11,5 @@ _SHIFT = Fraction(-5, 3)
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
-    same = identity(2 * sample.hamiltonian.degrees)
-    must_be_same_steps(sample, Change(same, shift=_SHIFT))
+    unit_matrix = identity(2 * sample.hamiltonian.degrees)
+    must_be_same_steps(sample, CoordinateChange(unit_matrix, shift=_SHIFT))

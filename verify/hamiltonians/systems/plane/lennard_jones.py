@@ -2,8 +2,7 @@
 
 from fractions import Fraction
 
-from verify.hamiltonians.motion import Values
-from verify.hamiltonians.named_system import System
+from verify.hamiltonians.named_system import System, Values
 
 
 def _goes(values: Values, p: Fraction, q: Fraction) -> str | None:

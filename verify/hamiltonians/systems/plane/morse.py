@@ -14,8 +14,7 @@ from flint import arb, fmpq
 
 from verify.arithmetic.flint_precision import sign_of
 from verify.hamiltonians.elliptic import waves
-from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
-from verify.hamiltonians.named_system import System
+from verify.hamiltonians.named_system import Motion, State, System, Values, at_rest, exactly
 
 
 def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:

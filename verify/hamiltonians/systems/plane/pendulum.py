@@ -15,8 +15,7 @@ from flint import arb
 
 from verify.arithmetic.flint_precision import AtEachPrecision, sign_of
 from verify.hamiltonians.elliptic import NOT_KNOWN, Functions, Real, jacobi, quarter_period
-from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
-from verify.hamiltonians.named_system import System
+from verify.hamiltonians.named_system import Motion, State, System, Values, at_rest, exactly
 
 
 def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:

@@ -11,8 +11,7 @@ from fractions import Fraction
 from flint import arb
 
 from verify.hamiltonians.elliptic import Weierstrass
-from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
-from verify.hamiltonians.named_system import System
+from verify.hamiltonians.named_system import Motion, State, System, Values, at_rest, exactly
 from verify.hamiltonians.potential_motion import biermann
 
 

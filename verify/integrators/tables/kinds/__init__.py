@@ -1,6 +1,6 @@
 """Kinds of tables, one a file, found by itself: what is written of one, and what it claims.
 
-A file has `Entry`, a model of the keys, and `claims(entry)`, which yields a
+A file has `ENTRY`, a model of the keys, and `claims(entry)`, which yields a
 `verify.integrators.tables.table_claim.TableClaim` for each.
 """
 

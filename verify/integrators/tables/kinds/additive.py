@@ -7,11 +7,11 @@ from pydantic import Field
 
 from verify.integrators.tables.entry import Block
 from verify.integrators.tables.table_claim import TableClaim
-from verify.integrators.tables.tableaux.claims import BlocksEntry, judge_blocks
+from verify.integrators.tables.tableau_claims import BlocksEntry, judge_blocks
 from verify.schemes.conditions.coloured_trees import unrestricted_grammar
 
 
-class Entry(BlocksEntry):
+class AdditiveEntry(BlocksEntry):
     """`parts`: of each f_k `a`, `b`, and `c` and `embedded` where they are printed."""
 
     parts: Annotated[tuple[Block, ...], Field(min_length=2, max_length=4)]
@@ -21,7 +21,10 @@ class Entry(BlocksEntry):
         return self.parts
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
+ENTRY = AdditiveEntry
+
+
+def claims(entry: AdditiveEntry) -> Iterator[TableClaim]:
     """Yield the claims of a Runge–Kutta method, with the conditions that couple the parts."""
     count = len(entry.parts)
     yield from judge_blocks(

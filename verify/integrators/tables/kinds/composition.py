@@ -8,8 +8,8 @@ from pydantic import StrictBool
 
 from verify.errors import InputError
 from verify.integrators.tables.cost import Severity
-from verify.integrators.tables.layout import named_columns
-from verify.integrators.tables.splittings.claims import (
+from verify.integrators.tables.entry import named_columns
+from verify.integrators.tables.splitting_claims import (
     SizesEntry,
     judge_table,
     judge_with_numbers,
@@ -21,14 +21,17 @@ from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.splitting_table import PrintedTable
 
 
-class Entry(SizesEntry):
+class CompositionEntry(SizesEntry):
     """`sizes` are the w; a `csv` file has them in a column size. `of_parts`: they divide the steps
     of a part of a method, such as a thermostat's, so that a mistake is one of step weights."""
 
     of_parts: StrictBool = False
 
 
-def weights_of(entry: Entry, naming: Naming) -> tuple[str, ...]:
+ENTRY = CompositionEntry
+
+
+def weights_of(entry: CompositionEntry, naming: Naming) -> tuple[str, ...]:
     """Return the w of all steps, in names for their decimals."""
     if entry.csv is not None:
         if entry.sizes is not None or entry.half is not None:
@@ -40,7 +43,7 @@ def weights_of(entry: Entry, naming: Naming) -> tuple[str, ...]:
     return mirror(names) if half else names
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
+def claims(entry: CompositionEntry) -> Iterator[TableClaim]:
     """Yield the claims of the order, of digits, of being symplectic and of being symmetric."""
     naming = Naming(entry.numbers)
     parts = tuple(("step", size) for size in weights_of(entry, naming))

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 from verify.integrators.tables.entry import Block
 from verify.integrators.tables.table_claim import TableClaim
-from verify.integrators.tables.tableaux.claims import BlocksEntry, judge_blocks
+from verify.integrators.tables.tableau_claims import BlocksEntry, judge_blocks
 from verify.schemes.conditions.coloured_trees import unrestricted_grammar
 
 
-class Entry(Block, BlocksEntry):
+class RungeKuttaEntry(Block, BlocksEntry):
     """`a`: rows of the full matrix, or of an explicit one up to the diagonal; or all as `tableau`,
     pasted, or in a `csv` file. `c` is judged where it is printed: as row sums, unless `row_sums` is
     false, and by the order for a force that depends on time."""
@@ -18,7 +18,10 @@ class Entry(Block, BlocksEntry):
         return (self,)
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
+ENTRY = RungeKuttaEntry
+
+
+def claims(entry: RungeKuttaEntry) -> Iterator[TableClaim]:
     """Yield the claims of the order, in time, of embedded weights, symplectic, symmetric, of
     stages."""
     yield from judge_blocks(entry, ("",), unrestricted_grammar(1))

@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Row
 from verify.integrators.tables.table_claim import TableClaim
-from verify.integrators.tables.tableaux.claims import TableauEntry, judge_tableau
-from verify.integrators.tables.tableaux.table import TableauTable, square
+from verify.integrators.tables.tableau_claims import TableauEntry, judge_tableau
+from verify.integrators.tables.tableau_table import TableauTable, square
 from verify.schemes.conditions.coloured_trees import NYSTROM
 from verify.schemes.conditions.tree_weights import Tableau
 from verify.schemes.printed.naming import Naming
 
 
-class Entry(TableauEntry):
+class NystromEntry(TableauEntry):
     """`embedded` and `embedded_bar` are the weights of an embedded method, as `b` and `b_bar`.
     `row_sums`: whether Σ_j a_ij = c_i²/2 is claimed, which need not be."""
 
@@ -28,7 +28,10 @@ class Entry(TableauEntry):
     embedded_bar: Row | None = None
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
+ENTRY = NystromEntry
+
+
+def claims(entry: NystromEntry) -> Iterator[TableClaim]:
     """Yield the claims of the order, of embedded weights, symplectic, symmetric, of stages."""
     naming, stages = Naming(entry.numbers), len(entry.b)
     rows = tuple(naming.entries(row, f"a{k + 1}_") for k, row in enumerate(square(entry.a, stages)))
@@ -40,7 +43,7 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
         problem = "goes with the other: embedded is of p, as b, and embedded_bar of q, as b_bar"
         raise InputError("embedded, embedded_bar", NOT_GIVEN, problem)
     if entry.embedded is not None and entry.embedded_bar is not None:
-        one, other = entry.embedded, entry.embedded_bar
-        embedded = naming.entries(one, "embedded"), naming.entries(other, "embedded_bar")
+        of_p, of_q = entry.embedded, entry.embedded_bar
+        embedded = naming.entries(of_p, "embedded"), naming.entries(of_q, "embedded_bar")
     table = TableauTable(blocks, NYSTROM, naming.printed_numbers, ("", ""), nystrom=True)
     yield from judge_tableau(entry, table, embedded)

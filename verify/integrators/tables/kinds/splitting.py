@@ -1,6 +1,6 @@
 """Splittings for every H = T(p) + V(q): kicks and drifts in turn."""
 
-from verify.integrators.tables.splittings.claims import AlternatingEntry as Entry
-from verify.integrators.tables.splittings.claims import judge_alternating as claims
+from verify.integrators.tables.splitting_claims import AlternatingEntry, judge_alternating
 
-__all__ = ["Entry", "claims"]
+ENTRY = AlternatingEntry
+claims = judge_alternating

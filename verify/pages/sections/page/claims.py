@@ -1,11 +1,11 @@
 """The claims, by section of the paper; each opens to its evidence, numbers and argument."""
 
-from verify.pages.sections.section import Entry, Section
+from verify.pages.sections.section import ContentsEntry, ReportSection
 
-SECTION = Section(
+SECTION = ReportSection(
     order=10,
     title="Claims",
     anchor="claims",
     view=lambda contents: contents.groups,
-    entries=lambda view: (Entry(g.anchor, g.title, g.counts) for g in view if g.title),
+    entries=lambda view: (ContentsEntry(g.anchor, g.title, g.counts) for g in view if g.title),
 )

@@ -6,8 +6,7 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, captioned_plot
-from verify.pages.figures.logarithm import lg
+from verify.pages.figures.captioned_plot import Plot, captioned_plot, lg
 from verify.pages.sections.gallery_finding import (
     describe_lambda,
     describe_longer_run,
@@ -15,9 +14,9 @@ from verify.pages.sections.gallery_finding import (
     short_value,
 )
 from verify.pages.sections.page_contents import PageContents
-from verify.pages.sections.section import Entry, Picture, Section, SectionPlace, Tile
-from verify.pages.text import mathml, words
-from verify.pages.text.signs import SIGNS
+from verify.pages.sections.section import ContentsEntry, Picture, ReportSection, SectionPlace, Tile
+from verify.pages.text import legend, mathml
+from verify.pages.text.legend import SIGNS
 from verify.pages.text.typography import NBSP, count_noun, start, step, whole
 from verify.scenes.results.exploration import Gallery, GalleryScene
 from verify.scenes.results.report import Report
@@ -52,7 +51,7 @@ def _view(contents: PageContents) -> GalleryView | None:
     gallery = contents.report.gallery
     if gallery is None or not gallery.scenes:
         return None
-    cards = tuple(_card(each, n, gallery) for n, each in enumerate(gallery.scenes, start=1))
+    cards = tuple(_card(scene, n, gallery) for n, scene in enumerate(gallery.scenes, start=1))
     return GalleryView(tuple(_describe_hunt(gallery)), cards)
 
 
@@ -68,10 +67,10 @@ def _tiles(gallery: Gallery) -> list[Tile]:
         Tile(
             Verdict.MEASURED,
             SIGNS[Verdict.MEASURED][0],
-            *short_value(gallery.measure, each.value),
-            meaning=f"{each.separation.scheme}, h = {each.separation.step_size}",
+            *short_value(gallery.measure, scene.value),
+            meaning=f"{scene.separation.scheme}, h = {scene.separation.step_size}",
         )
-        for each in gallery.scenes[:_TILES]
+        for scene in gallery.scenes[:_TILES]
     ]
 
 
@@ -80,13 +79,13 @@ def _tiles(gallery: Gallery) -> list[Tile]:
 
 def _finding(gallery: Gallery) -> str:
     count = f"{count_noun(gallery.examples, 'scene')} of seed {gallery.seed}"
-    where = f"{_describe_ranges(gallery)}, {whole(gallery.steps)} steps each"
+    search_text = f"{_describe_ranges(gallery)}, {whole(gallery.steps)} steps each"
     if not gallery.scenes:
-        return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
+        return f"None of {count} ({search_text}) can be measured by the {gallery.sentence}."
     worst = gallery.scenes[0].separation
     finding = findings(gallery.measure, gallery.sentence, gallery.scenes[0].value)
     return (
-        f"In the worst of {count} ({where}), {finding}: {worst.scheme} with "
+        f"In the worst of {count} ({search_text}), {finding}: {worst.scheme} with "
         f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 
@@ -114,62 +113,62 @@ def _describe_hunt(gallery: Gallery) -> Iterator[str]:
     )
 
 
-def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
-    anchor = f"worst-{place}"
-    finding = findings(gallery.measure, gallery.sentence, each.value)
+def _card(scene: GalleryScene, rank: int, gallery: Gallery) -> CardView:
+    anchor = f"worst-{rank}"
+    finding = findings(gallery.measure, gallery.sentence, scene.value)
     return CardView(
-        result=each,
+        result=scene,
         anchor=anchor,
-        title=f"Scene {place}: {finding}",
-        finding=(*describe_lambda(each), *describe_longer_run(each), *_describe_rest(each)),
-        plots=tuple(_plots(each, place, gallery.steps, anchor)),
+        title=f"Scene {rank}: {finding}",
+        finding=(*describe_lambda(scene), *describe_longer_run(scene), *_describe_rest(scene)),
+        plots=tuple(_plots(scene, rank, gallery.steps, anchor)),
     )
 
 
-def _describe_rest(each: GalleryScene) -> Iterator[str]:
-    if len(each.orbit) > 1 and len(set(each.orbit)) == 1:
+def _describe_rest(scene: GalleryScene) -> Iterator[str]:
+    if len(scene.orbit) > 1 and len(set(scene.orbit)) == 1:
         yield "The orbit stays where it starts."
 
 
 # -- figures --------------------------------------------------------------------------------------
 
 
-def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[Plot]:
+def _plots(scene: GalleryScene, rank: int, steps: int, anchor: str) -> Iterator[Plot]:
     """Yield the plots of truncation against rounding and of the orbit."""
-    separation = each.separation
+    separation = scene.separation
     series = separation.plain.series if separation.plain else ()
     drawable = [point for point in series if _is_known(point.truncation) or _is_known(point.total)]
     if len(drawable) > 1:
         from verify.pages.figures import gallery_figure
 
         # That of the worst scene stands on the first screen, far from its card.
-        formula = [_formula(separation.hamiltonian)] if place == 1 else []
+        formula = [_formula(separation.hamiltonian)] if rank == 1 else []
         yield captioned_plot(
-            lambda: gallery_figure.draw_parts(each),
+            lambda: gallery_figure.draw_parts(scene),
             name=f"parts-of-{anchor}",
-            lead=f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps",
-            caption=Markup(" ").join([*formula, _parts_sentence(each)]),
+            lead=f"Scene {rank}: |truncation| and |rounding| in Λ against the number of steps",
+            caption=Markup(" ").join([*formula, _parts_sentence(scene)]),
         )
-    if len(set(each.orbit)) > 1:
+    if len(set(scene.orbit)) > 1:
         from verify.pages.figures import gallery_figure
 
         yield captioned_plot(
-            lambda: gallery_figure.draw_orbit(each.orbit, steps),
+            lambda: gallery_figure.draw_orbit(scene.orbit, steps),
             name=f"orbit-of-{anchor}",
-            lead=f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps",
-            caption=_orbit_sentence(each, steps),
+            lead=f"Scene {rank}: the orbit in the (q, p) plane, {whole(steps)} steps",
+            caption=_orbit_sentence(scene, steps),
         )
 
 
 def _formula(text: str) -> Markup:
-    """Return H for a caption, or "" where it is too long."""
+    """Return H for a caption, or "" if it is too long."""
     if len(text) > _SHORT:
         return Markup("")
     return Markup("H{0}={0}{1}.").format(NBSP, mathml.formula(text))
 
 
-def _parts_sentence(each: GalleryScene) -> str:
-    separation = each.separation
+def _parts_sentence(scene: GalleryScene) -> str:
+    separation = scene.separation
     series = separation.plain.series if separation.plain else ()
     sentences = [
         f"Λ in float64, evaluated the plain way, split after up to {whole(separation.steps)} "
@@ -183,8 +182,8 @@ def _parts_sentence(each: GalleryScene) -> str:
     return " ".join(sentences)
 
 
-def _orbit_sentence(each: GalleryScene, steps: int) -> str:
-    intervals = len(each.orbit) - 1
+def _orbit_sentence(scene: GalleryScene, steps: int) -> str:
+    intervals = len(scene.orbit) - 1
     every = -(-steps // intervals)
     points = "each step" if every == 1 else f"every {whole(every)} steps"
     return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits."
@@ -201,13 +200,13 @@ def _pictures(view: GalleryView) -> Iterator[Picture]:
         )
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=30,
     title="The worst scenes",
     anchor="gallery",
     view=_view,
-    entries=lambda view: (Entry(card.anchor, card.title) for card in view.cards),
+    entries=lambda view: (ContentsEntry(card.anchor, card.title) for card in view.cards),
     pictures=_pictures,
-    terms=lambda _: words.SEPARATED | words.RAN,
+    terms=lambda _: legend.SEPARATED | legend.RAN,
     speaks=_lead_sentence_and_tiles,
 )

@@ -1,8 +1,8 @@
 """The requests that were not computed, and why."""
 
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
 
-SECTION = Section(
+SECTION = ReportSection(
     order=50,
     title="What was left out, and why",
     anchor="left-out",

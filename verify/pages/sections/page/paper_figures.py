@@ -5,11 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.sections.by_key import by_key
-from verify.pages.sections.claim_view import Anchors, ClaimView
-from verify.pages.sections.page_contents import PageContents, SceneView
-from verify.pages.sections.section import Entry, Section, SectionPlace, walk
-from verify.scenes.paper_figures import PaperFigure
+from verify.pages.sections.page_contents import Anchors, ClaimView, PageContents, SceneView
+from verify.pages.sections.section import ContentsEntry, ReportSection, SectionPlace, walk
+from verify.pages.sections.table_rows import by_key
+from verify.scenes.paper_sections import PaperFigure
 
 _FIGURE_PREFIX = re.compile(r"^fig(ure|\.)?\s+", re.IGNORECASE)
 
@@ -38,7 +37,7 @@ class PaperFigureView:
 
 def _views(contents: PageContents) -> tuple[PaperFigureView, ...]:
     """Return the figures in their order, without what is not in the report."""
-    # Where several have one name, the first counts; hence the reversed order.
+    # If several have one name, the first counts; hence the reversed order.
     by_name = {scene.result.name: scene for scene in reversed(contents.scenes)}
     by_id = {claim.result.id: claim for claim in reversed(contents.claims)}
     drawn_ids: set[int] = set()
@@ -70,9 +69,9 @@ def _view(
 
 def _candidate_plots(figure: PaperFigure, scene: SceneView) -> Iterator[tuple[Plot | None, str]]:
     """Yield the plots that show the figure, each with its finding."""
-    for each in walk(scene.sections):
-        if each.section.shows == figure.shows:
-            yield from each.section.matching_plots(each.view, figure.label)
+    for section in walk(scene.sections):
+        if section.section.shows == figure.shows:
+            yield from section.section.matching_plots(section.view, figure.label)
 
 
 def _keeps(views: Sequence[PaperFigureView]) -> Iterator[tuple[Plot, SectionPlace]]:
@@ -80,12 +79,14 @@ def _keeps(views: Sequence[PaperFigureView]) -> Iterator[tuple[Plot, SectionPlac
         yield from ((plot, SectionPlace(view.anchor, view.figure.label)) for plot in view.plots)
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=20,
     title="The paper’s figures, made again",
     anchor="figures",
     view=_views,
-    entries=lambda views: (Entry(v.anchor, _FIGURE_PREFIX.sub("", v.figure.label)) for v in views),
+    entries=lambda views: (
+        ContentsEntry(v.anchor, _FIGURE_PREFIX.sub("", v.figure.label)) for v in views
+    ),
     is_numbered=True,
     keeps=_keeps,
 )

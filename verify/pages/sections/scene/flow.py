@@ -8,22 +8,22 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, captioned_plot, name_arithmetic
 from verify.pages.sections.flow_finding import finding, findings, mean_of, region_of
-from verify.pages.sections.flow_words import words
-from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Section, SectionPlace
+from verify.pages.sections.flow_vocabulary import vocabulary_of
+from verify.pages.sections.section import Picture, ReportSection, SectionPlace
+from verify.pages.sections.table_rows import TableRow
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
 
 if TYPE_CHECKING:
-    from verify.pages.figures.flow_grid import Grid
+    from verify.pages.figures.flow_grid import PanelGrid
 
 
 @dataclass(frozen=True)
 class RegionView:
     """One region and its images.
 
-    `plot` is None where nothing can be drawn; `plots` holds it and, in n degrees of freedom, the
+    `plot` is None if nothing can be drawn; `plots` holds it and, in n degrees of freedom, the
     projections on the other planes after it.
     """
 
@@ -31,7 +31,7 @@ class RegionView:
     anchor: str
     title: str
     finding: str
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
     plots: tuple[Plot, ...]
     heads: tuple[str, ...]
     about: str
@@ -61,7 +61,7 @@ def _view(scene: SceneResult, anchor: str) -> FlowView | None:
 
 
 def _region(flow: FlowResult, anchor: str) -> RegionView:
-    vocabulary = words([flow])
+    vocabulary = vocabulary_of([flow])
     return RegionView(
         result=flow,
         anchor=anchor,
@@ -75,21 +75,25 @@ def _region(flow: FlowResult, anchor: str) -> RegionView:
 
 
 def _title(flow: FlowResult) -> str:
-    what = f"{_describe_region(flow)}, h{IS}{step(flow.step_size)}"
-    return f"{flow.source}: {what}" if flow.source else f"{what[:1].upper()}{what[1:]}"
+    description = f"{_describe_region(flow)}, h{IS}{step(flow.step_size)}"
+    return (
+        f"{flow.source}: {description}"
+        if flow.source
+        else f"{description[:1].upper()}{description[1:]}"
+    )
 
 
 def _describe_region(flow: FlowResult) -> str:
     q, p = map(number, flow.centre)
     begins = "" if flow.t0 is None else f", from t₀{IS}{number(flow.t0)}"
-    where = f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{begins}"
+    region_text = f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{begins}"
     if flow.plane is None:
-        return where
+        return region_text
     plane_names = f"q{flow.plane}", f"p{flow.plane}"
     other_coordinates = (
         f"{name}{IS}{number(x)}" for name, x in flow.point.items() if name not in plane_names
     )
-    placed = where.replace("(q, p)", "({}, {})".format(*plane_names))
+    placed = region_text.replace("(q, p)", "({}, {})".format(*plane_names))
     return f"{placed}, {', '.join(other_coordinates)}"
 
 
@@ -97,13 +101,13 @@ def _describe_region(flow: FlowResult) -> str:
 
 
 def _format_cell(value: str | None, error: str | None, *, missing: str = "–") -> str | Markup:
-    """Return a number with its error, where it has one."""
+    """Return a number with its error, if it has one."""
     if value is None or error is None:
         return missing if value is None else number(value)
     return Markup('{} <span class="bound">± {}</span>').format(number(value), number(error))
 
 
-def _row(image: FlowImage) -> Row:
+def _row(image: FlowImage) -> TableRow:
     no_mean = "0" if image.area_preserving else "–"
     cells = (
         whole(image.steps),
@@ -114,7 +118,7 @@ def _row(image: FlowImage) -> Row:
         name_arithmetic(image),
     )
     disagreement = "the two measures disagree" if image.agree is False else ""
-    return Row(image.map, cells, image.problem or disagreement)
+    return TableRow(image.map, cells, image.problem or disagreement)
 
 
 def _projection_areas(image: FlowImage) -> str | Markup:
@@ -127,7 +131,7 @@ def _projection_areas(image: FlowImage) -> str | Markup:
 
 
 def _plots(flow: FlowResult, anchor: str) -> Iterator[Plot]:
-    """Yield the drawings; matplotlib is imported only where there is an image."""
+    """Yield the drawings; matplotlib is imported only if there is an image."""
     if not flow.before or not any(image.outlines for image in flow.images):
         return
     planes = range(1, len(flow.point) // 2 + 1)
@@ -137,16 +141,15 @@ def _plots(flow: FlowResult, anchor: str) -> Iterator[Plot]:
 
 
 def _plot(flow: FlowResult, name: str, plane: int | None) -> Plot:
-    from verify.pages.figures.flow_figure import draw_flow
-    from verify.pages.figures.flow_grid import grid_of
-    from verify.pages.sections.flow_pictures import picture_sentences
+    from verify.pages.figures.flow_figure import draw_flow, line_width
+    from verify.pages.figures.flow_grid import grid_of, picture_sentences
 
-    grid, what = grid_of(flow, plane), _describe_region(flow)
+    grid, region = grid_of(flow, plane), _describe_region(flow)
     maps = join_and(map(map_name, dict.fromkeys(image.map for image in flow.images)))
-    lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
+    lead = f"{region[:1].upper()}{region[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
     if flow.plane is not None:
         lead += f", as it is seen in ({', '.join(grid.axes)})"
-    sentences = " ".join(picture_sentences(flow, grid))
+    sentences = " ".join(picture_sentences(flow, grid, line_width(grid)))
     return captioned_plot(
         lambda: draw_flow(grid),
         name=name,
@@ -156,9 +159,11 @@ def _plot(flow: FlowResult, name: str, plane: int | None) -> Plot:
     )
 
 
-def _caption(flow: FlowResult, grid: "Grid") -> str:
+def _caption(flow: FlowResult, grid: "PanelGrid") -> str:
     counts, drawn_count = len({image.steps for image in flow.images}), len(grid.counts)
-    exact_note = "; broad and grey: the exact flow" * any(panel.exact for panel in grid.panels)
+    exact_note = "; broad and grey: the exact flow" * any(
+        panel.exact_curves for panel in grid.panels
+    )
     notes = (
         f" {whole(drawn_count)} of {whole(counts)} are drawn." if 0 < drawn_count < counts else ""
     )
@@ -177,19 +182,21 @@ def _caption(flow: FlowResult, grid: "Grid") -> str:
 
 
 def _terms(views: Sequence[FlowView]) -> dict[str, Markup]:
-    terms_by_view = (words([each.result for each in view.regions]).terms for view in views)
+    terms_by_view = (
+        vocabulary_of([region.result for region in view.regions]).terms for view in views
+    )
     return {
         term: meaning for section_terms in terms_by_view for term, meaning in section_terms.items()
     }
 
 
 def _pictures(view: FlowView) -> Iterator[Picture]:
-    for each in view.regions:
-        if each.plot is not None:
-            yield Picture((2,), each.plot, SectionPlace(each.anchor, each.title))
+    for region in view.regions:
+        if region.plot is not None:
+            yield Picture((2,), region.plot, SectionPlace(region.anchor, region.title))
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=20,
     title="Regions carried by maps",
     anchor="flow",
@@ -198,6 +205,6 @@ SECTION = Section(
     terms=_terms,
     shows="flow",
     matching_plots=lambda view, label: (
-        (each.plot, each.finding) for each in view.regions_from(label)
+        (region.plot, region.finding) for region in view.regions_from(label)
     ),
 )

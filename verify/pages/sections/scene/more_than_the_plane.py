@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.pages.figures.captioned_plot import known_digits
-from verify.pages.sections.rows import Group, Row
-from verify.pages.sections.section import Section
-from verify.pages.text import words
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import Group, TableRow
+from verify.pages.text import legend
 from verify.pages.text.typography import (
     count_noun,
     join_and,
@@ -52,13 +52,13 @@ def _describe_proof(line: WorkLine) -> str:
     return "S ≡ 0 is proved" if line.area_preserving else ""
 
 
-def _row(point: WorkPoint) -> Row:
+def _row(point: WorkPoint) -> TableRow:
     label, steps = step(point.step_size or ""), whole(point.steps or 0)
     if point.limited_by == "failed":
-        return Row(label, (steps,), f"failed: {point.reason}")
+        return TableRow(label, (steps,), f"failed: {point.reason}")
     values = (point.error, point.energy, point.symplectic_defect, point.lam)
     seconds = "–" if point.seconds_median is None else number(f"{point.seconds_median:.2e}")
-    return Row(label, (steps, *map(known_digits, values), seconds))
+    return TableRow(label, (steps, *map(known_digits, values), seconds))
 
 
 # -- sentences ------------------------------------------------------------------------------------
@@ -85,11 +85,13 @@ def _finding(result: WorkPrecisionResult, schemes: list[WorkLine]) -> Iterator[s
             f"{join_and(symplectic)}: every step is symplectic, S ≡ 0, by proof; so are all N of "
             "them."
         )
-    others = [line for line in schemes if not line.area_preserving]
-    pairs = [(line, point) for line in others for point in line.points if _can_be_compared(point)]
+    other_lines = [line for line in schemes if not line.area_preserving]
+    pairs = [
+        (line, point) for line in other_lines for point in line.points if _can_be_compared(point)
+    ]
     if not pairs:
         return
-    line, point = max(pairs, key=lambda each: _ratio_of_defects(each[1]))
+    line, point = max(pairs, key=lambda pair: _ratio_of_defects(pair[1]))
     yield (
         f"What det J alone would have said: of {line.name} at h = {step(point.step_size or '')} "
         f"that {whole(point.steps or 0)} steps change volume by Λ = {_few(point.lam)}, while "
@@ -100,7 +102,7 @@ def _finding(result: WorkPrecisionResult, schemes: list[WorkLine]) -> Iterator[s
         "det J is one number where S has n(2n − 1) entries, and says nothing of how errors of the "
         "form are carried on: W grows with the tangent map, as Mᵀ S M, Λ does not."
     )
-    off_orbit = [p.name for p in others if any(_is_beyond_orbit(x, result) for x in p.points)]
+    off_orbit = [p.name for p in other_lines if any(_is_beyond_orbit(x, result) for x in p.points)]
     if off_orbit:
         yield (
             f"Of {join_and(off_orbit)} some solutions are farther off than the orbit is wide: "
@@ -127,6 +129,10 @@ def _few(value: object) -> str:
     return str(known_digits(value))  # type: ignore[arg-type]
 
 
-SECTION = Section(
-    order=9, title="More than the plane", anchor="beyond", view=_view, terms=lambda _: words.OF_FORM
+SECTION = ReportSection(
+    order=9,
+    title="More than the plane",
+    anchor="beyond",
+    view=_view,
+    terms=lambda _: legend.OF_FORM,
 )

@@ -7,10 +7,9 @@ from markupsafe import Markup
 
 from verify.arithmetic.exact import short
 from verify.pages.figures.captioned_plot import captioned_plot
-from verify.pages.sections.by_key import by_key
 from verify.pages.sections.orbits_view import OrbitsView, pictures
-from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import TableRow, by_key
 from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
@@ -27,7 +26,7 @@ def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
 
 
 def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
-    from verify.pages.figures.orbit_map_figure import draw_orbit_maps
+    from verify.pages.figures.kind_map_figure import draw_orbit_maps
 
     first_map = maps[0]
     axes = " and ".join(first_map.axes)
@@ -37,7 +36,8 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     names = join_and(m.scheme for m in maps)
     lead = f"{title}, by {names}, until t{IS}{number(time)}; h{IS}{step(first_map.step_size)}"
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
-    rest = ", ".join(f"{name}{IS}{number(x)}" for name, x in _others(first_map))
+    texts = [f"{name}{IS}{number(x)}" for name, x in _fixed_values(first_map)]
+    fixed = f", with {', '.join(texts)}" if texts else ""
     lines = " Grey lines: the same energy H." if _has_energies(first_map) else ""
     return OrbitsView(
         anchor=anchor,
@@ -50,7 +50,7 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
             lead=lead,
             label=f"{lead}. {counts}.",
             caption=(
-                f"Each mark is an orbit in float64{', with ' + rest if rest else ''}. It leaves "
+                f"Each mark is an orbit in float64{fixed}. It leaves "
                 f"where a coordinate is beyond ±{number(first_map.beyond)}.{lines}"
             ),
         ),
@@ -61,7 +61,7 @@ def _counts(orbit_map: OrbitMapResult) -> str:
     return join_and(f"{whole(n)} {kind}" for kind, n in orbit_map.counted().items())
 
 
-def _others(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
+def _fixed_values(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
     """Yield the initial values that are the same for all orbits."""
     for letter, values in (("q", orbit_map.q), ("p", orbit_map.p)):
         if isinstance(values, tuple):
@@ -93,7 +93,7 @@ def _energy_finding(orbit_map: OrbitMapResult) -> str:
     )
 
 
-def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> Row:
+def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> TableRow:
     """Return a kind's row: the number of orbits, greatest rate and W, first step of leaving."""
     cells = [(i, j) for i, j in orbit_map.places() if orbit_map.kinds[i][j] == kind]
     rates, defects = (
@@ -110,7 +110,7 @@ def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> Row:
         number(max(defects, key=Fraction)) if defects else "–",
         whole(min(leaving_steps)) if leaving_steps else "–",
     )
-    return Row(orbit_map.scheme, entries)
+    return TableRow(orbit_map.scheme, entries)
 
 
 _TERMS = {
@@ -126,7 +126,7 @@ _TERMS = {
 }
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=31,
     title="Orbits over two initial values",
     anchor="orbit-map",

@@ -12,10 +12,10 @@ from verify.pages.sections.orbits_view import (
     pictures,
     title_from,
 )
-from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import TableRow
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
-from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit, PoincareResult
+from verify.scenes.results.orbit_points import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.report import SceneResult
 
 
@@ -34,13 +34,13 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
 
     way = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
-    where = f"where {result.coordinate} passes {number(result.value)} {way}"
-    title = f"{orbits} orbits {where}"
+    surface_text = f"where {result.coordinate} passes {number(result.value)} {way}"
+    title = f"{orbits} orbits {surface_text}"
     lead = (
-        f"{title}, by {join_and(map_name(each.map) for each in result.sections)}, "
+        f"{title}, by {join_and(map_name(section.map) for section in result.sections)}, "
         f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
-    passes = max(len(o.points) for each in result.sections for o in each.orbits)
+    passes = max(len(o.points) for section in result.sections for o in section.orbits)
     drawn_count = count_drawn_looks(result.sections)
     omissions = f" The first {whole(drawn_count)} passes are drawn." * (drawn_count < passes)
     outside = select_points(result)[1]
@@ -52,9 +52,9 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
         title=title_from(result.source, title),
         finding=finding,
         rows=tuple(
-            Row(each.map, _cells(o), describe_escape(o))
-            for each in result.sections
-            for o in each.orbits
+            TableRow(section.map, _cells(o), describe_escape(o))
+            for section in result.sections
+            for o in section.orbits
         ),
         plot=captioned_plot(
             lambda: draw_passes(result),
@@ -101,7 +101,7 @@ _TERMS = {
 }
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=26,
     title="Where orbits pass a surface",
     anchor="poincare",

@@ -6,13 +6,13 @@ from markupsafe import Markup
 
 from verify.pages.sections import scheme as of_scheme
 from verify.pages.sections.section import (
-    Entry,
-    Section,
+    ContentsEntry,
+    ReportSection,
     SectionPlace,
     VisibleSection,
     select_sections,
 )
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 
 
@@ -25,9 +25,9 @@ class SchemeView:
     sections: tuple[VisibleSection, ...]
 
     @property
-    def entry(self) -> Entry:
+    def entry(self) -> ContentsEntry:
         """Its place in the contents."""
-        return Entry(self.anchor, Markup("<code>{}</code>").format(self.proof.scheme))
+        return ContentsEntry(self.anchor, Markup("<code>{}</code>").format(self.proof.scheme))
 
 
 def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...]:
@@ -42,9 +42,9 @@ def _scheme(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeView:
     return SchemeView(proof, anchor, select_sections(of_scheme.FILES, place, scene, proof, anchor))
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=40,
     view=_view,
     entries=lambda view: (scheme.entry for scheme in view),
-    inner=lambda view: (each for scheme in view for each in scheme.sections),
+    inner=lambda view: (section for scheme in view for section in scheme.sections),
 )

@@ -9,12 +9,11 @@ from markupsafe import Markup
 
 from verify.arithmetic.exact import plain, short
 from verify.pages.figures.captioned_plot import Plot, captioned_plot
-from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import Row, describe_excerpt, select_members
-from verify.pages.sections.section import Picture, Section
-from verify.pages.text.prose import prose
+from verify.pages.sections.section import Picture, ReportSection
+from verify.pages.sections.table_rows import TableRow, by_key, describe_excerpt, select_members
+from verify.pages.text.legend import counts_of
+from verify.pages.text.prose_markup import prose
 from verify.pages.text.typography import coordinates, join_and, number, step, whole
-from verify.pages.text.words import counts_of
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import (
     KINDS,
@@ -51,7 +50,7 @@ class StabilityView:
     runs: tuple[tuple[str, str, StabilityResult], ...]
     count: int
     excerpt: str
-    largest: tuple[Row, ...]
+    largest: tuple[TableRow, ...]
     bound: str
     plots: tuple[tuple[int, Plot], ...]
 
@@ -116,20 +115,22 @@ def _name(run: StabilityResult) -> str:
     return ", ".join(part for part in parts if part not in implied)
 
 
-def _row_of_largest_step(result: LargestStepResult) -> Row:
+def _row_of_largest_step(result: LargestStepResult) -> TableRow:
     linear, ratio = "no limit", "–"
     if result.linear is not None:
         linear = _four_digits(result.linear) if Fraction(result.linear) else "none is stable"
         if result.bounded and Fraction(result.linear):
             ratio = f"{float(Fraction(result.bounded) / Fraction(result.linear)):.3f}"
     measured_step = _four_digits(result.bounded) if result.bounded else prose(result.detail)
-    return Row(f"{result.scheme}{_describe_requirements(result)}", (measured_step, linear, ratio))
+    return TableRow(
+        f"{result.scheme}{_describe_requirements(result)}", (measured_step, linear, ratio)
+    )
 
 
 def _describe_requirements(result: LargestStepResult) -> str:
     """Return the requirements on the motion other than to stay bounded."""
     requirements = (("energy error", result.energy_error), ("|W|", result.symplectic_defect))
-    limits = [f"{what} ≤ {number(most)}" for what, most in requirements if most]
+    limits = [f"{quantity} ≤ {number(most)}" for quantity, most in requirements if most]
     return f", {' and '.join(limits)}" if limits else ""
 
 
@@ -145,12 +146,12 @@ def _describe_time(steps: Sequence[LargestStepResult]) -> str:
 def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[int, Plot]]:
     """Yield a plot for the maps of all schemes over the same steps and values.
 
-    The drawing, and with it matplotlib, is imported only where there is a map.
+    The drawing, and with it matplotlib, is imported only if there is a map.
     """
     groups = by_key(maps, lambda m: (m.parameter, m.values, m.step_sizes, m.steps, m.q, m.p))
     for index, group in enumerate(groups.values()):
-        # matplotlib takes long to import, and is needed only where there is a map.
-        from verify.pages.figures.stability_figure import draw_planes
+        # matplotlib takes long to import, and is needed only if there is a map.
+        from verify.pages.figures.kind_map_figure import draw_planes
 
         names = join_and(stability_map.scheme for stability_map in group)
         lead = f"Stability of {names} over the step size h and {group[0].parameter}"
@@ -207,6 +208,6 @@ def _terms(views: Sequence[StabilityView]) -> dict[str, Markup]:
     return {"Verdicts on runs": definitions} if occurring else {}
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=30, title="Stability", anchor="stability", view=_view, pictures=_pictures, terms=_terms
 )

@@ -12,10 +12,10 @@ from verify.pages.sections.orbits_view import (
     pictures,
     title_from,
 )
-from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import TableRow
 from verify.pages.text.typography import IS, join_and, number, step, whole
-from verify.scenes.results.orbit_sections import StroboscopicResult
+from verify.scenes.results.orbit_points import StroboscopicResult
 from verify.scenes.results.report import SceneResult
 
 
@@ -27,7 +27,7 @@ def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
 def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
     from verify.pages.figures.orbit_points_figure import count_drawn_looks, draw_periods
 
-    schemes = join_and(each.scheme for each in result.sections)
+    schemes = join_and(section.scheme for section in result.sections)
     begins = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
     orbits = whole(len(result.sections[0].orbits))
     lead = (
@@ -58,27 +58,27 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
 
 
 def _finding(result: StroboscopicResult) -> Iterator[str]:
-    for each in result.sections:
-        partly_decided = [o for o in each.orbits if o.known < len(o.points) - 1]
-        source = f"{each.scheme}: with {whole(each.digits)} digits in {each.arithmetic}"
+    for section in result.sections:
+        partly_decided = [o for o in section.orbits if o.known < len(o.points) - 1]
+        source = f"{section.scheme}: with {whole(section.digits)} digits in {section.arithmetic}"
         if partly_decided:
-            yield f"{source} {describe_partly_known(each.orbits, partly_decided, 'periods')}."
+            yield f"{source} {describe_partly_known(section.orbits, partly_decided, 'periods')}."
         else:
             yield f"{source} every orbit is known to its end."
-        floats = min(o.in_float64 for o in each.orbits)
+        floats = min(o.in_float64 for o in section.orbits)
         if floats < result.periods:
             yield f"float64 shows another picture from period {whole(floats + 1)} on."
 
 
-def _rows(result: StroboscopicResult) -> Iterator[Row]:
-    for each in result.sections:
-        for orbit in each.orbits:
+def _rows(result: StroboscopicResult) -> Iterator[TableRow]:
+    for section in result.sections:
+        for orbit in section.orbits:
             done = len(orbit.points) - 1
             cells = (
                 number(orbit.q), number(orbit.p), whole(done), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
-            yield Row(each.scheme, cells, describe_escape(orbit))
+            yield TableRow(section.scheme, cells, describe_escape(orbit))
 
 
 _TERMS = {
@@ -90,7 +90,7 @@ _TERMS = {
 }
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=25,
     title="Once in each period",
     anchor="stroboscopic",

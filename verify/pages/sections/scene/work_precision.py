@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, known_digits
-from verify.pages.sections.rows import Group, Row
-from verify.pages.sections.section import Picture, Section
-from verify.pages.text import words
+from verify.pages.sections.section import Picture, ReportSection
+from verify.pages.sections.table_rows import Group, TableRow
+from verify.pages.text import legend
 from verify.pages.text.typography import NBSP, number, start, step, whole
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
@@ -34,9 +34,9 @@ class WorkPrecisionView:
     heads: tuple[str, str]  # of two columns: the order of the defect, and the sharper defect
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
-    schemes: tuple[Row, ...]
+    schemes: tuple[TableRow, ...]
     groups: tuple[Group, ...]
-    systems: tuple[Row, ...]
+    systems: tuple[TableRow, ...]
     count: int
     provenance: str
 
@@ -101,7 +101,7 @@ def _describe_provenance(result: WorkPrecisionResult) -> str:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _scheme_row(line: WorkLine) -> Row:
+def _scheme_row(line: WorkLine) -> TableRow:
     cells = (
         "–" if line.order is None else str(line.order),
         _format_slope(line.error_slope),
@@ -109,7 +109,7 @@ def _scheme_row(line: WorkLine) -> Row:
         *_operations(line.cost),
         _seconds(line.compile_seconds),
     )
-    return Row(line.name, cells)
+    return TableRow(line.name, cells)
 
 
 def _format_slope(slope: SlopeResult) -> str:
@@ -136,17 +136,17 @@ def _group(line: WorkLine) -> Group:
     return Group(line.name, [_row(point) for point in line.points], about)
 
 
-def _row(point: WorkPoint) -> Row:
+def _row(point: WorkPoint) -> TableRow:
     label = step(point.step_size) if point.step_size else number(point.tolerance or "")
     steps = "–" if point.steps is None else whole(point.steps)
     if point.limited_by == "failed":
-        place = f" at step {whole(point.failed_step)}" if point.failed_step else ""
-        return Row(label, (steps,), f"failed{place}: {point.reason}")
+        step_note = f" at step {whole(point.failed_step)}" if point.failed_step else ""
+        return TableRow(label, (steps,), f"failed{step_note}: {point.reason}")
     values = (point.error, point.rounding, point.energy, point.lam, _sharper_defect(point))
     times = (point.seconds_min, point.seconds_median)
     limit = "its tolerance" if point.limited_by == "tolerance" else point.limited_by
     cells = (*map(known_digits, values), *map(_seconds, times), limit)
-    return Row(label, (steps, *cells))
+    return TableRow(label, (steps, *cells))
 
 
 def _sharper_defect(point: WorkPoint) -> Value | None:
@@ -154,7 +154,7 @@ def _sharper_defect(point: WorkPoint) -> Value | None:
     return point.symplectic_defect or point.lam_plain
 
 
-def _system_row(point: SystemPoint) -> Row:
+def _system_row(point: SystemPoint) -> TableRow:
     cells = (
         str(point.digits),
         point.certified or f"– ({point.reason})",
@@ -162,7 +162,7 @@ def _system_row(point: SystemPoint) -> Row:
         _seconds(point.seconds_median),
         f"{point.error_kind} ({point.reason})" if point.reason else point.error_kind,
     )
-    return Row(point.arithmetic, cells)
+    return TableRow(point.arithmetic, cells)
 
 
 def _seconds(seconds: float | None) -> str:
@@ -176,11 +176,11 @@ _TERMS = {
         "fitted to them."
     )
 }
-SECTION = Section(
+SECTION = ReportSection(
     order=10,
     title="Error against run time",
     anchor="work",
     view=_view,
     pictures=lambda view: [Picture((5,), plot) for plot in view.plots],
-    terms=lambda _: _TERMS | words.RAN,
+    terms=lambda _: _TERMS | legend.RAN,
 )

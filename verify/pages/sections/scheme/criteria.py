@@ -1,10 +1,10 @@
 """The four criteria of area preservation, for one scheme."""
 
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
 from verify.scenes.results.claim import CriterionResult
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
-from verify.studies.criteria import NAMES
+from verify.studies.criteria_verdicts import NAMES
 
 CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with the criterion's name
 
@@ -14,4 +14,4 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView:
     return tuple((c, NAMES.get(c.number, "")) for c in criteria)
 
 
-SECTION = Section(order=30, view=_view)
+SECTION = ReportSection(order=30, view=_view)

@@ -1,12 +1,19 @@
-"""The properties of a scheme that are proved for every Hamiltonian, where requested."""
+"""The properties of a scheme that are proved for every Hamiltonian, if requested."""
 
-from verify.pages.sections.section import Section
-from verify.scenes.results.proof import EveryResult, ProofResult
+from verify.pages.sections.section import ReportSection
+from verify.scenes.results.proof_result import EveryResult, ProofResult
 from verify.scenes.results.report import SceneResult
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> EveryResult | None:
-    return next((each for each in scene.every if each.scheme == proof.scheme), None)
+    return next(
+        (
+            proof_for_every_h
+            for proof_for_every_h in scene.every
+            if proof_for_every_h.scheme == proof.scheme
+        ),
+        None,
+    )
 
 
-SECTION = Section(order=20, view=_view)
+SECTION = ReportSection(order=20, view=_view)

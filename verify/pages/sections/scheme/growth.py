@@ -8,14 +8,19 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, captioned_plot, round_to_few_digits
-from verify.pages.figures.logarithm import lg
-from verify.pages.sections.rows import MOST_ROWS, Group, Row, describe_excerpt, select_members
-from verify.pages.sections.section import Section
+from verify.pages.figures.captioned_plot import Plot, captioned_plot, lg, round_to_few_digits
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import (
+    MOST_ROWS,
+    Group,
+    TableRow,
+    describe_excerpt,
+    select_members,
+)
 from verify.pages.text.typography import NBSP, between, join_and, number, start, step, whole
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 
 
@@ -26,12 +31,12 @@ class GrowthView:
     plots: tuple[Plot, ...]
     groups: tuple[Group, ...]
     count: int
-    excerpt: str  # says which rows are shown, where not all are
+    excerpt: str  # says which rows are shown, if not all are
     provenance: str
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | None:
-    laws = [each for each in scene.growth_laws if each.law.scheme == proof.scheme]
+    laws = [growth for growth in scene.growth_laws if growth.law.scheme == proof.scheme]
     if not laws:
         return None
     return GrowthView(
@@ -39,7 +44,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
         finding=tuple(_finding(laws, scene.growth_explains)),
         plots=tuple(_plots(laws, anchor)),
         groups=tuple(_groups(laws)),
-        count=(count := sum(len(each.predictions) for each in laws)),
+        count=(count := sum(len(growth.predictions) for growth in laws)),
         excerpt=describe_excerpt(count, min(count, MOST_ROWS)),
         provenance=_describe_provenance(laws),
     )
@@ -49,7 +54,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
 
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
-    averaged = [each.law for each in laws if each.law.average]
+    averaged = [growth.law for growth in laws if growth.law.average]
     if not laws[0].law.power:
         return
     yield (
@@ -67,7 +72,7 @@ def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
             f"That is the pattern in {explains}: at one h, the Λ of different initial values are "
             "as their ⟨g⟩, and only the bounded part looks irregular."
         )
-    yield from _describe_agreement([p for each in laws for p in each.predictions])
+    yield from _describe_agreement([p for growth in laws for p in growth.predictions])
     undecided = len(laws) - len(averaged)
     if undecided:
         have = "has" if undecided == 1 else "have"
@@ -99,7 +104,9 @@ def _bounded_share(p: PredictionResult) -> Fraction | None:
 
 def _describe_provenance(laws: Sequence[GrowthLawResult]) -> str:
     methods = dict.fromkeys(
-        f"{each.law.error_kind} ({each.law.error_method})" for each in laws if each.law.average
+        f"{growth.law.error_kind} ({growth.law.error_method})"
+        for growth in laws
+        if growth.law.average
     )
     if not methods:
         return ""
@@ -127,13 +134,12 @@ def _format_share(value: Fraction) -> str:
 
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
-    """Yield the plot of |Λ| predicted and measured, where there are step sizes to compare."""
+    """Yield the plot of |Λ| predicted and measured, if there are step sizes to compare."""
     # An orbit needs two step sizes with known digits, or there is no line to draw.
     drawable = select_drawable(laws)
     if not drawable:
         return
-    from verify.pages.figures.figures import MOST_LINES
-    from verify.pages.figures.growth_figure import draw_predicted_against_measured
+    from verify.pages.figures.step_size_figures import MOST_LINES, draw_predicted_against_measured
 
     selected = drawable[:: -(-len(drawable) // MOST_LINES)]
     omission = f" {len(selected)} of {whole(len(drawable))} orbits are drawn." * (
@@ -153,9 +159,9 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
 def select_drawable(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
     """Return the laws with two drawable predictions or more, reduced to these predictions."""
     drawable = (
-        each.model_copy(update={"predictions": _drawable_predictions(each)}) for each in laws
+        growth.model_copy(update={"predictions": _drawable_predictions(growth)}) for growth in laws
     )
-    return [each for each in drawable if len(each.predictions) > 1]
+    return [growth for growth in drawable if len(growth.predictions) > 1]
 
 
 def _caption(law: AverageResult) -> str:
@@ -186,9 +192,11 @@ def _drawable_predictions(law: GrowthLawResult) -> tuple[PredictionResult, ...]:
 
 
 def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
-    for each, rows in zip(laws, select_members(each.predictions for each in laws), strict=True):
-        if rows or not each.predictions:
-            yield Group(start(each.law), [_row(p) for p in rows], _about(each.law))
+    for growth, rows in zip(
+        laws, select_members(growth.predictions for growth in laws), strict=True
+    ):
+        if rows or not growth.predictions:
+            yield Group(start(growth.law), [_row(p) for p in rows], _about(growth.law))
 
 
 def _about(law: AverageResult) -> str:
@@ -201,10 +209,10 @@ def _about(law: AverageResult) -> str:
     return f"{law.orbit}{period}, ⟨g⟩ = {rate}"
 
 
-def _row(p: PredictionResult) -> Row:
+def _row(p: PredictionResult) -> TableRow:
     values = (p.boundary, p.secular, p.predicted, p.measured, p.difference)
     cells = (round_to_few_digits(v.value) if v else "–" for v in values)
-    return Row(step(p.step_size), (whole(p.steps), *cells))
+    return TableRow(step(p.step_size), (whole(p.steps), *cells))
 
 
 _TERMS = {
@@ -215,4 +223,4 @@ _TERMS = {
         "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
     )
 }
-SECTION = Section(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)
+SECTION = ReportSection(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)

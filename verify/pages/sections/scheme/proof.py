@@ -1,5 +1,5 @@
 """The proof of a scheme: its map, its Jacobian matrix, ΔJ and both orders."""
 
-from verify.pages.sections.section import Section
+from verify.pages.sections.section import ReportSection
 
-SECTION = Section(order=10, view=lambda _, proof, __: None if proof.form else proof)
+SECTION = ReportSection(order=10, view=lambda _, proof, __: None if proof.form else proof)

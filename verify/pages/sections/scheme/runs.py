@@ -7,12 +7,17 @@ from markupsafe import Markup
 
 from verify import observables
 from verify.pages.figures.captioned_plot import describe_runs
-from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import Group, Row, describe_excerpt, select_members
-from verify.pages.sections.section import Section
-from verify.pages.text import words
+from verify.pages.sections.section import ReportSection
+from verify.pages.sections.table_rows import (
+    Group,
+    TableRow,
+    by_key,
+    describe_excerpt,
+    select_members,
+)
+from verify.pages.text import legend
 from verify.pages.text.typography import number, start, value, whole
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
@@ -24,7 +29,7 @@ class RunTable:
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
     count: int
-    excerpt: str  # says which rows are shown, where not all are
+    excerpt: str  # says which rows are shown, if not all are
     provenance: str
     certainty: str  # which of the bounds are rigorous
     notes: tuple[str, ...]  # where another arithmetic was taken, and which left H's domain
@@ -33,7 +38,10 @@ class RunTable:
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
-    columns = {name: each.heading or each.label for name, each in observables.by_name().items()}
+    columns = {
+        name: observable.heading or observable.label
+        for name, observable in observables.by_name().items()
+    }
     names = [n for n in columns if any(n in run.values for run in runs)]
     if not names and all(run.status == "finished" for run in runs):
         return None
@@ -96,7 +104,7 @@ def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
         yield Group(label, [_row(run, names) for run in group])
 
 
-def _row(run: RunResult, names: Sequence[str]) -> Row:
+def _row(run: RunResult, names: Sequence[str]) -> TableRow:
     failure = ""
     if run.status == "left range":
         failure = f"left the range of {run.arithmetic}"
@@ -105,7 +113,7 @@ def _row(run: RunResult, names: Sequence[str]) -> Row:
     elif run.status == "unresolved":
         failure = f"no digit could be confirmed: {run.error_method}"
     cells = (value(run.values[n]) if n in run.values else Markup("–") for n in names)
-    return Row(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
+    return TableRow(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
 
 
-SECTION = Section(order=80, view=_view, terms=lambda _: words.RAN)
+SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN)

@@ -13,23 +13,26 @@ from verify.pages.figures.captioned_plot import (
     known_digits,
     round_to_few_digits,
 )
-from verify.pages.figures.separation_caption import caption, end_of
-from verify.pages.sections.rows import Group, Row
-from verify.pages.sections.section import Picture, Section
-from verify.pages.sections.separation_finding import decades_below, finding, growth_finding
-from verify.pages.sections.separation_table import (
+from verify.pages.sections.section import Picture, ReportSection
+from verify.pages.sections.separation_summary import (
     PartsTable,
+    caption,
+    decades_below,
     describe_evaluation,
+    describe_separation,
+    end_of,
     grids_of,
     groups_of_grids,
+    growth_finding,
     list_kinds,
     parts_table,
 )
-from verify.pages.text import words
-from verify.pages.text.prose import prose
+from verify.pages.sections.table_rows import Group, TableRow
+from verify.pages.text import legend
+from verify.pages.text.prose_markup import prose
 from verify.pages.text.typography import NBSP, join_and, number, start, step, whole
-from verify.scenes.results.form_value import largest
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.bounded_value import largest
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.separation import (
     WAYS,
@@ -69,7 +72,9 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
     grid_points = [point for grid in plain_grids or crossover_grids for point in grid.points]
     return SeparationView(
         structure=AREA,
-        finding=tuple(finding(grid_points, " on the grid of runs" if plain_grids else "")),
+        finding=tuple(
+            describe_separation(grid_points, " on the grid of runs" if plain_grids else "")
+        ),
         table=parts_table(
             [*plain_grids, *crossover_grids],
             _rounding_against_truncation,
@@ -108,8 +113,8 @@ def _describe_longest_run(rows: Sequence[SeparationInDegrees]) -> Iterator[Marku
         return
     longest = max(separated, key=lambda point: Fraction(point.step_size) * point.steps)
     assert longest.tangent is not None  # noqa: S101 - chosen so
-    where = Markup("Over T = {}, h = {}: ").format(longest.tangent.time, step(longest.step_size))
-    yield where + prose(longest.tangent.meaning) + Markup(".")
+    run_text = Markup("Over T = {}, h = {}: ").format(longest.tangent.time, step(longest.step_size))
+    yield run_text + prose(longest.tangent.meaning) + Markup(".")
 
 
 def _describe_crossover(grid: SeparationGridInDegrees) -> str:
@@ -126,16 +131,16 @@ def _describe_crossover(grid: SeparationGridInDegrees) -> str:
 def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
     """Yield a figure for each grid over which truncation and rounding can be drawn."""
     for index, grid in enumerate(grids):
-        from verify.pages.figures import crossover_figure as figure
+        from verify.pages.figures import step_size_figures as figure
 
         lines, marks = figure.lines_and_marks(grid)
         if len(lines) < 2:
             continue
-        place = f"{start(grid.points[0])}{end_of(grid.points)}"
+        origin = f"{start(grid.points[0])}{end_of(grid.points)}"
         yield captioned_plot(
             partial(figure.draw_truncation_against_rounding, lines, marks),
             name=f"crossover-{index}-of-{name}",
-            lead=f"Truncation and rounding in Λ against h, from {place}",
+            lead=f"Truncation and rounding in Λ against h, from {origin}",
             caption=caption(grid, describe_evaluation(grid.points, list_kinds)),
         )
 
@@ -159,12 +164,15 @@ def _greatest_rounding(evaluation: AnyEvaluation) -> Markup:
     return known_digits(abs(largest(evaluation.parts.total)))
 
 
-def _growth_row(point: SeparationResult) -> Row | None:
+def _growth_row(point: SeparationResult) -> TableRow | None:
     if point.plain is None:
         return None
     ways = map(point.ways.get, WAYS)
-    cells = (_format_growth(each.growth["total"]) if each else Markup("–") for each in ways)
-    return Row(step(point.step_size), (whole(point.steps), *cells))
+    cells = (
+        _format_growth(evaluation.growth["total"]) if evaluation else Markup("–")
+        for evaluation in ways
+    )
+    return TableRow(step(point.step_size), (whole(point.steps), *cells))
 
 
 def _format_growth(growth: GrowthResult) -> Markup:
@@ -174,7 +182,7 @@ def _format_growth(growth: GrowthResult) -> Markup:
     return Markup('{} <span class="muted beside">{}</span>').format(exponent, growth.name)
 
 
-def _motion_row(point: SeparationInDegrees) -> Row | None:
+def _motion_row(point: SeparationInDegrees) -> TableRow | None:
     tangent, closed_form = point.tangent, point.closed_form
     if tangent is None or closed_form is None:
         return None
@@ -187,7 +195,7 @@ def _motion_row(point: SeparationInDegrees) -> Row | None:
         f"exponential, {_CAUSES[tangent.cause]}" if tangent.cause else tangent.motion,
         _format_law(law.exponent, law.name) if law else "0",
     )
-    return Row(step(point.step_size), cells)
+    return TableRow(step(point.step_size), cells)
 
 
 def _format_law(exponent: str | None, name: str) -> str:
@@ -202,8 +210,8 @@ _CROSSOVER_TERMS = {
     )
 }
 _TERMS = {
-    AREA: words.SEPARATED | _CROSSOVER_TERMS | words.RAN,
-    SYMPLECTIC: {"W": words.OF_FORM["W"]} | words.SEPARATED_FORM | words.RAN,
+    AREA: legend.SEPARATED | _CROSSOVER_TERMS | legend.RAN,
+    SYMPLECTIC: {"W": legend.OF_FORM["W"]} | legend.SEPARATED_FORM | legend.RAN,
 }
 
 
@@ -211,13 +219,13 @@ def _terms(views: Sequence[SeparationView]) -> Mapping[str, Markup]:
     structures = {view.structure for view in views}
     return {
         k: x
-        for each, structure_terms in _TERMS.items()
-        if each in structures
+        for structure, structure_terms in _TERMS.items()
+        if structure in structures
         for k, x in structure_terms.items()
     }
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=70,
     view=_view,
     pictures=lambda view: [Picture((3,), plot) for plot in view.plots],

@@ -1,6 +1,6 @@
 """ΔJ and Λ along a run, over time, in a picture with its caption.
 
-The drawing, and with it matplotlib, is imported only where something is drawn.
+The drawing, and with it matplotlib, is imported only if something is drawn.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,11 +11,11 @@ from verify.pages.figures.captioned_plot import (
     describe_runs,
     round_to_few_digits,
 )
-from verify.pages.sections.by_key import by_key
-from verify.pages.sections.section import Picture, Section
-from verify.pages.text import words
+from verify.pages.sections.section import Picture, ReportSection
+from verify.pages.sections.table_rows import by_key
+from verify.pages.text import legend
 from verify.pages.text.typography import start, whole
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
@@ -44,7 +44,7 @@ def _over_time(runs: Sequence[RunResult], *, name: str) -> Plot:
     origin = f" from {rows[0].label}" if len(rows) == 1 else ""
     source = f" (for {runs[0].source})" if runs[0].source else ""
     is_hidden = any(len(row.panels) == 1 for row in rows)
-    what = "Λ" if is_hidden else "ΔJ = det J − 1 and Λ"
+    quantities = "Λ" if is_hidden else "ΔJ = det J − 1 and Λ"
     sentences = [
         _describe_bands(
             max(
@@ -54,16 +54,16 @@ def _over_time(runs: Sequence[RunResult], *, name: str) -> Plot:
         "ΔJ goes up and down within each band, so that its picture would be a rectangle."
         * is_hidden,
         *(
-            each
+            sentence
             for start_text, group in by_start.items()
-            for each in _describe_ends(group, start_text if not origin else "")
+            for sentence in _describe_ends(group, start_text if not origin else "")
         ),
         describe_runs(drawn_runs),
     ]
     return captioned_plot(
         lambda: figure.draw_over_time(rows),
         name=name,
-        lead=f"{what} over time, h = {runs[0].step_size}{origin}{source}",
+        lead=f"{quantities} over time, h = {runs[0].step_size}{origin}{source}",
         caption=" ".join(filter(None, sentences)),
     )
 
@@ -78,20 +78,21 @@ def _describe_bands(steps: int) -> str:
 
 def _describe_ends(runs: Sequence[RunResult], label: str) -> Iterator[str]:
     """Yield the final values of the longest run, or how it ended."""
-    run = max(runs, key=lambda each: each.steps)
-    where = f"From {label}: the" if label else "The"
+    run = max(runs, key=lambda run_of_orbit: run_of_orbit.steps)
+    beginning = f"From {label}: the" if label else "The"
     if run.status == "left range":
-        yield f"{where} run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
+        steps = whole(run.steps)
+        yield f"{beginning} run left the range of {run.arithmetic} before its {steps} steps."
     elif {"delta_j_max", "lambda"} <= set(run.values):
         top, end = (round_to_few_digits(run.values[key].value) for key in ("delta_j_max", "lambda"))
-        yield f"{where} greatest |ΔJ| is {top}; after {whole(run.steps)} steps Λ is {end}."
+        yield f"{beginning} greatest |ΔJ| is {top}; after {whole(run.steps)} steps Λ is {end}."
 
 
-SECTION = Section(
+SECTION = ReportSection(
     order=50,
     view=_view,
     pictures=lambda view: [Picture((4,), plot) for plot, _ in view],
-    terms=lambda _: words.RAN,
+    terms=lambda _: legend.RAN,
     shows="series",
     matching_plots=lambda view, label: ((plot, "") for plot, source in view if source == label),
 )

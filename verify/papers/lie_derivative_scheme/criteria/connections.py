@@ -7,11 +7,10 @@ criterion 4 is Λ = o(1), as h → 0.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import NUMBERS, Check
-from verify.papers.checks.sums import compensated_changes, mean_of_fourth_powers
+from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, step
+from verify.papers.elementary_identities import compensated_changes, mean_of_fourth_powers
 from verify.papers.exact_maps import Areas
-from verify.papers.lie_derivative_scheme.criteria_examples import (
+from verify.papers.lie_derivative_scheme.examples import (
     COMPENSATED,
     FRICTION,
     NOT_UNIFORM,
@@ -21,7 +20,7 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     shrinks_to,
     turns_to_and_fro,
 )
-from verify.proof.assistant.stated import ShippedTheorem
+from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
 Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
@@ -41,6 +40,7 @@ def inequalities_of(example: ExampleMap) -> Check:
 
 
 def inequalities_hold(areas: Areas) -> bool:
+    """Return True if MSE ≤ m², |Λ| ≤ Π(1 + |x|) − 1 and (Σ|x|)² ≤ N² MSE."""
     # Every inequality is checked without roots or logarithms, so that Fractions decide it.
     count, total, product = len(areas.delta_j), Fraction(0), Fraction(1)
     for x in areas.delta_j:
@@ -217,5 +217,5 @@ def shrinking(friction: ExampleMap) -> list[Check]:
 
 def to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
     """Check ΔJ of the alternating map in two steps, and its numbers for even and odd N."""
-    each = [example.check() for example in alternating]
-    return [alternating[0].changes(), turns_to_and_fro(), *each]
+    checks = [example.check() for example in alternating]
+    return [alternating[0].changes(), turns_to_and_fro(), *checks]

@@ -17,7 +17,7 @@ def names() -> tuple[str, ...]:
 
 
 def get(name: str) -> "Shape":
-    """Return the shape of that name; InputError where there is none."""
+    """Return the shape of that name; InputError if there is none."""
     if name not in _FILES:
         raise unknown_name("shape", name, names())
     shape: Shape = _FILES.module(name).SHAPE

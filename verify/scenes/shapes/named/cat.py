@@ -15,8 +15,8 @@ Point = tuple[str, str]  # x, y as exact decimals
 
 def _head(mp: Context, s: Number) -> tuple[Number, Number]:
     turn = angle(mp, s)
-    x = _exact(mp, "0.88") * mp.cos(turn)
-    y = _exact(mp, "0.72") * mp.sin(turn) - _exact(mp, "0.13")
+    x = _value(mp, "0.88") * mp.cos(turn)
+    y = _value(mp, "0.72") * mp.sin(turn) - _value(mp, "0.13")
     cos, sin = mp.cos(turn / 2), mp.sin(turn / 2)
     # 1 − cos(θ − θ₀) = 2 sin²((θ − θ₀)/2) keeps its digits in float64; the axes θ₀ are (±8, 15)/17
     # of the ears and (±4, −3)/5 of the cheeks, whose halves are rational but for a common root.
@@ -26,21 +26,21 @@ def _head(mp: Context, s: Number) -> tuple[Number, Number]:
     ):
         # A broad bump and a sharper one on it make an ear.
         broad, tip = (mp.exp(-k * ear * ear / 17) for k in (10, 40))
-        x += side * (_exact(mp, "0.05") * broad + _exact(mp, "0.12") * tip)
-        y += _exact(mp, "0.18") * broad + _exact(mp, "0.36") * tip
-        x += side * _exact(mp, "0.10") * mp.exp(-6 * cheek * cheek / 5)
+        x += side * (_value(mp, "0.05") * broad + _value(mp, "0.12") * tip)
+        y += _value(mp, "0.18") * broad + _value(mp, "0.36") * tip
+        x += side * _value(mp, "0.10") * mp.exp(-6 * cheek * cheek / 5)
     return x, y
 
 
-def _exact(mp: Context, decimal: str) -> Number:
+def _value(mp: Context, decimal: str) -> Number:
     return number(mp, Fraction(decimal))
 
 
 def _ellipse(centre: Point, radii: Point) -> Arc:
     def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
-        x = _exact(mp, centre[0]) + _exact(mp, radii[0]) * mp.cos(turn)
-        return x, _exact(mp, centre[1]) + _exact(mp, radii[1]) * mp.sin(turn)
+        x = _value(mp, centre[0]) + _value(mp, radii[0]) * mp.cos(turn)
+        return x, _value(mp, centre[1]) + _value(mp, radii[1]) * mp.sin(turn)
 
     return evaluate
 
@@ -51,9 +51,9 @@ def _almond(centre: Point, radii: Point, tilt: str) -> Arc:
     def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
         cos, sin = mp.cos(turn), mp.sin(turn)
-        narrow = 1 - cos * cos * _exact(mp, "0.3")
-        x = _exact(mp, centre[0]) + _exact(mp, radii[0]) * cos
-        return x, _exact(mp, centre[1]) + _exact(mp, radii[1]) * sin * narrow + _exact(
+        narrow = 1 - cos * cos * _value(mp, "0.3")
+        x = _value(mp, centre[0]) + _value(mp, radii[0]) * cos
+        return x, _value(mp, centre[1]) + _value(mp, radii[1]) * sin * narrow + _value(
             mp, tilt
         ) * cos
 
@@ -68,8 +68,8 @@ def _triangle(centre: Point, up: Point, aside: Point) -> Arc:
         # One corner is at the end of the axis `up`.
         lengthwise = mp.cos(turn) + mp.cos(2 * turn) / 4
         sideways = mp.sin(turn) - mp.sin(2 * turn) / 4
-        x = _exact(mp, centre[0]) + _exact(mp, up[0]) * lengthwise + _exact(mp, aside[0]) * sideways
-        return x, _exact(mp, centre[1]) + _exact(mp, up[1]) * lengthwise + _exact(
+        x = _value(mp, centre[0]) + _value(mp, up[0]) * lengthwise + _value(mp, aside[0]) * sideways
+        return x, _value(mp, centre[1]) + _value(mp, up[1]) * lengthwise + _value(
             mp, aside[1]
         ) * sideways
 
@@ -80,8 +80,8 @@ def _mouth(mp: Context, s: Number) -> tuple[Number, Number]:
     """A thin outline about the graph of a wave: one crest below the nose, half of one each side."""
     turn = angle(mp, s)
     u = mp.cos(turn)
-    wave = mp.cos(2 * mp.pi * u) * _exact(mp, "0.035") + mp.exp(-20 * u * u) * _exact(mp, "0.05")
-    return _exact(mp, "0.22") * u, wave + _exact(mp, "0.008") * mp.sin(turn) - _exact(mp, "0.415")
+    wave = mp.cos(2 * mp.pi * u) * _value(mp, "0.035") + mp.exp(-20 * u * u) * _value(mp, "0.05")
+    return _value(mp, "0.22") * u, wave + _value(mp, "0.008") * mp.sin(turn) - _value(mp, "0.415")
 
 
 def _whisker(root: Point, tip: Point) -> Arc:
@@ -91,10 +91,10 @@ def _whisker(root: Point, tip: Point) -> Arc:
     def evaluate(mp: Context, s: Number) -> tuple[Number, Number]:
         turn = angle(mp, s)
         u = mp.cos(turn)
-        (x0, x1), (y0, y1) = ([_exact(mp, c) for c in pair] for pair in zip(root, tip, strict=True))
-        height = (y0 + y1 + (y1 - y0) * u) / 2 + _exact(mp, "0.03") * (1 - u * u)
+        (x0, x1), (y0, y1) = ([_value(mp, c) for c in pair] for pair in zip(root, tip, strict=True))
+        height = (y0 + y1 + (y1 - y0) * u) / 2 + _value(mp, "0.03") * (1 - u * u)
         # Counterclockwise to either side.
-        width = side * _exact(mp, "0.007") * mp.sin(turn)
+        width = side * _value(mp, "0.007") * mp.sin(turn)
         return (x0 + x1 + (x1 - x0) * u) / 2, height + width
 
     return evaluate

@@ -25,7 +25,7 @@ TimedPart = tuple[str, Any, Any]
 Heads = tuple[tuple[int, int], ...]  # places of heads and of their tails
 
 
-class Numbers(Protocol):
+class WordNumbers(Protocol):
     """The numbers of a step's coefficients: a ring, or numbers that need no reduction."""
 
     @property
@@ -59,7 +59,7 @@ class PlainNumbers:
 class StepWords:
     """The coefficients of words in a step, each computed once. `bound`: with every sign plus."""
 
-    def __init__(self, ring: Numbers, parts: Sequence[TimedPart], bound: bool = False) -> None:
+    def __init__(self, ring: WordNumbers, parts: Sequence[TimedPart], bound: bool = False) -> None:
         self.ring, self.parts, self.bound = ring, parts, bound
         self._coefficients: dict[Word, Any] = {}
         self._generators: dict[Word, Any] = {}
@@ -136,7 +136,7 @@ def factors(word: Word) -> frozenset[Word]:
 
 
 @dataclass(frozen=True)
-class _Plan:
+class _PassPlan:
     """A plan for one pass: `words`: those requested and their heads, the longest first; by the
     kinds of a part's letters `tails`, each after its own head, and `heads`: the places of words
     that end in such letters, with those of heads and of tails."""
@@ -147,15 +147,15 @@ class _Plan:
 
 
 @lru_cache(maxsize=256)
-def _make_plan(requested: frozenset[Word], kinds: frozenset[str]) -> _Plan:
+def _make_plan(requested: frozenset[Word], kinds: frozenset[str]) -> _PassPlan:
     needed_words, pending = {(), *requested}, list(requested)
     while pending:
         word = pending.pop()
-        more = {
+        heads_needed = {
             head for letter_kinds in kinds for head, _ in _head_tail_pairs(word, letter_kinds)
         } - needed_words
-        needed_words |= more
-        pending += more
+        needed_words |= heads_needed
+        pending += heads_needed
     words = tuple(sorted(needed_words, key=len, reverse=True))
     places = {word: k for k, word in enumerate(words)}
     tails, heads = {}, {}
@@ -163,18 +163,18 @@ def _make_plan(requested: frozenset[Word], kinds: frozenset[str]) -> _Plan:
         splits = {word: _head_tail_pairs(word, letter_kinds) for word in words}
         tail_prefixes = {
             tail[:n]
-            for each in splits.values()
-            for _, tail in each
+            for pairs in splits.values()
+            for _, tail in pairs
             for n in range(1, len(tail) + 1)
         }
         tails[letter_kinds] = tuple(sorted(tail_prefixes, key=len))
         tail_places = {tail: k for k, tail in enumerate(tails[letter_kinds])}
         heads[letter_kinds] = tuple(
-            (places[word], tuple((places[head], tail_places[tail]) for head, tail in each))
-            for word, each in splits.items()
-            if each
+            (places[word], tuple((places[head], tail_places[tail]) for head, tail in pairs))
+            for word, pairs in splits.items()
+            if pairs
         )
-    return _Plan(words, tails, heads)
+    return _PassPlan(words, tails, heads)
 
 
 @cache
@@ -185,7 +185,9 @@ def _head_tail_pairs(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
     return tuple((word[:k], word[k:]) for k in reversed(range(len(word))))
 
 
-def _shares(ring: Numbers, tails: Sequence[Word], commute: bool, size: Any, time: Any) -> list[Any]:
+def _shares(
+    ring: WordNumbers, tails: Sequence[Word], commute: bool, size: Any, time: Any
+) -> list[Any]:
     """Return the coefficients of exp(a Σ sⁿ X_n): Π a sⁿ, divided by the number of its orders, m!
     for m letters; of commuting letters m! for each alone."""
     powers = [size]

@@ -11,16 +11,38 @@ Those of them that are smaller than each of their proper ends, the Lyndon words,
 polynomials of a basis (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
 commutatives, Theor. Comput. Sci. 117 (1993)). So a Lie polynomial is known by its coefficients of
 them; a test has the ranks. Without letters of time they are words as all are.
+
+Which letters have a time depends on T in H = T + V(q, t): see `Kinetic`.
 """
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from enum import Enum
 from fractions import Fraction
 from functools import cache
 
 STEPS = "13579"  # the kinds of letters of a composition of symmetric steps
 Letter = tuple[str, int]  # "K" or "D", or one of `STEPS`, and its weight less 1, the power of time
 Word = tuple[Letter, ...]
+
+
+class Kinetic(Enum):
+    """A class of kinetic energies T; V(q, t) is any smooth function in each of them, H = T + V."""
+
+    GENERAL = "T(p, t)"
+    AUTONOMOUS = "T(p)"
+    MASS = "p²/(2m(t))"
+    QUADRATIC = "p²/(2m)"
+
+    @property
+    def timed_letters(self) -> str:
+        """The letters whose time counts: a drift's does where T depends on t."""
+        return "KD" if self in (Kinetic.GENERAL, Kinetic.MASS) else "K"
+
+    @property
+    def quadratic(self) -> bool:
+        """True if fewer conditions suffice than for every T."""
+        return self in (Kinetic.MASS, Kinetic.QUADRATIC)
 
 
 def weight(word: Word) -> int:

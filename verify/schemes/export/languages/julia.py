@@ -15,7 +15,7 @@ global if import let local macro module quote return struct true try using while
 RESERVED = frozenset(_WORDS.split())
 
 
-class _Printer(StrPrinter):  # type: ignore[misc]
+class _JuliaPrinter(StrPrinter):  # type: ignore[misc]
     """A printer of sympy's text form with ^ for powers."""
 
     def _print_Pow(self, expr: sympy.Expr, rational: bool = False) -> str:  # noqa: N802
@@ -31,7 +31,7 @@ def render(program: Program) -> str:
 
 
 def _function(program: Program, key: str) -> Iterator[str]:
-    printer = _Printer()
+    printer = _JuliaPrinter()
     name = program.name if key == "step" else f"{program.name}_{key}"
     yield from ("", f"function {name}({', '.join(program.arguments)})")
     for target, x in program.functions[key]:

@@ -9,8 +9,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
+from verify.algebra.jets import JetsInDegrees
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -16,7 +16,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.maps.by_formulas import map_from_expressions
+from verify.schemes.maps.formula_map import map_from_expressions
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap
 

@@ -26,7 +26,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 from verify.schemes.conditions.splitting_conditions import Part, Splitting, sums_before
-from verify.schemes.maps.by_formulas import map_from_expressions
+from verify.schemes.maps.formula_map import map_from_expressions
 from verify.schemes.maps.kinds import explicit_runge_kutta
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.systems import float64
-from verify.flows.functions import functions_at
+from verify.flows.compiled_functions import functions_at
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.studies.work_precision.peer_interface import (
+from verify.studies.work_precision.peers import (
     Answer,
     InitialValueProblem,
     PeerError,

@@ -13,7 +13,7 @@ from typing import Any
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.studies.work_precision.peer_interface import (
+from verify.studies.work_precision.peers import (
     Answer,
     InitialValueProblem,
     PeerError,

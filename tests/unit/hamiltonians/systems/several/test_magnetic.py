@@ -12,7 +12,7 @@ from tests.helpers.textbook_hamiltonians import Example, example, gradients_apar
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.flows.solution import solution_from
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.run_domain import point_of
 
 P1, P2, Q1, Q2, T = map(symbol, ("p1", "p2", "q1", "q2", "t"))
 with mpmath.workdps(40):

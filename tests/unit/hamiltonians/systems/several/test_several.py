@@ -9,8 +9,8 @@ import verify
 from verify.algebra.formula import symbol
 from verify.hamiltonians import systems
 from verify.hamiltonians.coordinates import numbered_names
-from verify.hamiltonians.start import check_start
-from verify.proof.proof import Proof
+from verify.hamiltonians.run_domain import check_start
+from verify.proof.proof_for_one_h import Proof
 
 SEVERAL = systems.all_systems(2)
 ALL = {name: x for name, x in systems.all_systems(None).items() if x.degrees > 1}

@@ -10,7 +10,7 @@ import pytest
 import verify
 from tests.helpers.textbook_hamiltonians import Example, example, gradients_apart
 from verify.flows.solution import solution_from
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.run_domain import point_of
 
 EIGHT = example("three-body", "figure-eight")
 PERIOD = Fraction("6.32591398")  # as it is published, with the initial values

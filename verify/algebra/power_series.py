@@ -1,0 +1,252 @@
+"""Power series in h truncated after hⁿ, and functions of (p, q) at a point given by such series.
+
+A function's Taylor series around (p, q) needs only its partial derivatives, so that
+f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, for any f; no closed
+form of a composition is needed.
+
+The coefficients of series and forms are elements of a ring of functions with derivatives.
+`verify.algebra.ring.Ring` is one, in which zero is decided; the jets of every H are another, in
+which zero is the zero polynomial.
+
+The step of a scheme that solves linear equations is a quotient of polynomials in h. With
+D = d₀ + d₁ h + …, d₀ a number, the series r₀ + r₁ h + … of 1/D is r₀ = 1/d₀,
+r_n = −(d₁ r_{n−1} + … + d_n r₀)/d₀: no derivative of a quotient is needed, which would have more
+terms with each order.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol
+
+from verify.algebra.identities.polynomials import Poly, split
+from verify.algebra.ring import Ring
+from verify.algebra.zero_test import Decision
+
+
+class CoefficientRing(Protocol):
+    """A ring of functions with derivatives; see the module's text."""
+
+    @property
+    def zero(self) -> Poly:
+        """The element 0."""
+
+    @property
+    def one(self) -> Poly:
+        """The element 1."""
+
+    @property
+    def places(self) -> Mapping[str, int]:
+        """The variables by their names."""
+
+    def reduce(self, x: Poly) -> Poly:
+        """Return x in normal form."""
+
+    def multiply(self, x: Poly, y: Poly) -> Poly:
+        """Return the product in normal form."""
+
+    def constant(self, value: Fraction) -> Poly:
+        """Convert a rational number to an element."""
+
+    def variable(self, name: str) -> Poly:
+        """Return a variable as an element."""
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """Return the partial derivative by a variable."""
+
+    def decide(self, x: Poly) -> Decision:
+        """Decide whether x is the zero function."""
+
+    def vanishes(self, x: Poly) -> bool | None:
+        """Return True if x is zero, False if not, None if undecided; without a witness."""
+
+    def text(self, x: Poly) -> str:
+        """Format x as a formula."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """The series Σ hᵏ coefficients[k], the coefficients in normal form in `ring`, free of h."""
+
+    ring: CoefficientRing
+    coefficients: tuple[Poly, ...]
+
+    @classmethod
+    def from_coefficients(
+        cls, ring: CoefficientRing, coefficients: Sequence[Poly], most: int
+    ) -> "Series":
+        """Make the series with these first coefficients, as far as h^most."""
+        padded = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
+        return cls(ring, tuple(padded))
+
+    @property
+    def most(self) -> int:
+        """The highest power of h that is kept."""
+        return len(self.coefficients) - 1
+
+    def __add__(self, other: "Series") -> "Series":
+        pairs = zip(self.coefficients, other.coefficients, strict=True)
+        return Series(self.ring, tuple(x + y for x, y in pairs))
+
+    def __sub__(self, other: "Series") -> "Series":
+        return self + other.times(Fraction(-1))
+
+    def __radd__(self, number: int) -> "Series":
+        first, *others = self.coefficients
+        return Series(self.ring, (first + number, *others))
+
+    def __rsub__(self, number: int) -> "Series":
+        return number + self.times(Fraction(-1))
+
+    def __mul__(self, other: "Series") -> "Series":
+        ring, most = self.ring, self.most
+        total = [ring.zero] * (most + 1)
+        for i, x in enumerate(self.coefficients):
+            if not x.is_zero():
+                for j, y in enumerate(other.coefficients[: most + 1 - i]):
+                    # Terms beyond h^most are never formed; the sums are reduced once, at the end.
+                    if not y.is_zero():
+                        total[i + j] += x * y
+        return Series(ring, tuple(map(ring.reduce, total)))
+
+    def divide_by(self, divisor: "Series", inverse: Poly) -> "Series":
+        """Divide by a series; `inverse` is that of its first coefficient."""
+        ring = self.ring
+        quotient: list[Poly] = []
+        # From Σ d_j c_(k−j) = x_k: c_k = (x_k − Σ_(j≥1) d_j c_(k−j))/d_0.
+        for k, total in enumerate(self.coefficients):
+            for j in range(1, k + 1):
+                if not divisor.coefficients[j].is_zero():
+                    total = total - divisor.coefficients[j] * quotient[k - j]
+            quotient.append(ring.multiply(ring.reduce(total), inverse))
+        return Series(ring, tuple(quotient))
+
+    @property
+    def vanishes(self) -> bool:
+        """True if all coefficients of the truncated series are 0."""
+        return all(c.is_zero() for c in self.coefficients)
+
+    def times(self, x: Poly | Fraction) -> "Series":
+        """Return the product with a factor that does not depend on h."""
+        factor = self.ring.constant(x) if isinstance(x, Fraction) else x
+        multiply = self.ring.multiply
+        return Series(
+            self.ring, tuple(c if c.is_zero() else multiply(factor, c) for c in self.coefficients)
+        )
+
+    def shift(self, n: int) -> "Series":
+        """Return the product with hⁿ."""
+        return Series.from_coefficients(
+            self.ring, [*[self.ring.zero] * n, *self.coefficients], self.most
+        )
+
+    def diff(self, name: str) -> "Series":
+        """Return the series of ∂/∂name of each coefficient."""
+        return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
+
+
+class Derivatives:
+    """A ring element with its derivatives, each computed once."""
+
+    def __init__(self, ring: CoefficientRing, element: Poly) -> None:
+        self.ring, self.element = ring, element
+        self._derivatives: dict[str, Derivatives] = {}
+
+    def by(self, name: str) -> "Derivatives":
+        """Return ∂/∂name of the element, with the further derivatives."""
+        if name not in self._derivatives:
+            self._derivatives[name] = Derivatives(self.ring, self.ring.diff(self.element, name))
+        return self._derivatives[name]
+
+    def partial(self, i: int, j: int) -> Poly:
+        """Return ∂ⁱ⁺ʲ/∂pⁱ∂qʲ of the element, a function of p and q."""
+        derivative = self
+        for name in "p" * i + "q" * j:
+            derivative = derivative.by(name)
+        return derivative.element
+
+
+def expand_at(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:
+    """Expand the ring element x at a moved point, up to h^most.
+
+    `moves`: the variables' names with their displacements, series that are O(h). Taylor's formula
+    is applied to one variable after the other, which is fast for an x with few of them.
+    """
+    ring = x.ring
+    cut = [(name, Series.from_coefficients(ring, move.coefficients, most)) for name, move in moves]
+    for name, move in cut:
+        if not move.coefficients[0].is_zero():
+            raise ValueError(f"{name} is moved at h = 0")
+    terms = _taylor_terms(x, cut, Series.from_coefficients(ring, [ring.one], most), Fraction(1))
+    return sum(terms, Series.from_coefficients(ring, [], most))
+
+
+def _taylor_terms(
+    x: Derivatives, moves: Sequence[tuple[str, Series]], power: Series, share: Fraction
+) -> Iterator[Series]:
+    """Yield the terms of Taylor's formula in these variables, each times `power` and `share`."""
+    if not moves:
+        yield power.times(x.element * x.ring.constant(share))
+        return
+    (name, move), *further_moves = moves
+    n = 0
+    # move = O(h), so `power` vanishes after at most `most` + 1 factors, also where x is no
+    # polynomial.
+    while not (x.element.is_zero() or power.vanishes):
+        yield from _taylor_terms(x, further_moves, power, share)
+        n += 1
+        x, power, share = x.by(name), power * move, share / n
+
+
+class QuotientSeries:
+    """An expander of a ring's elements to their first `length` coefficients at h = 0."""
+
+    def __init__(self, ring: Ring, length: int) -> None:
+        self.ring, self.most = ring, length - 1
+        self._by_index = {g.index: g for g in ring.generators}
+        self._cache: dict[int, Series | None] = {}
+
+    def expand(self, x: Poly) -> Series | None:
+        """Expand x; None if h is in another function, or a divisor is no number at h = 0."""
+        inner = self._with_h(x)
+        if inner is None:
+            powers = self.ring.powers(x, "h")
+            return self._series([powers.get(n, self.ring.zero) for n in range(self.most + 1)])
+        inverse = self._inverse(inner)
+        if inverse is None:
+            return None
+        total, factor, power = self._series([]), self._series([self.ring.one]), 0
+        for n, coefficient in sorted(split(x, inner).items()):
+            while power < n:
+                factor, power = factor * inverse, power + 1
+            part = self.expand(coefficient)
+            if part is None:
+                return None
+            total += part * factor
+        return total
+
+    def _series(self, coefficients: list[Poly]) -> Series:
+        return Series.from_coefficients(self.ring, coefficients, self.most)
+
+    def _with_h(self, x: Poly) -> int | None:
+        """Return the newest generator in x that has h in its argument; None without one."""
+        degrees = x.degrees()
+        for g in reversed(self.ring.generators):
+            if degrees[g.index] and g.argument is not None and self.ring.depends(g.argument, "h"):
+                return g.index
+        return None
+
+    def _inverse(self, index: int) -> Series | None:
+        if index not in self._cache:
+            g = self._by_index[index]
+            divisor = self.expand(g.inner) if g.kind == "inverse" else None
+            self._cache[index] = None if divisor is None else self._one_over(divisor)
+        return self._cache[index]
+
+    def _one_over(self, divisor: Series) -> Series | None:
+        begin = divisor.coefficients[0]
+        # The recursion divides by d₀ in every order, which must be a number other than 0.
+        if begin.is_zero() or not begin.is_constant():
+            return None
+        first = 1 / begin.leading_coefficient()
+        return self._series([self.ring.one]).divide_by(divisor, self.ring.one * first)

@@ -1,1 +1,0 @@
-"""Series in h, and the derivatives of every H as variables."""

@@ -1,1 +1,0 @@
-"""Notes on mistakes that matter, which can be sent to those who can correct them."""

@@ -1,0 +1,84 @@
+"""A report of integrators → one Markdown note for each mistake that is described and confirmed."""
+
+import platform
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from jinja2 import StrictUndefined, Template
+
+from verify.audits.mistake import (
+    ConfirmedFinding,
+    NotConfirmedError,
+    confirm,
+    descriptions,
+)
+from verify.files import write_atomically
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.report import Report
+
+_CLAIMED, _HOLDS = re.compile(r"order (\d+)"), re.compile(r"order is (\d+)")
+_OFF = re.compile(r"of h\^(\d+), .*? fails by (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
+_WEIGHTS = ", embedded weights"
+
+
+def write_findings(
+    report: Report, folder: Path, on_finding: Callable[[str], None] = lambda _: None
+) -> tuple[list[Path], dict[str, str]]:
+    """Write the notes; return their paths, and by name why any was not written. Raises what the
+    disk raises."""
+    folder.mkdir(exist_ok=True)
+    paths: list[Path] = []
+    reasons: dict[str, str] = {}
+    for name, described in descriptions().items():
+        on_finding(name)
+        try:
+            confirmed = confirm(name, described, report.claims)
+        except NotConfirmedError as error:
+            reasons[name] = str(error)
+            continue
+        path = folder / f"{name}.md"
+        write_atomically(path, note(confirmed, _describe_versions(confirmed, report)))
+        paths.append(path)
+    return paths, reasons
+
+
+def _describe_versions(confirmed: ConfirmedFinding, report: Report) -> str:
+    """Describe what was judged, in which version, and by what."""
+    versions = report.provenance.versions if report.provenance else {}
+    library = confirmed.described.library
+    opening = f"Judged here: {library} {versions[library]}, " if library in versions else "Judged "
+    return f"{opening}by areaproof {version('areaproof')}, Python {platform.python_version()}."
+
+
+def note(confirmed: ConfirmedFinding, versions: str) -> str:
+    """Return the text, which can be sent as it is.
+
+    `versions`: of the library, as it is judged here, and of what judges it.
+    """
+    context = {"said": confirmed.described, "orders": list(_orders(confirmed.claims))}
+    return _template().render(confirmed=confirmed, versions=versions, **context).rstrip() + "\n"
+
+
+@cache
+def _template() -> Template:
+    text = (Path(__file__).parent / "note.jinja").read_text(encoding="utf-8")
+    template: Template = Template(
+        text, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return template
+
+
+def _orders(claims: Sequence[ClaimResult]) -> Iterator[tuple[str, ...]]:
+    """Yield for each method the claimed order, the one that holds, and the first term that is
+    off."""
+    for claim in claims:
+        claimed, holds = _CLAIMED.search(str(claim.statement)), _HOLDS.search(str(claim.evidence))
+        gap = _OFF.search(str(claim.evidence))
+        if claimed and holds:
+            term = f"h^{gap[1]}" if gap else "–"
+            by = f"{abs(float(gap[2])):.1e}" if gap else "–"
+            label = f"`{claim.source}`{_WEIGHTS if claim.kind.startswith('embedded') else ''}"
+            yield label, claimed[1], holds[1], term, by

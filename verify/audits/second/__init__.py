@@ -1,1 +1,0 @@
-"""A second look at what is refuted, by means that share no code with the first."""

@@ -1,0 +1,155 @@
+"""Options of the commands that check, and what these print of verdicts and measurements.
+
+A check of a user's code looks at places, which options name; every check fails by its verdicts.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands.shared.input import options
+from verify.errors import InputError
+from verify.prose import count
+
+if TYPE_CHECKING:
+    from verify.integrators.measures.survey import Request
+    from verify.integrators.places.trial_places import TrialPlace
+    from verify.integrators.results import Finding
+
+
+allow_undecided_option = click.option(
+    "--allow-undecided", is_flag=True, help="Exit status 0 also where a claim is UNDECIDED."
+)
+
+
+def is_failure(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
+    """Return True if a verdict is REFUTED, or UNDECIDED without --allow-undecided.
+
+    `verdicts`: those of all requested claims. An undecided claim is not a pass: else a check could
+    be passed by a claim that nothing decides.
+    """
+    return any(x == "REFUTED" or (x == "UNDECIDED" and not allow_undecided) for x in verdicts)
+
+
+def print_tally(verdicts: Iterable[str]) -> None:
+    """Print the number of claims of each verdict, the most frequent one first."""
+    counts = Counter(map(str, verdicts))
+    words = (f"{n} {word}" for word, n in counts.most_common())
+    click.echo(f"{count(counts.total(), 'claim')}: {', '.join(words)}")
+
+
+# -- the places at which a user's code is looked at ------------------------------------------------
+
+looking_options = options(
+    click.option("--q", "q", metavar="Q", help="A state to look at first: q, or q1,q2,…"),
+    click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
+    click.option(
+        "--scale",
+        metavar="NAME=SIZE,…",
+        help="Sizes of the coordinates, such as q=7000,p=7.5; else those of H, or of the map.",
+    ),
+    click.option(
+        "--within",
+        metavar="SIZE",
+        help="A defect that you allow, such as 1e-8; else that of the numbers' rounding.",
+    ),
+)
+step_size_option = click.option(
+    "--step-size", metavar="H", help="The step size that matters to you: the largest looked at."
+)
+
+
+def request_from(
+    names: Sequence[str],
+    *,
+    q: str | None,
+    p: str | None,
+    scale: str | None,
+    within: str | None,
+    step_size: str | None = None,
+) -> "Request":
+    """Return the request of these options. Raises InputError."""
+    from verify.arithmetic.exact import positive
+    from verify.integrators.measures.survey import Request
+
+    return Request(
+        z=state_from(names, q, p),
+        step_size=None if step_size is None else positive(step_size, "--step-size"),
+        scale={} if scale is None else _parse_scale(names, scale),
+        within=None if within is None else positive(within, "--within"),
+    )
+
+
+def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Fraction, ...] | None:
+    """Return p1, …, qn of two lists; None if neither is given. Raises InputError."""
+    from verify.arithmetic.exact import rational
+
+    if p is None and q is None:
+        return None
+    if p is None or q is None:
+        raise InputError("--p, --q", p or q or "", "give both or none")
+    degrees, z = len(names) // 2, list[Fraction]()
+    for name, text in (("--p", p), ("--q", q)):
+        numbers = [rational(part.strip(), name) for part in text.split(",")]
+        if len(numbers) != degrees:
+            problem = (
+                f"has {len(numbers)} numbers; allowed: {degrees}, one for each degree of freedom"
+            )
+            raise InputError(name, text, problem)
+        z += numbers
+    return tuple(z)
+
+
+def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
+    from verify.arithmetic.exact import positive
+
+    sizes: dict[str, Fraction] = {}
+    for part in text.split(","):
+        name, equals, value = (x.strip() for x in part.partition("="))
+        # A name without a number stands for all of its kind: q for q1 … qn.
+        coordinates = [x for x in names if name in (x, x[0])]
+        if not equals or not coordinates:
+            names_text = ", ".join(dict.fromkeys(["q", "p", *names]))
+            problem = f"is no size of a coordinate; write NAME=SIZE; allowed: {names_text}"
+            raise InputError("--scale", part, problem)
+        for coordinate in coordinates:
+            sizes[coordinate] = positive(value, "--scale")
+    return sizes
+
+
+def places_json(step_names: Sequence[str], places: "Sequence[TrialPlace]") -> list[dict[str, str]]:
+    """Return the places that were looked at, by the names of their coordinates."""
+    from verify.arithmetic.exact import text
+
+    return [
+        {
+            **{name: text(x) for name, x in zip(step_names, place.z, strict=True)},
+            "t": text(place.t),
+            "step_size": text(place.step),
+            "chosen_by": place.source,
+        }
+        for place in places
+    ]
+
+
+def print_measured(finding: "Finding") -> None:
+    """Print the measured defect for a reader."""
+    if finding.largest is not None and finding.probe_error is not None:
+        name = "ΔJ" if finding.degrees == 1 else "S"
+        noise = f"the noise of such a value {finding.probe_error:.1e}"
+        click.echo(f"  measured |{name}| up to {finding.largest:.1e}; {noise}")
+    if finding.degrees > 1 and finding.symplectic is False and finding.area_preserving is not None:
+        click.echo(
+            f"  det J    is {'' if finding.area_preserving else 'not '}1 where it was measured"
+        )
+
+
+def print_notes(finding: "Finding") -> None:
+    """Print the finding's counterexample and notes for a reader."""
+    if finding.counterexample is not None:
+        click.echo(f"  against  {finding.counterexample}")
+    for note in finding.notes:
+        click.echo(f"  note     {note}")

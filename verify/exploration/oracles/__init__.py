@@ -1,1 +1,0 @@
-"""The references for kernels and maps: steps in balls, in other coordinates, and in many digits."""

@@ -1,1 +1,0 @@
-"""Properties that speak of whole orbits and of the exact flow."""

@@ -1,0 +1,175 @@
+"""The start of a run, and the times that it passes: H has to be defined and smooth at all of them.
+
+A step may pass over a pole in t and never see it. So the conditions that have no p and q in them
+are enclosed over the time of the run, which is halved where the enclosure does not decide, down to
+parts of a step.
+"""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import flint
+
+from verify.algebra.domain import holds
+from verify.algebra.embedding import embed
+from verify.algebra.enclosure import enclose_over
+from verify.algebra.expressions.function_nodes import Relation
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.arb import rational_ball
+from verify.arithmetic.exact import Number, NumberOrList, rational, text
+from verify.arithmetic.flint_precision import working_precision
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+_BITS = 96
+_MOST = 20_000  # enclosures, beyond which it is left to the run
+_PARTS = 64  # of a step
+
+
+def point_of(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList) -> dict[str, Fraction]:
+    """Return each coordinate's value by its name, exactly, from q and p as they are given, a list
+    each.
+
+    In the plane a number will do. InputError for too few or too many.
+
+    >>> point_of(Hamiltonian.parse("p1**2/2 + p2**2/2 + q1*q2"), ["0.5", 0], p=[1, 2])["q1"]
+    Fraction(1, 2)
+    """
+    degrees, point = hamiltonian.degrees, {}
+    for letter, numbers in (("p", p), ("q", q)):
+        values: Sequence[Number]
+        if isinstance(numbers, Sequence) and not isinstance(numbers, str):
+            values = numbers
+            if hamiltonian.planar:
+                raise InputError(letter, values, "is a list; H is of p and q: give one number")
+        else:
+            values = [numbers]
+        names = [name for name in hamiltonian.coordinates if name[0] == letter]
+        if len(values) != degrees:
+            values_text = ", ".join(text(x) if isinstance(x, Fraction) else str(x) for x in values)
+            problem = f"has {len(values)} of {degrees} numbers; H is of {', '.join(names)}"
+            raise InputError(letter, values_text, problem)
+        for name, value in zip(names, values, strict=True):
+            point[name] = rational(value, name)
+    return {name: point[name] for name in hamiltonian.coordinates}
+
+
+def coordinate_texts(
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], letter: str
+) -> str | tuple[str, ...]:
+    """Return q or p of a point as text: a number, or a list in n degrees of freedom."""
+    p, q = hamiltonian.halves(tuple(text(point[name]) for name in hamiltonian.coordinates))
+    texts: str | tuple[str, ...] = {"p": p, "q": q}[letter]
+    return texts
+
+
+def start_texts(
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], t0: Fraction | None
+) -> dict[str, Any]:
+    """Return the start of a run as results have it: q, p and t0, which is None where H has no
+    time."""
+    return {
+        "q": coordinate_texts(hamiltonian, point, "q"),
+        "p": coordinate_texts(hamiltonian, point, "p"),
+        "t0": None if t0 is None else text(t0),
+    }
+
+
+def check_start(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList, t0: Number = 0) -> None:
+    """Raise InputError where H is not defined, or not smooth, at (q, p), and at t0 where it depends
+    on time.
+
+    >>> check_start(Hamiltonian.parse("p**2/2 + log(q)"), -1, 0)
+    Traceback (most recent call last):
+    verify.errors.InputError: q, p=-1, 0: H is not smooth there; it is where q > 0
+    """
+    values = point_of(hamiltonian, q, p)
+    # q comes first in messages, as in the arguments.
+    point = {name: values[name] for name in sorted(values, key=lambda name: name[0] != "q")}
+    if hamiltonian.time_dependent:
+        point["t"] = rational(t0, "t0")
+    domain = hamiltonian.domain
+    if domain.names <= set(point) and domain.contains(point) is False:
+        values_text = ", ".join(map(text, point.values()))
+        problem = f"H is not smooth there; it is where {', '.join(domain.texts)}"
+        raise InputError(", ".join(point), values_text, problem)
+
+
+# -- the times that it passes ---------------------------------------------------------------------
+
+
+def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int) -> None:
+    """Raise InputError, which names the step, where H is not smooth at some time on the way.
+
+    >>> opened = Hamiltonian.parse("p**2/2 + q**2/(1 - t)")
+    >>> check_times(opened, Fraction(0), Fraction(2), 9)
+    Traceback (most recent call last):
+    verify.errors.InputError: t0=0: at step 1, t = 0 … 2, H is not smooth; it is where t - 1 ≠ 0
+    """
+    fault = find_first_fault(hamiltonian, t0, step_size, steps)
+    if fault is not None:
+        begin = t0 + fault.step * step_size
+        between = f"t = {text(begin)} … {text(begin + step_size)}"
+        problem = f"at step {fault.step + 1}, {between}, H is not smooth; it is where"
+        raise InputError("t0", text(t0), f"{problem} {fault.condition}")
+
+
+class TimeFault(NamedTuple):
+    """A step in whose time H may not be smooth, counted from 0, and the condition that fails."""
+
+    step: int
+    condition: str
+
+
+def find_first_fault(
+    hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int
+) -> TimeFault | None:
+    """Return the first step in whose time H may not be smooth; None where there is none.
+
+    `step_size` may be negative.
+    """
+    if not hamiltonian.time_dependent:
+        return None
+    domain = hamiltonian.domain
+    for requirement, condition in zip(domain.requirements, domain.requirement_signs, strict=True):
+        if {s.name for s in requirement.expression.free_symbols} == {"t"}:
+            ring, (x,) = embed([requirement.expression], ("t",))
+            search = _Search(ring, x, requirement.relation, t0, step_size)
+            step = search.first(0, steps * _PARTS)
+            if step is not None:
+                return TimeFault(step, condition)
+    return None
+
+
+class _Search:
+    """The search for the first step in whose time the condition may fail."""
+
+    def __init__(
+        self, ring: Ring, x: Poly, relation: Relation, t0: Fraction, step_size: Fraction
+    ) -> None:
+        self.ring, self.x, self.relation = ring, x, relation
+        self.t0, self.part = t0, step_size / _PARTS
+        self.budget = _MOST
+
+    def first(self, low: int, high: int) -> int | None:
+        """Return the first step among these parts of steps; None where the condition holds in
+        all."""
+        if self.budget <= 0 or self._holds(low, high):
+            return None
+        if high - low == 1:
+            return low // _PARTS
+        middle = (low + high) // 2
+        first_half = self.first(low, middle)
+        return self.first(middle, high) if first_half is None else first_half
+
+    def _holds(self, low: int, high: int) -> bool:
+        """Return True if the condition holds over the whole interval."""
+        self.budget -= 1
+        with working_precision(_BITS):
+            ends = (rational_ball(self.t0 + n * self.part) for n in (low, high))
+            # The condition is enclosed over the whole interval of time at once, so no pole is
+            # missed.
+            over = next(ends).union(next(ends))
+            enclosure: flint.arb | None = enclose_over(self.ring, self.x, {"t": over})
+            return holds(enclosure, self.relation) is True

@@ -1,0 +1,289 @@
+"""The two probes of a user's map, which measure its end and its Jacobian at a place.
+
+Dual numbers of 200 bits have no noise of their own that counts. What users run is double: what a
+rounding of every operation to 53 bits does to J at a place is the noise that J has there, however
+many digits it is measured with.
+
+Floats, or numbers of another type, give J by extrapolated central differences. Those of each
+coordinate begin at the width over which the motion changes there, and are halved; Richardson's
+extrapolation (Ridders, Adv. Eng. Softw. 4 (1982)) takes of each entry the value whose error, by its
+neighbours in the tableau and by the rounding of the numbers, is least. What is made of the numbers
+that come back is exact.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import gmpy2
+
+from verify.arithmetic.exact import fraction
+from verify.integrators.measures.reading import READING_BITS, DefectReading, Matrix, reading_of
+from verify.integrators.places.trial_places import TrialPlace
+from verify.integrators.places.wrap_periods import unwrap
+from verify.integrators.tracing.dual import DUAL_BITS, Comparison, DualNumber, Duals
+from verify.integrators.tracing.function_copy import copy_function
+from verify.integrators.user_code.step import StepError, Theirs, lift_numbers, limit_time
+from verify.integrators.user_code.user_map import DOUBLE, UserMap
+
+_EPSILON = 2.0**-53  # half a unit of a double's last place
+_ROUNDINGS, _TIMES_SEEN = 8, 3  # of each entry at least; and times what is seen of them
+_SECONDS = 2.0  # for a call with 53 bits, whose loops may not end
+OWN_NOISE = 2.0 ** -(DUAL_BITS - 30)  # of a value of 200 bits, in parts of its size
+_LEVELS = 8  # halvings of a difference's width, at least
+_MOVES = 8  # tiny ones, by which it is seen how far its numbers scatter
+_SPREAD = 2.0  # times the scatter that is seen
+
+
+class DualProbe:
+    """The map at dual numbers. `comparisons`: those of the last call."""
+
+    how = "duals"
+
+    def __init__(self, step: UserMap) -> None:
+        self.step, self.kind, self.coarse = step, Duals(), Duals(53)
+        self._functions = {}
+        for kind in (self.kind, self.coarse):
+            with kind.running():
+                self._functions[kind.bits] = copy_function(step.function, kind)
+
+    @property
+    def opaque(self) -> bool:
+        """True if numbers were compared, so that there may be branches or a tolerance."""
+        return self.kind.compared
+
+    @property
+    def comparisons(self) -> Sequence[Comparison]:
+        """The comparisons of the last call."""
+        return self.kind.comparisons
+
+    def end(self, place: TrialPlace, h: Fraction) -> list[Fraction]:
+        """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
+        with self.kind.running():
+            one = (gmpy2.mpfr(1),)
+            state = [DualNumber(self.kind, self.kind.rational(x).value, one) for x in place.z]
+            ended = self._call(self.kind, state, place, h)
+            return [fraction(x.value) for x in ended]
+
+    def round_number(self, x: Fraction) -> Fraction:
+        """Return x as it stands: dual numbers have digits enough."""
+        return x
+
+    def noise(self, place: TrialPlace, state: Sequence[Fraction]) -> list[float]:
+        """Return the noise of z' that our own numbers have."""
+        return [OWN_NOISE * float(max(abs(x), abs(y)) + u)
+                for x, y, u in zip(state, place.z, place.units, strict=True)]  # fmt: skip
+
+    def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
+        """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
+        fine = self._jacobian(self.kind, place, h)
+        comparisons = self.kind.comparisons
+        errors = [[_ROUNDINGS * _EPSILON * abs(float(x)) for x in row] for row in fine]
+        self._add_rounding(errors, fine, place, h)
+        self.kind.comparisons = comparisons
+        return reading_of(place, h, fine, errors, 2 * _EPSILON)
+
+    def _add_rounding(
+        self, errors: list[list[float]], fine: Matrix, place: TrialPlace, h: Fraction
+    ) -> None:
+        """Add the noise that 53 bits cause in each row, at a place that has no more, in units of
+        the columns."""
+        rounded_place = place.with_rounded_state(DOUBLE.round_number)
+        try:
+            with limit_time(_SECONDS, "rounded to doubles it does not end"):
+                coarse = self._jacobian(self.coarse, rounded_place, h)
+        except Exception:  # the user's code may raise anything; then its least noise has to do
+            return
+        # Both precisions must be compared at the same state: where rounding moves it, the fine
+        # Jacobian is computed again.
+        if rounded_place.z != place.z:
+            fine = self._jacobian(self.kind, rounded_place, h)
+        units = [float(x) for x in place.units]
+        for row, one, two in zip(errors, coarse, fine, strict=True):
+            gaps = [abs(float(x) - float(y)) * u for x, y, u in zip(one, two, units, strict=True)]
+            largest = _TIMES_SEEN * max(gaps)
+            for j, unit in enumerate(units):
+                row[j] += largest / unit
+
+    def _jacobian(self, kind: Duals, place: TrialPlace, h: Fraction) -> Matrix:
+        with kind.running():
+            end = self._call(kind, kind.state(*place.z), place, h)
+            zeros = (gmpy2.mpfr(0),) * len(place.z)
+            return [x.slopes or zeros for x in end]
+
+    def _call(
+        self, kind: Duals, state: list[DualNumber], place: TrialPlace, h: Fraction
+    ) -> list[DualNumber]:
+        kind.comparisons = []
+        step, size, clock = self.step, kind.rational(h), kind.rational(place.t)
+        result: list[Theirs] = step.call(
+            self._functions[kind.bits], state, size, clock, kind.rational
+        )
+        end: list[DualNumber] = lift_numbers(state[0], result)
+        if not all(gmpy2.is_finite(x.value) for x in end):
+            raise StepError("it returns what is not finite")
+        return end
+
+
+# -- floats ---------------------------------------------------------------------------------------
+
+
+class FloatProbe:
+    """The map at numbers as its users call it."""
+
+    how = "floats"
+    comparisons: Sequence[Comparison] = ()
+
+    def __init__(self, step: UserMap) -> None:
+        self.step = step
+        self._scatter: dict[tuple[TrialPlace, Fraction], list[float]] = {}
+
+    def round_number(self, x: Fraction) -> Fraction:
+        """Round x to the type of number that the step is called with."""
+        return self.step.numbers.round_number(x)
+
+    def end(self, place: TrialPlace, h: Fraction) -> list[Fraction]:
+        """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
+        (ended,) = self._ends([place.with_rounded_state(self.round_number).z], place, h)
+        return ended
+
+    def noise(self, place: TrialPlace, state: Sequence[Fraction]) -> list[float]:
+        """Return the least noise of z': a rounding of each operation."""
+        epsilon = self.step.numbers.epsilon
+        return [epsilon * float(max(abs(x), abs(y)))
+                for x, y in zip(state, place.z, strict=True)]  # fmt: skip
+
+    def scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
+        """Measure how far the components of z' scatter about a smooth curve: their noise as
+        seen."""
+        key = place, h
+        if key not in self._scatter:
+            self._scatter[key] = self._seen_scatter(place, h)
+        return self._scatter[key]
+
+    def _seen_scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
+        z, epsilon = place.with_rounded_state(self.round_number).z, self.step.numbers.epsilon
+        # Over so little a smooth map bends below its numbers' rounding.
+        tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
+        states = [
+            [self.round_number(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
+            for k in range(_MOVES)
+        ]
+        ends = self._ends(states, place, h)
+        noises = []
+        for i in range(len(z)):
+            values = [end[i] for end in ends]
+            # Third differences of a smooth curve are nothing at such a distance.
+            thirds = [
+                float(abs(d - 3 * c + 3 * b - a))
+                for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
+            ]
+            smallest_noise = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
+            jump = self.step.coarseness * max(float(place.units[i]), abs(float(ends[0][i])))
+            noises.append(smallest_noise + _SPREAD * max(thirds) / 8 + jump)
+        return noises
+
+    def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
+        """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
+        z, scatter = place.with_rounded_state(self.round_number).z, self.scatter(place, h)
+        columns, blurs = [], []
+        with gmpy2.context(precision=READING_BITS):
+            for j in range(len(z)):
+                column, blur = self._column(place, h, z, j, scatter)
+                columns.append(column)
+                blurs.append(blur)
+        rows = [list(row) for row in zip(*columns, strict=True)]
+        errors = [list(row) for row in zip(*blurs, strict=True)]
+        least_error = 4 * self.step.numbers.epsilon
+        for row, error in zip(rows, errors, strict=True):
+            for k, x in enumerate(row):
+                error[k] += least_error * abs(float(x))
+        return reading_of(place, h, rows, errors, self.step.numbers.epsilon)
+
+    def _column(
+        self, place: TrialPlace, h: Fraction, z: Sequence[Fraction], j: int, scatter: list[float]
+    ) -> tuple[list["gmpy2.mpfr"], list[float]]:
+        """Return ∂z'/∂z_j, and the errors of its entries."""
+        levels = max(_LEVELS, self.step.numbers.bits // 8)
+        widths = [place.reach[j] / 2**k for k in range(1, levels + 1)]
+        tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
+        # Two tiny widths stand beside those that are extrapolated: they stay on one side of a jump,
+        # at the price of more noise.
+        widths += [2 * tiny, tiny]
+        states, steps = [], []
+        for width in widths:
+            pair = [list(z), list(z)]
+            for state, sign in zip(pair, (1, -1), strict=True):
+                state[j] = self.round_number(z[j] + sign * width)
+            states += pair
+            steps.append(gmpy2.mpq(pair[0][j] - pair[1][j]))
+        ends = self._ends(states, place, h)
+        column, blur = [], []
+        for i in range(len(z)):
+            slopes = [
+                gmpy2.mpfr((gmpy2.mpq(ahead[i]) - gmpy2.mpq(behind[i])) / step)
+                for ahead, behind, step in zip(ends[::2], ends[1::2], steps, strict=True)
+            ]
+            noises = [2 * scatter[i] / float(step) for step in steps]
+            value, error = _best(slopes, noises, self.step.coarseness > 0)
+            column.append(value)
+            blur.append(error)
+        return column, blur
+
+    def _ends(
+        self, states: Sequence[Sequence[Fraction]], place: TrialPlace, h: Fraction
+    ) -> list[list[Fraction]]:
+        ends = self.step.exactly(states, self.round_number(h), self.round_number(place.t))
+        if self.step.periods:  # all on one side of where it wraps
+            first = ends[0]
+            ends = [list(map(unwrap, end, first, self.step.periods)) for end in ends]
+        return ends
+
+
+def _best(
+    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float], coarse: bool
+) -> tuple["gmpy2.mpfr", float]:
+    """Return the extrapolated value, where the last slopes, of tiny widths, do not contradict it.
+
+    Where the map jumps within the wider differences, as where it wraps or a loop does one turn
+    more, the tiny ones are on one side of it. Of coarse numbers neither is known to be right.
+    """
+    *wide, twice, tiny = slopes
+    value, error = _extrapolate(wide, noises)
+    noise = 2 * noises[-1]
+    apart = abs(float(tiny - value))
+    bent = abs(float(wide[0] - value)) * (noises[0] / noises[-1]) ** 2  # over the tiny width
+    if not coarse and apart <= error + 4 * (noise + bent):
+        return value, error
+    agree = abs(float(tiny - twice)) <= 4 * noise
+    return (tiny, noise + bent) if agree and not coarse else (value, error + apart)
+
+
+def _extrapolate(
+    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float]
+) -> tuple["gmpy2.mpfr", float]:
+    """Return the value of the tableau whose error is least, and that error."""
+    best, least_error = slopes[-1], float("inf")
+    previous_row: list[gmpy2.mpfr] = []
+    for k, slope in enumerate(slopes):
+        row = [slope]
+        for m, coarser in enumerate(previous_row, start=1):
+            # Central differences have even powers of the width alone: halving it divides them by 4,
+            # 16, ….
+            row.append(row[-1] + (row[-1] - coarser) / (4**m - 1))
+            # Both neighbours: one alone may agree by chance.
+            error = max(abs(float(row[m] - row[m - 1])), abs(float(row[m] - coarser)))
+            error = error + 2 * noises[k]
+            if error < least_error:
+                best, least_error = row[m], error
+        previous_row = row
+    if least_error != least_error or least_error == float("inf"):
+        raise StepError("its differences are not finite")
+    return best, least_error
+
+
+Probe = DualProbe | FloatProbe
+
+
+def probe_of(step: UserMap, how: str) -> Probe:
+    """Build the probe called "duals", or else the one called "floats"."""
+    return DualProbe(step) if how == "duals" else FloatProbe(step)

@@ -1,1 +1,0 @@
-"""Tables of splittings and compositions: their conditions by words, and what they claim."""

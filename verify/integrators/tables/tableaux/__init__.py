@@ -1,1 +1,0 @@
-"""Runge–Kutta tables of all kinds: their conditions by trees, and what they claim."""

@@ -1,0 +1,139 @@
+"""Matrices whose entries are operations of a program: products, systems, the forms of a step.
+
+With B = JᵀΩJ, det J = Pf B/Pf Ω exactly. Of B = Ω + S it is a sum over the sets of degrees of
+freedom, det J − 1 = Σ Pf(S of the pairs in I), I ≠ ∅, in which nothing cancels against 1: with one
+pair it is S(p_i, q_i).
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from itertools import combinations
+
+from verify.kernels.step.operations import StepProgram
+
+Place = tuple[int, int]  # a row and a column
+Matrix = list[list[int]]  # of indices
+Entry = Callable[[int, int], int]  # the index of the entry ab, a < b
+
+
+def multiply(program: StepProgram, x: Matrix, y: Matrix) -> Matrix:
+    """Return the product of two matrices."""
+    columns, rows = list(zip(*y, strict=True)), []
+    for row in x:
+        line = []
+        for column in columns:
+            total = program.constant(Fraction(0))
+            for a, b in zip(row, column, strict=True):
+                total = program.add(total, program.mul(a, b))
+            line.append(total)
+        rows.append(line)
+    return rows
+
+
+def less_one(program: StepProgram, rows: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return 1 − the matrix of these rows."""
+    matrix = [list(map(program.neg, row)) for row in rows]
+    for k, row in enumerate(matrix):
+        row[k] = program.add(program.quotient(1, 1), row[k])
+    return matrix
+
+
+def eliminate(
+    program: StepProgram, matrix: Sequence[Sequence[int]], right: Sequence[Sequence[int]]
+) -> tuple[list[list[int]], list[int]]:
+    """Solve linear systems whose matrix is 1 + O(h), one for each column of the right side. Return
+    the solutions row by row, and the pivots that are not 1.
+
+    Without pivoting: at h = 0 the diagonal is 1.
+    """
+    add, mul, neg = program.add, program.mul, program.neg
+    size, rows = len(matrix), [[*row, *more] for row, more in zip(matrix, right, strict=True)]
+    width = len(rows[0])
+    pivots, over = [], []
+    for k in range(size):
+        pivot = rows[k][k]
+        one = program.is_constant(pivot, 1)
+        pivots += [] if one else [pivot]
+        over.append(pivot if one else program.inverse(pivot))
+        for i in range(k + 1, size):
+            factor = mul(rows[i][k], over[k])
+            for j in range(k + 1, width):
+                rows[i][j] = add(rows[i][j], neg(mul(factor, rows[k][j])))
+    solutions: list[list[int]] = [[] for _ in range(size)]
+    for k in reversed(range(size)):
+        for column in range(width - size):
+            total = rows[k][size + column]
+            for j in range(k + 1, size):
+                total = add(total, neg(mul(rows[k][j], solutions[j][column])))
+            solutions[k].append(mul(total, over[k]))
+    return solutions, pivots or [program.constant(Fraction(1))]
+
+
+def defect_from_slopes(program: StepProgram, slopes: Matrix) -> dict[Place, int]:
+    """Return the entries of S = KᵀΩ + ΩK + KᵀΩK above the diagonal, from K = J − 1."""
+    n, entries = len(slopes) // 2, {}
+    add, mul, neg = program.add, program.mul, program.neg
+    for a, b in combinations(range(2 * n), 2):
+        total = program.constant(Fraction(0))
+        for i in range(n):
+            u, v = slopes[i], slopes[n + i]
+            # du∧dq + dp∧dv at ab, and du∧dv
+            if b == n + i:
+                total = add(total, u[a])
+            if a == n + i:
+                total = add(total, neg(u[b]))
+            if a == i:
+                total = add(total, v[b])
+            if b == i:
+                total = add(total, neg(v[a]))
+            # K is O(h), so S is evaluated from K and not as JᵀΩJ − Ω, where entries near 1 would
+            # cancel.
+            total = add(total, add(mul(u[a], v[b]), neg(mul(u[b], v[a]))))
+        entries[a, b] = total
+    return entries
+
+
+class Pfaffian:
+    """The Pfaffians of the principal submatrices of one matrix, by expansion; each is computed
+    once.
+
+    `share`: the index of a factor of all entries but one of each product; None for 1.
+    """
+
+    def __init__(self, program: StepProgram, entry: Entry, share: int | None = None) -> None:
+        self.program, self.entry, self.share = program, entry, share
+        self._cache: dict[tuple[int, ...], int] = {}
+
+    def of_rows(self, rows: Sequence[int]) -> int:
+        """Return the Pfaffian of the rows and columns in this order."""
+        key = tuple(rows)
+        if key not in self._cache:
+            self._cache[key] = self._expand(key)
+        return self._cache[key]
+
+    def _expand(self, rows: tuple[int, ...]) -> int:
+        # Expansion along the first row: Pf A = Σ_k (−1)^k a_1k Pf(A without rows 1 and k).
+        program, (first, *others) = self.program, rows
+        if len(others) == 1:
+            return self._entry(first, others[0])
+        total = program.quotient(0, 1)
+        for k, other in enumerate(others):
+            minor = self.of_rows([*others[:k], *others[k + 1 :]])
+            if self.share is not None:
+                minor = program.mul(self.share, minor)
+            term = program.mul(self._entry(first, other), minor)
+            total = program.add(total, program.neg(term) if k % 2 else term)
+        return total
+
+    def _entry(self, a: int, b: int) -> int:
+        return self.entry(a, b) if a < b else self.program.neg(self.entry(b, a))
+
+
+def change_of_volume(pfaffian: Pfaffian, degrees: int, first: int) -> int:
+    """Return det J − 1 from S as the matrix; `first`: Σ S(p_i, q_i), which is summed elsewhere."""
+    total = first
+    for count in range(2, degrees + 1):
+        for chosen in combinations(range(degrees), count):
+            rows = [row for i in chosen for row in (i, degrees + i)]
+            total = pfaffian.program.add(total, pfaffian.of_rows(rows))
+    return total

@@ -1,1 +1,0 @@
-"""Identities on which several arguments rest; a parameter of each spoils it, as a control."""

@@ -1,0 +1,231 @@
+"""The definition of area preservation, and Criterion 1: det J, regions, and maps of the plane."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.arithmetic.exact import text
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, Check, proof, refutation, same, step
+from verify.papers.exact_maps import map_from_texts
+from verify.papers.lie_derivative_scheme import families
+from verify.papers.lie_derivative_scheme.examples import duffing_step
+from verify.proof.assistant.shipped_theory import ShippedTheorem
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.methods.taylor.lie import lie_map
+
+_H = Fraction(1, 10)
+TRIANGULAR = "p**3/6 + q"  # det J = 1, and the step has an inverse in closed form
+FOLDED = ("(p**2 - q**2)/sqrt(2*(p**2 + q**2))", "2*p*q/sqrt(2*(p**2 + q**2))")
+
+
+def image_area(step_map: StepMap) -> sympy.Expr:
+    """Return the area of the image of the unit square at h = 1/10, as ∮ p' dq' along its edge.
+
+    It is signed, and counts points as often as they are covered; the map must be polynomial.
+    """
+    s = sympy.Symbol("s", real=True)
+    p_next, q_next = (
+        x.subs(H_STEP, sympy.Rational(1, 10)) for x in (step_map.p_next, step_map.q_next)
+    )
+    sides = [((s, 0), 1), ((1, s), 1), ((s, 1), -1), ((0, s), -1)]  # p, q; and which way round
+    # Green's theorem; the factor `orientation` makes the edge run counter-clockwise around.
+    total = sympy.Integer(0)
+    for (p, q), orientation in sides:
+        x, y = (image.subs({P: p, Q: q}, simultaneous=True) for image in (p_next, q_next))
+        total += orientation * sympy.integrate(sympy.expand(x * sympy.diff(y, s)), (s, 0, 1))
+    return total
+
+
+def integral_of_det(step_map: StepMap) -> sympy.Expr:
+    """Return the integral of 1 + ΔJ over the unit square at h = 1/10."""
+    det = 1 + sympy.expand(step_map.delta_j.subs(H_STEP, sympy.Rational(1, 10)))
+    return sympy.integrate(det, (P, 0, 1), (Q, 0, 1))
+
+
+def _areas_agree(name: str, step_map: StepMap, preserved: bool) -> Check:
+    # Both numbers are computed independently: one along the edge, one over the interior.
+    outline_area, integral = image_area(step_map), integral_of_det(step_map)
+    return Check(
+        f"{name}, h = {text(_H)}: the area of the unit square’s image, by its outline, and the "
+        f"integral of det J over the square; {'both' if preserved else 'they agree, and are not'} "
+        "1",
+        outline_area == integral and (outline_area == 1) is preserved,
+        f"`{outline_area}` and `{integral}`",
+    )
+
+
+def _check_regions(formula: str = TRIANGULAR) -> list[Check]:
+    return [
+        _areas_agree(f"lie2, H = `{formula}`", lie_map(Hamiltonian.parse(formula), 2), True),
+        _areas_agree("lie2, Duffing, δ = 1", duffing_step(), False),
+    ]
+
+
+# -- the definition of Section 3 -------------------------------------------------------------------
+
+
+def area_definition(formula: str = TRIANGULAR) -> Argument:
+    """Prove that area preservation, the same area for each region's image, is decided by det J."""
+    return proof(
+        "a continuously differentiable map leaves the area of every region, on which it is "
+        "one-to-one, as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that "
+        "det J − 1 measures it, as Eq. 14 does",
+        [
+            step(
+                "By the change of variables, for every region U on which Φ is one-to-one, "
+                "``area Φ(U) = ∫_U |det J| dp dq``. So |det J| = 1 everywhere gives equal areas.",
+                tried=_check_regions(formula),
+            ),
+            step(
+                "If |det J| ≠ 1 at one point, it is on one side of 1 in a small disc around it, on "
+                "which Φ is one-to-one where det J ≠ 0, and the disc’s area changes (where det J = "
+                "0 it shrinks).",
+            ),
+            step(
+                "For lieη det J = 1 + O(`h^(η+1)`) is positive for small h.",
+                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
+            ),
+        ],
+    )
+
+
+def area_definition_flow(factor: int = 2) -> Argument:
+    """Refute that area is preserved if and only if the flow is unchanged by the map."""
+    c, s = sympy.symbols("c s", real=True)
+    turn = sympy.Matrix([[c, -s], [s, c]])  # the oscillator's flow, c² + s² = 1
+    scaling, shear = sympy.eye(2) * factor, sympy.Matrix([[1, 0], [1, 1]])
+    commutator = shear * turn - turn * shear
+    scales = Check(
+        f"z ↦ {factor}z commutes with every turn of the plane, and its determinant is not 1",
+        scaling * turn == turn * scaling and scaling.det() != 1,
+        f"determinant {scaling.det()}",
+    )
+    shears = Check(
+        "the shear has determinant 1, and what it differs by from commuting with a turn",
+        shear.det() == 1 and commutator != sympy.zeros(2, 2),
+        f"`{commutator[0, 0]}`, `{commutator[0, 1]}`, `{commutator[1, 0]}`, `{commutator[1, 1]}`",
+    )
+    return refutation(
+        f"for H = (p² + q²)/2 the scaling z ↦ {factor}z leaves the flow unchanged and multiplies "
+        f"areas by {factor**2}, while the shear (p, q) ↦ (p, q + p) changes the flow and no area",
+        [
+            step(
+                "The flow of H = (p² + q²)/2 turns the plane, and every scaling commutes with it, "
+                "whatever it does to areas.",
+                scales,
+            ),
+            step(
+                "The shear ``(p, q) ↦ (p, q + p)`` has det J = 1 and does not commute with it.",
+                shears,
+            ),
+        ],
+        setting="That a mapping ψ leaves the phase flow φ unchanged would say ψ∘φₜ = φₜ∘ψ for all "
+        "t (or ψ∘φₜ = φₜ, which only the identity does).",
+        remark="Area preservation and an unchanged flow are independent of each other.",
+    )
+
+
+# -- Criterion 1 -----------------------------------------------------------------------------------
+
+
+def criterion_1(formula: str = TRIANGULAR) -> Argument:
+    """Prove that det J = 1 gives equal areas, for regions on which the step is one-to-one."""
+    return proof(
+        "the area of Φ(U) is the integral of det J over U for every region U on which the step is "
+        "one-to-one, and lieη is so on any bounded region once h is small enough; for a polynomial "
+        "H for which lie2 has det J = 1, on the whole plane",
+        [
+            step(
+                "By the change of variables, where Φ is one-to-one on U and det J = 1, "
+                "``area Φ(U) = ∫_U |det J| dp dq = area U``.",
+                tried=_check_regions(formula),
+            ),
+            step(
+                "lieη is Φ(z) = z + hψ(z), ψ with a Lipschitz constant L on a ball that holds U, "
+                "for all h ≤ h₀. If hL < 1, then ``|Φ(z) − Φ(w)| ≥ (1 − hL) |z − w|``, and Φ is "
+                "one-to-one on U.",
+            ),
+            step(
+                "A polynomial H for which lie2 has det J = 1 is F(ℓ) + m or F(ℓ + m²) with linear "
+                "ℓ, m (see the claim on the classification).",
+            ),
+            step(
+                "In the first case the step takes ℓ to ℓ plus a constant, and moves p and q by "
+                "functions of ℓ: it is one-to-one.",
+                families.moves_by_a_constant(),
+                _inverse(lie_map(Hamiltonian.parse(formula), 2)),
+            ),
+            step(
+                "In the second case lie2 is the flow itself, which is one-to-one.",
+                families.exact_flow(),
+            ),
+        ],
+        remark="In general equal areas are those of images counted as often as they are covered.",
+    )
+
+
+def _inverse(step_map: StepMap) -> Check:
+    """Check the inverse of lie2 for p³/6 + q: p = p' + h, from which q follows."""
+    p_next, q_next = step_map.p_next, step_map.q_next
+    back_p = P + H_STEP
+    back_q = Q - (q_next - Q).subs(P, back_p)
+    images_of_inverse = [
+        x.subs({P: back_p, Q: back_q}, simultaneous=True) for x in (p_next, q_next)
+    ]
+    holds = [sympy.expand(x - y) == 0 for x, y in zip(images_of_inverse, (P, Q), strict=True)]
+    return Check(
+        f"lie2, H = `{TRIANGULAR}`: p = p' + h and the q that follows are its inverse, for all h",
+        all(holds),
+        f"p = `{to_text(back_p)}`, q = `{to_text(sympy.expand(back_q))}` of p' and q'",
+    )
+
+
+def criterion_1_any_map(formulas: Sequence[str] = FOLDED) -> Argument:
+    """Refute it for any map, by (r, θ) ↦ (r/√2, 2θ): det J = 1, but an annulus's area halves."""
+    step_map = map_from_texts(*formulas)
+    r = sympy.sqrt(sympy.expand(step_map.p_next**2 + step_map.q_next**2))
+    radius = sympy.simplify(r**2 / (P**2 + Q**2))
+    opposite = [
+        sympy.simplify(x.subs({P: -P, Q: -Q}, simultaneous=True) - x)
+        for x in (step_map.p_next, step_map.q_next)
+    ]
+    preserves = same(
+        f"p' = `{formulas[0]}`, q' = `{formulas[1]}`: ΔJ is the zero function",
+        [step_map.delta_j],
+        ("p", "q", "h"),
+        "`0`",
+    )
+    covers = Check(
+        "z and −z have the same image, and r'² = r²/2",
+        opposite == [0, 0] and radius == sympy.Rational(1, 2),
+        f"r'²/r² = `{radius}`",
+    )
+    before, after = (sympy.pi * (4 - 1) * share for share in (1, radius))
+    halves = Check(
+        "the areas π(4 − 1) of 1 ≤ r ≤ 2, and π(4 − 1) r'²/r² of its image",
+        before == 2 * after,
+        f"`{before}` and `{after}`",
+    )
+    return refutation(
+        "(r, θ) ↦ (r/√2, 2θ) has det J = 1 away from the origin and covers its image twice: the "
+        "annulus 1 ≤ r ≤ 2 of area 3π goes to that of area 3π/2; a determinant says nothing of how "
+        "often a point is hit",
+        [
+            step(
+                "In the coordinates I = r²/2 and θ, in which areas are dI dθ, the map is "
+                "``I ↦ I/2, θ ↦ 2θ``, so its determinant is 1.",
+                preserves,
+            ),
+            step("It takes z and −z to the same point.", covers),
+            step(
+                "The annulus 1 ≤ r ≤ 2, of area 3π, goes onto ``1/√2 ≤ r ≤ √2``, of area 3π/2.",
+                halves,
+            ),
+        ],
+        remark="It is no lieη, which is near the identity; Criterion 1 speaks of that algorithm "
+        "alone, so that this is a limit of the criterion, not an error of it.",
+    )

@@ -1,0 +1,258 @@
+"""A rigorous bound for a long run, from what was carried along with it, in any number of degrees.
+
+Let z_{k+1} = Φ(z_k) be the exact orbit of the exact step map, ẑ_k the computed one, and
+e_k = ẑ_k − z_k, A_k = DΦ(ẑ_k). Then ẑ_{k+1} = Φ(ẑ_k) + r_k with ‖r_k‖ ≤ ε, the rounding of one
+step, counted from the kernel's operations over the box that the orbit has visited
+(`verify.runs.step_bounds`), and by Taylor's theorem
+
+    e_{k+1} = A_k e_k + s_k,   ‖s_k‖ ≤ ε + ½ B ‖e_k‖²,
+
+B a bound of the second derivatives of Φ over that box, widened by the error. Ball arithmetic would
+multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
+nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖
+(`verify.kernels.step.tangent_map` carries them in float64; ρ is counted as ε is). With
+e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `matrix_growth.least_of`),
+
+    x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
+
+and by Gronwall's lemma, with d = min |det M_k|, S = Σ ‖M_k‖, Q = (ρ/d) Σ ‖M_k‖²,
+
+    ‖x_k‖ ≤ X := e^Q (‖x_0‖ + (S/d) (ε + ½ B E²)),   ‖e_k‖ ≤ E := max ‖M_k‖ X.
+
+For integrable motion ‖M_k‖ grows linearly in time, so E grows like N T² ε, and a run of 2·10⁷ steps
+loses some 20 digits and not thousands. The quadratic term is closed by a bootstrap: E* is taken as
+twice the bound without it; if with E* in it the bound is at most E*, then by induction over k it
+holds for all k, and so does the bound with E* in it. Φ must be defined all over the box.
+
+Norms are Euclidean: the run carries the sum and the greatest of F_k² = ‖M_k‖² in
+Frobenius' norm, and ‖M_k‖² ≤ g(F_k²), g(y) = (y + (y² − 4d²)^½)/2, as the eigenvalues of MᵀM have
+the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) over N + 1 matrices is at
+most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
+nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
+
+Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
+and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
+P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
+product of the first k factors is P_k but for a factor within exp(± N max |τ|/min P).
+"""
+
+from fractions import Fraction
+from functools import cached_property
+
+import flint
+
+from verify import observables
+from verify.arithmetic.arb import bounds, is_representable, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number_system import Arithmetic
+from verify.kernels.rounding import PRECISION, Ball
+from verify.kernels.statements import needs_of
+from verify.kernels.stepping import KernelRun, RunOutcome
+from verify.runs import matrix_growth
+from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
+
+_MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
+METHOD = "a-posteriori bound with the tangent map carried along"
+
+
+def certify(
+    run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int = -1
+) -> dict[str, Fraction] | None:
+    """Return rigorous bounds of the errors of a run's final values; None if there is none.
+
+    With `note` the values are those at the checkpoint of that index. The run must have carried the
+    tangent map. Errors are measured from the exact orbit of the exact map for the exact h,
+    parameters and initial values.
+    """
+    with working_precision(PRECISION):
+        return _Certificate(run, arithmetic, outcome, note).bounds()
+
+
+class _Certificate:
+    """The quantities that bound observables; see `verify.observables.observable.Certificate`."""
+
+    rounded: StepErrors
+    derivatives: StepDerivatives
+    error: Ball
+    error_sum: Ball
+
+    def __init__(
+        self, run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int
+    ) -> None:
+        self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
+        self.rounding = StepRounding(run, arithmetic, outcome, note)
+        self.steps, self.records = self.rounding.steps, self.rounding.records
+        self.names, self.unit = self.rounding.names, self.rounding.unit
+        self.scale = flint.arb(2) ** -outcome.shift
+
+    # -- the orbit ----------------------------------------------------------------------------
+
+    def bounds(self) -> dict[str, Fraction] | None:
+        """Return the bound of each value that has one; None if the orbit has none."""
+        derivatives, rounding_errors = self._derivatives(), self.rounding.errors()
+        if derivatives is None or rounding_errors is None:
+            return None
+        self.derivatives, self.rounded = derivatives, rounding_errors
+        orbit = self.orbit()
+        if orbit is None:
+            return None
+        self.error, self.error_sum = orbit
+        balls = dict.fromkeys(self.names, self.error)
+        for observable in observables.select(self.run.observables):
+            bound = observable.bound(self) if observable.bound else None
+            if bound is not None:
+                balls[observable.name] = bound.abs_upper()
+        return {name: bounds(x)[1] for name, x in balls.items() if is_representable(x)}
+
+    def _derivatives(self) -> StepDerivatives | None:
+        """Return the derivatives of the step; None if they are not available."""
+        hamiltonian, scheme, needs = (
+            self.run.hamiltonian,
+            self.run.scheme,
+            needs_of(self.run.observables),
+        )
+        volume, form = "delta_j" in needs, bool(needs & {"symplectic", "carried"})
+        return StepDerivatives.from_scheme(hamiltonian, scheme, volume=volume, form=form)
+
+    @cached_property
+    def motion(self) -> matrix_growth.MatrixGrowth | None:
+        """The growth of M along the run; None if no bound follows from it."""
+        records, count, size = self.records, self.steps, len(self.names)
+        # Of float64's own sums, over the steps and in each sum of squares.
+        slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
+        growth, highest = records["growth"] * slack, records["growth_top"] * slack
+        least = matrix_growth.least_of(size, records)
+        if not (growth.is_finite() and least > 0):
+            return None
+        # Q: it multiplies every bound by e^Q, so that a large one says nothing.
+        rate = self.rounded.tangent * growth / least
+        if not rate < _MOST_GROWTH:
+            return None
+        top = matrix_growth.square_of_norm(size, highest, least).sqrt()
+        mean = matrix_growth.square_of_norm(size, growth / (count + 1), least)
+        return matrix_growth.MatrixGrowth(
+            count, least, rate, top, (count * (count + 1) * mean).sqrt()
+        )
+
+    def orbit(self) -> tuple[Ball, Ball] | None:
+        """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
+        motion = self.motion
+        if motion is None:
+            return None
+        least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
+        # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
+        linear_bound = rate.exp() * (self.first_error() + path / least * self.rounded.state)
+        error = (2 * top * linear_bound).abs_upper()
+        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
+        start = (linear_bound + rate.exp() * path / least * second * error * error / 2).abs_upper()
+        # The bootstrap: with E* in the quadratic term the bound must stay within E*.
+        if not top * start <= error:
+            return None
+        return (top * start).abs_upper(), (start * path).abs_upper()
+
+    def first_error(self) -> Ball:
+        """Return ‖e_0‖, the rounding of the initial values."""
+        start, number, to_fraction = self.run.start, self.arithmetic.number, self.arithmetic.exact
+        lost = [rational_ball(to_fraction(number(start[n])) - start[n]) for n in self.names]
+        return norm(lost)
+
+    # -- the observables ----------------------------------------------------------------------
+
+    @cached_property
+    def _box(self) -> tuple[dict[str, Ball], dict[str, Ball]]:
+        """The constants of the run, and the states that it visited, widened by the error."""
+        return self.rounding.constants(), self.rounding.box(self.error)
+
+    @cached_property
+    def slope(self) -> Ball:
+        """A bound of the gradient of D."""
+        return self.derivatives.gradient(*self._box) / self.scale
+
+    @cached_property
+    def size(self) -> Ball:
+        """A bound of |D|, computed or true."""
+        return self.rounded.size + self.slope * self.error
+
+    @cached_property
+    def sum_of_shifts(self) -> Ball:
+        """A bound of Σ |D̂_k − D(z_k)|."""
+        return self.slope * self.error_sum + self.steps * self.rounded.delta_j
+
+    def total(self, name: str) -> Ball:
+        """Return an observable as it was computed."""
+        return rational_ball(self.values[name])
+
+    def adding(self, total: Ball, term: Ball) -> Ball:
+        """Return the rounding of one term and of its addition to a sum of non-negative terms."""
+        return self.unit if self.arithmetic.absolute else self.unit * (total + term) * 2
+
+    # -- S and W: see `verify.runs.matrix_growth` ---------------------------------------------
+
+    @cached_property
+    def _form(self) -> tuple[Ball, Ball]:
+        return self.derivatives.form(*self._box)
+
+    def slope_of_form(self) -> Ball:
+        """Return a bound of the gradients of S."""
+        return self._form[1]
+
+    def bound_of_form(self) -> Ball | None:
+        """Return a bound of the error of W."""
+        motion, rounding, values = self.motion, self.rounding, self.rounded.values
+        if motion is None:
+            return None
+        size, slope = self._form
+        most = matrix_growth.MOST * motion.top
+        matrix = (rounding.error_of_addition(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
+        entries = [x for name, x in values.items() if name.startswith("dw_")]
+        largest = flint.arb(0)
+        for x in entries:
+            largest = largest.max(rounding.error_of_addition(most * most / self.scale, x))
+        return matrix_growth.bound_total_defect(
+            motion,
+            error_sum=self.error_sum,
+            second=self.derivatives.second(*self._box),
+            size=size,
+            slope=slope,
+            matrix_rounding=norm(matrix),
+            entry_rounding=self.scale * largest,
+        )
+
+    # -- the energy -------------------------------------------------------------------------------
+
+    def bound_of_energy(self) -> Ball:
+        """Return a bound of the error of the greatest |H − H₀|.
+
+        With Ĥ_k the sum of k computed changes of H,
+        |Ĥ_k − (H(z_k) − H(z_0))| ≤ 2 G E + k (G ε + η), G the greatest gradient of H, and η the
+        rounding of one step's change of H and of its addition to the sum.
+        """
+        box = self.rounding.box(self.error + self.rounded.state, last=True)
+        slope = self.derivatives.energy(self.rounding.constants(), box)
+        change = self.rounded.values["de"]
+        adding = self.rounding.error_of_addition(self.total("energy_error_max"), change)
+        return 2 * slope * self.error + self.steps * (slope * self.rounded.state + adding)
+
+    # -- Λ ----------------------------------------------------------------------------------------
+
+    def bound_of_product(self) -> Ball:
+        """Return a bound of the error of Λ."""
+        scale, count = self.scale, self.steps
+        low, high = self.records["least"], self.records["most"]
+        largest, jump = abs(low).max(abs(high)), scale * self.size
+        # Logarithms of the factors and of the product are taken: both must stay positive.
+        if not (jump < 1 and low > -1):
+            return flint.arb.nan()
+        drift = count * self.of_product(scale, jump, largest) / (1 + low)
+        shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
+        apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
+        if self.arithmetic.absolute:
+            return shift + scale * count * (self.size * apart + self.unit)
+        return shift + apart
+
+    def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
+        """Return the rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""
+        if self.arithmetic.absolute:
+            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
+            return self.unit * (1 + scale)
+        return self.unit * (1 + self.unit) * (largest + 2 * jump * (1 + largest))

@@ -1,0 +1,140 @@
+"""Error bounds of runs, estimated by reruns at higher precision.
+
+A run is compared with a rerun with 15 more digits, at a precision that is raised until the
+requested digits agree. A rerun confirms a run only where the two differ little: once the first has
+lost every digit, as on a chaotic orbit, the second may have lost as many more. So where they differ
+by more than `LINEAR` of the orbit's size the precision is doubled instead; where that does not end,
+the run is "unresolved" and no value is given. An estimate is no certificate, and is called
+`estimated`; `verify.runs.a_posteriori_bound` has rigorous bounds.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from verify import arithmetic as number_systems
+from verify import observables
+from verify.arithmetic.exact import magnitude
+from verify.arithmetic.number_system import Arithmetic
+from verify.hamiltonians.coordinates import PLANE
+from verify.kernels.stepping import KernelRun, RunOutcome
+from verify.lockstep import Course
+
+BoundedValues = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
+Status = Literal["finished", "left range", "unresolved"]
+
+_MORE_DIGITS = 15
+_ATTEMPTS = 6
+LINEAR = Fraction(1, 100)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Values with bounds, the method that gave them, and the end of the run."""
+
+    values: BoundedValues
+    method: str
+    status: Status = "finished"
+    failed_step: int | None = None
+    rigorous: bool = False
+
+
+def working_digits(digits: int, steps: int) -> int:
+    """Return enough digits to keep rounding, which grows at most like N² if bounded, below them."""
+    # N² has twice as many digits as N.
+    return digits + 10 + 2 * len(str(steps))
+
+
+def spread(first: RunOutcome, second: RunOutcome, least: Fraction = Fraction(0)) -> Fraction:
+    """Return the greatest difference of a coordinate at any checkpoint, by the orbit's size.
+
+    The size is that in all coordinates of its kind, momenta or positions, and at least `least`.
+    """
+    spread, notes = Fraction(0), (*first.trail, *second.trail)
+    for letter in PLANE:
+        names = [name for name in first.coordinates if name[0] == letter]
+        size = max(least, *(abs(a[name]) for a in notes for name in names))
+        pairs = list(zip(first.trail, second.trail, strict=False))
+        if size:
+            differences = (abs(a[name] - b[name]) for a, b in pairs for name in names)
+            spread = max(spread, *(x / size for x in differences))
+    return spread
+
+
+def _noise(arithmetic: Arithmetic, *runs: RunOutcome) -> Fraction:
+    """Return the size below which p or q may be nothing but rounding, as p at an equilibrium.
+
+    Such a coordinate has no digit that a higher precision confirms.
+    """
+    sizes = [abs(note[name]) for run in runs for note in run.trail for name in run.coordinates]
+    return max(sizes, default=Fraction(0)) * Fraction(1, 2 ** (arithmetic.bits // 2))
+
+
+def resolve(
+    kernel_run: KernelRun, arithmetic: Arithmetic, first: RunOutcome, digits: int
+) -> Course[Bounds]:
+    """Return the values to so many digits, raising the precision until a rerun confirms them."""
+    for _ in range(_ATTEMPTS):
+        finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE_DIGITS)
+        second = yield from kernel_run.run_in_turn(finer)
+        method = f"rerun with {_MORE_DIGITS} more digits"
+        noise = _noise(arithmetic, first, second)
+        if first.done != second.done or not second.trail or spread(first, second, noise) > LINEAR:
+            if first.done == second.done < kernel_run.steps and not second.trail:
+                return Bounds({}, method, "left range", second.done + 1)
+            arithmetic = number_systems.get(arithmetic.name, 2 * digits_of(arithmetic))
+            first = yield from kernel_run.run_in_turn(arithmetic)
+            continue
+        if second.done < kernel_run.steps:
+            return Bounds({}, method, "left range", second.done + 1)
+        # Both runs round their last values: the difference may be 0 by chance, the error is not.
+        unit = Fraction(1, 2 ** (arithmetic.bits - 2))
+        values = {
+            n: (second.values[n], abs(x - second.values[n]) + unit * _rounded_size(n, x))
+            for n, x in first.values.items()
+        }
+        lacking = (
+            missing_of(name, *value, digits)
+            for name, value in values.items()
+            if not (
+                name in first.coordinates and abs(value[0]) <= value[1] <= noise
+            )  # 0, as far as is known
+        )
+        missing = max(lacking, default=0)
+        if missing <= 0:
+            return Bounds(values, method)
+        arithmetic = number_systems.get(arithmetic.name, digits_of(arithmetic) + missing + 5)
+        first = yield from kernel_run.run_in_turn(arithmetic)
+    return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
+
+
+def _rounded_size(name: str, value: Fraction) -> Fraction:
+    """Return the size of the number that was rounded on the way to a value."""
+    return abs(value) + _initial_offset(name)
+
+
+def _initial_offset(name: str) -> int:
+    """Return the number subtracted from it in the end: Λ by the plain product is that less 1."""
+    observable = observables.by_name().get(name)
+    return observable.begins if observable else 0
+
+
+def digits_of(arithmetic: Arithmetic) -> int:
+    """Return the number of decimal digits of an arithmetic."""
+    # log10(2) = 0.30103.
+    return arithmetic.bits * 30103 // 100000
+
+
+def missing_digits(value: Fraction, bound: Fraction, digits: int) -> int:
+    """Return the number of requested digits that are missing; none are of a value of 0."""
+    if bound == 0 or value == 0:
+        return 0
+    # The digits known are those between the value's and twice the bound's first.
+    return digits - (magnitude(value) - magnitude(2 * bound))
+
+
+def missing_of(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
+    """Return the number of missing digits of an observable of that name."""
+    if _initial_offset(name) and abs(value) <= bound:
+        value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
+    return missing_digits(value, bound, digits)

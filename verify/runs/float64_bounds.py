@@ -1,0 +1,130 @@
+"""Error bounds of float64 runs, which include the rounding of their inputs.
+
+Up to `DIRECT_STEPS` steps float64 is compared with a certified run (`verify.runs.digits_on_demand`)
+from the exact inputs: the bound is rigorous. Where there is no certificate, and the orbit is short,
+it is compared with an mpfr rerun whose precision is itself confirmed, an estimate.
+
+Beyond: against a compensated run (see `verify.kernels.statements`), by four times the greatest
+difference at any of the checkpoints on the way, p and q taken together, since a single difference
+may be small by chance. That leaves the rounding of h, the parameters and the initial values aside.
+Where errors grow linearly in time it shifts the phase by about T·2⁻⁵³, while the rounding of N ≥
+20,000 states shifts it by about √N·T·2⁻⁵³/5; where they grow exponentially, as near a separatrix,
+every rounding counts alike, and the states' are N to one. Where the two orbits differ by more than
+their size no value is given. (`verify separate` has rigorous bounds at full length, at twenty times
+the price.)
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.kernels.stepping import KernelRun, RunOutcome
+from verify.lockstep import Course
+from verify.runs.digits_on_demand import Measurement, certify_run, choose
+from verify.runs.estimates import LINEAR, BoundedValues, Bounds, resolve, spread, working_digits
+
+DIRECT_STEPS = 200_000
+REFERENCE = "mpfr"  # mpmath finds the same, and takes five to ten times as long
+_CERTIFIED_DIGITS = 20
+_REFERENCE_DIGITS = 40
+_FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at every step
+_RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
+
+
+def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues) -> Course[Bounds]:
+    """Return the values of the float64 run `first` of `run` with their bounds.
+
+    `proved_values`: those that a proof gives for observables that were not run.
+    """
+    if first.done < run.steps:
+        return Bounds({}, "none", "left range", first.done + 1)
+    # A compensated run has the same clock, whose rounding it would not see.
+    direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
+    bounds = (
+        (yield from _compare_with_certified(run, first))
+        if direct
+        else _compare_with_compensated(run, first)
+    )
+    values = dict(bounds.values)
+    better = (proved_values | values).get("lambda")
+    if "lambda_plain" in first.values and "lambda_plain" not in values and better:
+        # The closed form is the better value of the same product, up to its own error.
+        plain, (closed_value, bound) = first.values["lambda_plain"], better
+        values["lambda_plain"] = plain, abs(plain - closed_value) + bound
+    return replace(bounds, values={n: x for n, x in values.items() if n in first.values})
+
+
+def _compare_with_certified(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
+    """Compare with a certified run; else with an estimated one, or a compensated one."""
+    exact_run = run.with_observables(_comparable_observables(run.observables))
+    name = choose(exact_run, _CERTIFIED_DIGITS)
+    true = yield from certify_run(exact_run, name, _CERTIFIED_DIGITS)
+    if isinstance(true, Measurement):
+        method = f"difference from a certified run in {name}"
+        return Bounds(_distances(first, true.bounds.values), method, rigorous=True)
+    if run.steps > _RERUN_STEPS:
+        return _compare_with_compensated(run, first)
+    return (yield from _compare_with_rerun(exact_run, first))
+
+
+def _comparable_observables(observables: frozenset[str]) -> frozenset[str]:
+    """Return the observables whose true values are needed: for the plain product it is Λ."""
+    plain = {"lambda"} if "lambda_plain" in observables else set()
+    return (observables - {"lambda_plain", "extremes"}) | plain
+
+
+def _distances(first: RunOutcome, true: BoundedValues) -> BoundedValues:
+    """Return the values with their distances from the true ones; for the plain product from Λ."""
+    if "lambda" in true:
+        true = {**true, "lambda_plain": true["lambda"]}
+    return {n: (x, abs(x - true[n][0]) + true[n][1]) for n, x in first.values.items() if n in true}
+
+
+def _compare_with_rerun(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
+    reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
+    second = run.run(reference)
+    method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
+    # The rerun agrees to a hundredth: rounding is still small against the orbit, and the rerun's
+    # far smaller.
+    if second.done == run.steps and spread(first, second) < LINEAR:
+        return Bounds(_distances(first, _add_floor(second.values, run.steps)), method)
+    # float64 has lost every digit, so the reference has lost many: is it good for the rest?
+    if run.steps > _FOLLOWED_STEPS:
+        return _compare_with_compensated(run, first)
+    true = yield from resolve(run, reference, second, 1)
+    if true.status != "finished":
+        return Bounds({}, f"{method}, which finds another orbit", "unresolved")
+    values = {n: value for n, (value, _) in true.values.items()}
+    return Bounds(_distances(first, _add_floor(values, run.steps)), method)
+
+
+def _compare_with_compensated(run: KernelRun, first: RunOutcome) -> Bounds:
+    method = "four times the difference from a compensated run"
+    second = run.run(number_systems.get("float64", 17), compensated=True)
+    if second.done < run.steps:
+        return Bounds({}, f"{method}, which left the range", "unresolved")
+    distance = spread(first, second)
+    if distance > 1:  # two orbits, not one with errors
+        return Bounds({}, f"{method}, which is another orbit", "unresolved")
+    distance *= 4
+    values = {}
+    for name, x in first.values.items():
+        # p and q share one relative distance: that of one coordinate alone may be small by chance.
+        largest = max(abs(a[name]) for a in (*first.trail, *second.trail))
+        if name in first.coordinates:
+            difference = distance * largest
+        else:
+            pairs = zip(first.trail, second.trail, strict=True)
+            difference = 4 * max(abs(a[name] - b[name]) for a, b in pairs)
+        values[name] = x, difference + _floor(x, run.steps)
+    return Bounds(values, method)
+
+
+def _add_floor(true: Mapping[str, Fraction], steps: int) -> BoundedValues:
+    return {n: (x, _floor(x, steps)) for n, x in true.items()}
+
+
+def _floor(x: Fraction, steps: int) -> Fraction:
+    """Return the error that no comparison shows: float64's last bits, and underflow of steps."""
+    return abs(x) / 2**51 + Fraction(steps, 2**1060)

@@ -1,0 +1,102 @@
+"""The growth of a run's tangent maps M, and the bound of W that follows from it.
+
+How large the inverse of a tangent map may be follows from what was noted of M in float64. For
+2 × 2, ‖M⁻¹‖ = ‖M‖/|det M|. In n degrees of freedom M⁻¹ = B⁻¹ MᵀΩ with B = MᵀΩM, which is
+antisymmetric: its singular values come in pairs, |Pf B| is the product of one of each, and det M is
+Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of the squares of its entries
+above the diagonal. Where the map is nearly symplectic B stays near Ω, however large M grows.
+
+W is the symplectic defect of a whole run in n degrees of freedom. Let J_k be the exact Jacobian of
+the first k steps along the exact orbit, Ĵ_k the computed one, and M_k the matrices that were
+carried in float64 (see `verify.runs.a_posteriori_bound`, whose e_k, A_k, d, Q and S these are).
+With B a bound of the second derivatives of a step, ‖A(ẑ_k) − A(z_k)‖ ≤ B ‖e_k‖.
+
+1. D_k = M_k − J_k obeys D_{k+1} = A(ẑ_k) D_k + (A(ẑ_k) − A(z_k)) J_k + R_k. As long as
+   ‖J_k‖ ≤ 2 max ‖M‖, D_k = M_k Y_k has ‖Y_k‖ ≤ Y = e^Q (2 max ‖M‖² B Σ‖e_k‖/d + Q). Where Y ≤ 1
+   that gives ‖J_{k+1}‖ ≤ 2 max ‖M‖ again, so that it holds for all k.
+2. E_k = Ĵ_k − J_k obeys the same with the rounding ρ of a step of Ĵ in place of R_k:
+   ‖E_k‖ ≤ E = max ‖M‖ e^Q (2 max ‖M‖² B Σ‖e_k‖ + S ρ)/d.
+3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most the sum of
+   (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k) − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were
+   taken to be within ±3 max ‖M‖ where rounding was counted, so that E ≤ max ‖M‖ is required.
+
+Where ‖M‖ grows like N, as in integrable motion, Σ‖e_k‖ grows like N⁵, E like N⁷, and the bound like
+N⁹: it takes the worst of every step for all. `verify.runs.digits_on_demand` has a nearer one.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import flint
+
+from verify.kernels.rounding import Ball
+
+MOST = 3  # times max ‖M‖: the entries of Ĵ
+_ROUNDED = flint.arb(2) ** -48  # of an entry of MᵀΩM or of det M, relative to ‖M‖²
+
+
+def least_of(size: int, records: Mapping[str, Ball]) -> Ball:
+    """Return d > 0 with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; at most 0 if there is none."""
+    lost = _ROUNDED * records["growth_top"]
+    if size == 2:
+        return records["det_low"] - lost
+    n = size // 2
+    largest = records["form_top"].abs_upper().sqrt() * (1 + _ROUNDED)  # entry of the computed B
+    terms = flint.arb(1)
+    for k in range(1, n + 1):
+        terms *= 2 * k - 1  # so many products in a Pfaffian
+    # Each product of n entries, computed from entries that are off by `lost`.
+    product = (largest + lost) ** n
+    error = terms * (product - largest**n + _ROUNDED * n * product)
+    norm = largest + size * lost
+    return (records["det_low"] - error) / norm ** (n - 1)
+
+
+def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
+    """Return a bound of ‖M‖², from bounds of its entries' sum of squares and of its determinant.
+
+    From a bound of the mean of such sums over several M it is one of the mean of ‖M‖².
+    """
+    if size > 2:
+        return squares.abs_upper()
+    return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
+
+
+@dataclass(frozen=True)
+class MatrixGrowth:
+    """The growth of a run's matrices M: `steps`, d, Q, max ‖M‖ and S of the module's text."""
+
+    steps: int
+    least: Ball
+    rate: Ball
+    top: Ball
+    path: Ball
+
+
+def bound_total_defect(
+    motion: MatrixGrowth,
+    *,
+    error_sum: Ball,
+    second: Ball,
+    size: Ball,
+    slope: Ball,
+    matrix_rounding: Ball,
+    entry_rounding: Ball,
+) -> Ball:
+    """Return a bound of the error of each entry of W; not finite if there is none.
+
+    `error_sum`: Σ ‖e_k‖. `second`: B. `size`, `slope`: bounds of S and of its gradient.
+    `matrix_rounding`: of one step of Ĵ. `entry_rounding`: of one term of W and its addition.
+    """
+    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
+    top, growth = motion.top, motion.rate.exp()
+    displacement = 2 * top * top * second * error_sum / motion.least
+    if not growth * (displacement + motion.rate) <= 1:
+        return flint.arb.nan()
+    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
+    if not error <= top:
+        return flint.arb.nan()
+    terms = motion.steps * (2 * top + MOST * top) * size * error
+    bound = terms + 4 * top * top * slope * error_sum + motion.steps * entry_rounding
+    # The computed W was taken to be below 9 max ‖M‖² where its rounding was counted.
+    return bound.abs_upper() if bound <= 3 * top * top else flint.arb.nan()

@@ -1,0 +1,49 @@
+"""The inputs of a run: the scheme with its H, and the initial state."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.run_domain import coordinate_texts, point_of
+from verify.scenes.results.run import RunResult
+
+
+@dataclass(frozen=True)
+class Start:
+    """A scheme's step of one size, from `point`, each coordinate's value by its name, at t0 where H
+    depends on time."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    point: Mapping[str, Fraction]
+    t0: Fraction
+
+    @classmethod
+    def from_result(cls, result: RunResult) -> "Start":
+        """Return the start of a finished run."""
+        hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
+        point = point_of(hamiltonian, result.q, result.p)
+        step_size, t0 = Fraction(result.step_size), Fraction(result.t0)
+        return cls(hamiltonian, result.scheme, step_size, point, t0)
+
+    def __hash__(self) -> int:
+        point = frozenset(self.point.items())
+        return hash((self.hamiltonian, self.scheme, self.step_size, point, self.t0))
+
+    @property
+    def run_arguments(self) -> dict[str, Any]:
+        """The keyword arguments that request a run from there, without its number of steps."""
+        fields = {name: x for name, x in vars(self).items() if name != "point"}
+        return {**fields, "q": self.text("q"), "p": self.text("p")}
+
+    @property
+    def inputs(self) -> dict[str, Fraction]:
+        """The initial values, h and t of a kernel's run, by their names."""
+        return {**self.point, "h": self.step_size, "t": self.t0}
+
+    def text(self, letter: str) -> str | tuple[str, ...]:
+        """Return q or p as results show it: a number, or a list in n degrees of freedom."""
+        return coordinate_texts(self.hamiltonian, self.point, letter)

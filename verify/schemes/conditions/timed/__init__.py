@@ -1,1 +1,0 @@
-"""Order conditions with time: splittings and Runge–Kutta methods with their clocks."""

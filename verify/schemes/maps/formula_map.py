@@ -1,0 +1,76 @@
+"""A user's own map: `p_next = …; q_next = …`, or `p1_next = …; q1_next = …`."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+from verify.algebra.domain import FormulaDomain
+from verify.algebra.expressions.function_nodes import requirements_of_expression
+from verify.algebra.formula import read, symbol
+from verify.effort import limit_effort
+from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.lazy_sympy import sympy
+from verify.schemes.maps.step_map import StepMap
+from verify.structures import AREA, SYMPLECTIC
+
+_NEXT = "_next"
+
+
+def step_map_from_formulas(
+    hamiltonian: Hamiltonian, formulas: Mapping[str, str], numbers: Collection[str] = ()
+) -> StepMap:
+    """Return the map that has a formula for each coordinate, by its name with `_next`.
+
+    A formula may use the coordinates, h, H's parameters, t where H has it, and what was defined
+    before it, and the names of `numbers`. Raises InputError.
+    """
+    coordinates = hamiltonian.coordinates
+    if sorted(formulas) != sorted(name + _NEXT for name in coordinates):
+        raise _other_coordinates(hamiltonian, formulas)
+    time = ("t",) if hamiltonian.time_dependent else ()
+    names = [*coordinates, "h", *time, *hamiltonian.parameters, *numbers]
+    if "p_next" in formulas and "p_next" in names:
+        raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
+    substitutions: dict[sympy.Symbol, sympy.Expr] = {}
+    domain = FormulaDomain.from_requirements(())
+    for name, formula in formulas.items():
+        expression, requirements = read(formula, names, source=name)
+        # Formulas may use those before them, so nested texts can grow exponentially when
+        # substituted.
+        with limit_effort(name, formula, "to put what stands before into it"):
+            domain &= (
+                FormulaDomain.from_requirements(requirements)
+                .substitute(substitutions)
+                .substitute(hamiltonian.value_substitutions)
+            )
+            substitutions[symbol(name)] = hamiltonian.substitute_values(
+                expression.xreplace(substitutions)
+            )
+        names.append(name)
+    exact = [substitutions[symbol(name + _NEXT)] for name in coordinates]
+    return map_from_expressions(hamiltonian, exact, domain)
+
+
+def _other_coordinates(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> InputError:
+    formula_text = "; ".join(map(" = ".join, formulas.items()))
+    required_names = ", ".join(name + _NEXT for name in hamiltonian.coordinates)
+    value, problem = {
+        AREA: (formula_text, "H has other coordinates; allowed: formulas of p_next and q_next"),
+        SYMPLECTIC: ("; ".join(formulas), f"H needs {required_names}, once each"),
+    }[hamiltonian.structure]
+    return InputError("scheme", value, problem)
+
+
+def map_from_expressions(
+    hamiltonian: Hamiltonian, exact: Sequence[sympy.Expr], domain: FormulaDomain | None = None
+) -> StepMap:
+    """Return the map of z' as expressions in z, h, t where H has it, and parameters; `domain`:
+    where more than these expressions is defined. InputError where they are not smooth."""
+    field, elements = canonical_field(hamiltonian, *exact)
+    smooth = FormulaDomain.from_requirements(
+        r for x in exact for r in requirements_of_expression(x, smooth=True)
+    )
+    domain = smooth if domain is None else smooth & domain
+    return StepMap(hamiltonian, field, formulas=tuple(elements), formula_domain=domain)

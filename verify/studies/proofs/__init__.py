@@ -1,1 +1,0 @@
-"""Proofs about a scheme, for one H or for every H."""

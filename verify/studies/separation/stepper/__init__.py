@@ -1,1 +1,0 @@
-"""A float64 run, step by step, with exact arithmetic beside it."""

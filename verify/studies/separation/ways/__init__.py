@@ -1,1 +1,0 @@
-"""Products along a float64 run: of determinants in the plane, of matrices in more degrees."""
