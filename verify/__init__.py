@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     from verify.schemes.scheme import Scheme as Scheme
     from verify.verdict import Verdict as Verdict
 
-# Each public name with its module and a line that describes it, the table of help(verify).
-# A module is imported when its name is used, so that `verify --help` and a proof wait for no other.
+# Each public name with its module and the line that describes it in help(verify). A module is
+# imported when its name is used, so that `verify --help` and a proof do not wait for the others.
 _NAMES = {
     "run": ("verify.calls.run", "N steps: values with error bounds, and the orbit as arrays"),
     "sweep": ("verify.calls.run", "runs over lists of schemes, steps, starts: a table"),
@@ -109,16 +109,16 @@ _NAMES = {
     "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
     "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),
 }
-# Public names that are modules themselves, not attributes of one.
+# Public names of modules; the other names are attributes of a module.
 _MODULES = ("schemes", "systems")
-_WIDTH = max(map(len, _NAMES))
+_NAME_WIDTH = max(map(len, _NAMES))  # characters, in the table
 __all__ = [*_NAMES]
-__doc__ = (__doc__ or "") + "\n".join(  # None by python -OO
-    f"    {name:{_WIDTH}}  {summary}" for name, (_, summary) in _NAMES.items()
+__doc__ = (__doc__ or "") + "\n".join(  # it is None with python -OO
+    f"    {name:{_NAME_WIDTH}}  {summary}" for name, (_, summary) in _NAMES.items()
 )
 
 
-register()  # of classes with hypothesis, whichever of the two is imported first
+register()  # the classes that hypothesis can draw, whichever package is imported first
 
 
 def __getattr__(name: str) -> Any:

@@ -1,13 +1,15 @@
 """A cache on disk, for later processes: machine code of kernels, and parsed Hamiltonians.
 
 Contract: `load(key)` returns the very bytes that this user passed to `keep(key, code)`, or None.
-Loaded code is run. So the folder and each file in it must be this user's own and nobody
-else's to write, and no link is followed to them; a digest of key and code stands in the file, so
-that what is damaged, or was renamed, is nothing. Nothing here fails: a full disk, a home that is
-read-only or a folder of somebody else's mean that code is compiled anew and not kept.
+Loaded code is run. So the folder and each file in it must belong to this user, nobody else may have
+the right to write to them, and neither may be a link. Each file has a digest of its key and code,
+so that a damaged or renamed file counts as none. Apart from a wrong VERIFY_CACHE, which is an
+InputError, nothing here fails: if the disk is full, the home is read-only or the folder belongs to
+somebody else, code is compiled anew and not kept.
 
-The folder is `areaproof/kernels` in XDG_CACHE_HOME, else in ~/.cache; `VERIFY_CACHE` names another
-one in place of `areaproof`, or is `off`. Beyond 256 MB what was used the longest time ago goes.
+The folder is `areaproof/kernels` in XDG_CACHE_HOME, or else in ~/.cache; `VERIFY_CACHE` names
+another folder in place of `areaproof`, or is `off`. If the files have more than 256 MB, those that
+were not used for the longest time are deleted.
 
 Not promised: a system without owners of files (Windows) keeps nothing.
 """
@@ -24,19 +26,20 @@ from verify.errors import InputError
 from verify.files import write_atomically
 
 VARIABLE, OFF = "VERIFY_CACHE", "off"
-# Of the whole folder, and of a file that is read.
+# The limit of the whole folder, and of a single file that is read.
 MOST_BYTES = 256 * 2**20
-_OWNED = hasattr(os, "geteuid") and os.open in os.supports_dir_fd
+_HAS_OWNERS = hasattr(os, "geteuid") and os.open in os.supports_dir_fd
 _FOLDER, _SUFFIX = "kernels", ".kernel"
-_ENTRY = re.compile(r"\.?[0-9a-f]{64}\.kernel")  # with a dot, one that is being written
-_DIGEST = hashlib.sha256().digest_size
+# The name of an entry; a dot begins the names of files that are still being written.
+_ENTRY_NAME = re.compile(r"\.?[0-9a-f]{64}\.kernel")
+_DIGEST_SIZE = hashlib.sha256().digest_size  # bytes, at the beginning of each entry
 
 
 def key_of(*parts: str) -> str:
     """Return a digest of these texts in this order, to name an entry."""
     digest = hashlib.sha256()
     for part in parts:
-        raw = part.encode(errors="surrogatepass")  # what is typed may be no Unicode
+        raw = part.encode(errors="surrogatepass")  # a typed text may be no valid Unicode
         digest.update(b"%d\n" % len(raw) + raw)
     return digest.hexdigest()
 
@@ -47,8 +50,8 @@ def folder() -> Path | None:
     Raises InputError if VERIFY_CACHE is neither a folder's absolute path nor `off`.
     """
     setting = os.environ.get(VARIABLE, "")
-    # Without owners of files there is no telling whose code a file holds: nothing is kept.
-    if setting == OFF or not _OWNED:
+    # If files have no owners, nobody can tell whose code a file holds.
+    if setting == OFF or not _HAS_OWNERS:
         return None
     if setting:
         if not Path(setting).is_absolute():
@@ -56,26 +59,26 @@ def folder() -> Path | None:
         if Path(setting).exists() and not Path(setting).is_dir():
             raise InputError(VARIABLE, setting, f"is no folder; give one, or {OFF}")
         return Path(setting, _FOLDER)
-    general = os.environ.get("XDG_CACHE_HOME", "")
+    cache_home = os.environ.get("XDG_CACHE_HOME", "")
     try:
-        # The convention has a relative one ignored.
-        root = Path(general) if Path(general).is_absolute() else Path.home() / ".cache"
+        # The convention says that a relative path is ignored.
+        root = Path(cache_home) if Path(cache_home).is_absolute() else Path.home() / ".cache"
     except RuntimeError:  # this user has no home
         return None
     return root / "areaproof" / _FOLDER
 
 
 def load(key: str) -> bytes | None:
-    """Return the code that was kept under the key; None if there is none to be trusted."""
+    """Return the code that was kept under the key; None if no trustworthy file has it."""
     with _open_folder(folder()) as directory:
         content = b"" if directory is None else _read_entry(directory, key + _SUFFIX)
-    code = content[_DIGEST:]
-    # The digest is of the key, too: a file that was renamed to another key does not match.
-    return code if content[:_DIGEST] == _digest(key, code) else None
+    code = content[_DIGEST_SIZE:]
+    # The key is part of the digest, so that a file renamed to another key does not match.
+    return code if content[:_DIGEST_SIZE] == _digest(key, code) else None
 
 
 def _read_entry(directory: int, name: str) -> bytes:
-    """Return the content of the file; b"" where it is not this user's, or cannot be read."""
+    """Return the content of the file; b"" if it is not this user's alone, or cannot be read."""
     # O_NOFOLLOW: a link could lead to code that somebody else may write. O_NONBLOCK: to open a pipe
     # would wait for a writer.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
@@ -88,7 +91,7 @@ def _read_entry(directory: int, name: str) -> bytes:
         if not stat.S_ISREG(status.st_mode) or not _is_ours(status):
             return b""
         with suppress(OSError):
-            os.utime(file)  # it is used, and others go first
+            os.utime(file)  # the time of its last use, by which `_drop_oldest` sorts
         with open(file, "rb", closefd=False) as opened:
             return opened.read(MOST_BYTES)
     except OSError:
@@ -98,13 +101,13 @@ def _read_entry(directory: int, name: str) -> bytes:
 
 
 def keep(key: str, code: bytes) -> None:
-    """Keep the code under the key, in place of an older one, where that can be done."""
+    """Keep the code under the key, in place of an older entry, if that is possible."""
     path = folder()
     if path is None:
         return
     with suppress(OSError):
         for parent in (path.parent, path):
-            # Private from the beginning: what others may write to is refused later by `_is_ours`.
+            # Private from the beginning, as `_is_ours` refuses a folder that others may write to.
             parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _open_folder(path) as directory:
         if directory is not None:
@@ -124,7 +127,7 @@ def _is_ours(status: os.stat_result) -> bool:
 
 @contextmanager
 def _open_folder(path: Path | None) -> Iterator[int | None]:
-    """Open the folder for a while, and yield its descriptor; None if it is not to be trusted."""
+    """Yield the descriptor of the folder, open within the context; None for an untrusted one."""
     # Files are opened relative to this descriptor, so that nobody can put another folder in its
     # place between the check and the use.
     directory = None
@@ -140,12 +143,12 @@ def _open_folder(path: Path | None) -> Iterator[int | None]:
 
 
 def _drop_oldest(directory: int) -> None:
-    """Delete the entries that were used the longest time ago, until the rest is small enough."""
+    """Delete entries, those not used for the longest time first, until the limit is kept."""
     files = []
     with suppress(OSError), os.scandir(directory) as entries:
         for entry in entries:
-            if _ENTRY.match(entry.name):
-                with suppress(OSError):  # gone meanwhile, by another process
+            if _ENTRY_NAME.match(entry.name):
+                with suppress(OSError):  # another process has deleted it
                     status = entry.stat(follow_symlinks=False)
                     files.append((status.st_mtime_ns, entry.name, status.st_size))
     total = sum(size for _, _, size in files)

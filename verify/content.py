@@ -1,6 +1,6 @@
 """The content shipped with the code: scenes and claims (`reports/`), published data (`reference/`).
 
-In a checkout both lie beside the package, in a wheel inside it, in `verify/data`.
+In a checkout both lie beside the package, in an installed wheel inside it, in `verify/data`.
 """
 
 import hashlib
@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 
-_INSTALLED = "data"
-_FOLDERS = ("reports", "reference")
-_CHECKOUT = "pyproject.toml"  # beside the package; else a folder of that name is somebody else's
+_DATA_FOLDER = "data"  # the folder of the content within an installed package
+_CONTENT_FOLDERS = ("reports", "reference")
+_CHECKOUT_FILE = "pyproject.toml"  # without it a folder `reports` beside the package is not ours
 
 
 def content(*names: str) -> Path:
@@ -26,18 +26,18 @@ def checkout() -> Path | None:
 
 
 def shipped_files(package: Path | None = None) -> dict[str, Path]:
-    """Return every file of the package and of the content by its name, of whatever kind.
+    """Return every file of the package and of the content, by its name in a checkout.
 
-    A wheel has the names of the checkout that it was built from. Files that Python, an editor or
-    the system writes there are left out: bytecode, hidden files, backups. `package`: the folder of
-    another installation.
+    Files of all kinds are returned but those that Python, an editor or the system adds: bytecode,
+    hidden files, backups. `package`: the folder of the package, if it is that of another
+    installation.
     """
     package = package or _package()
     root = _find_root(package)
     shipped = {
         f"verify/{name}": path for name, path in _walk_files(package) if not _is_content(name)
     }
-    for folder in _FOLDERS:
+    for folder in _CONTENT_FOLDERS:
         shipped |= {f"{folder}/{name}": path for name, path in _walk_files(root / folder)}
     return shipped
 
@@ -47,7 +47,7 @@ def digest_of(files: Mapping[str, Path], others: str = "") -> str:
     digest = hashlib.sha256(others.encode())
     for name, path in sorted(files.items()):
         raw = path.read_bytes()
-        # With its length, so that no content can imitate the beginning of the next file.
+        # With the length of a file no content can imitate the beginning of the next one.
         digest.update(f"\n{name} {len(raw)}\n".encode() + raw)
     return digest.hexdigest()
 
@@ -57,9 +57,9 @@ def is_shipped(path: Path) -> bool:
 
     Writing there would change what is shipped, and the digest of all shipped files with it.
     """
-    # With links followed: a link into the package leads there, too.
+    # Links are followed, as a link may lead into the package.
     root, target = _find_root(_package()), path.resolve()
-    folders = (_package(), *(root / name for name in _FOLDERS))
+    folders = (_package(), *(root / name for name in _CONTENT_FOLDERS))
     return any(target.is_relative_to(folder.resolve()) for folder in folders)
 
 
@@ -68,26 +68,28 @@ def _package() -> Path:
 
 
 def _find_root(package: Path) -> Path:
-    """Return the folder that holds the content; RuntimeError if neither place has all of it."""
-    for root in (package / _INSTALLED, package.parent):
-        is_candidate = root != package.parent or (root / _CHECKOUT).is_file()
-        if is_candidate and all((root / name).is_dir() for name in _FOLDERS):
+    """Return the folder that holds the content; RuntimeError if neither place has both folders."""
+    for root in (package / _DATA_FOLDER, package.parent):
+        is_candidate = root != package.parent or (root / _CHECKOUT_FILE).is_file()
+        if is_candidate and all((root / name).is_dir() for name in _CONTENT_FOLDERS):
             return root
-    raise RuntimeError(f"{package}: neither a checkout nor whole: no {' and no '.join(_FOLDERS)}")
+    raise RuntimeError(
+        f"{package}: neither a checkout nor whole: no {' and no '.join(_CONTENT_FOLDERS)}"
+    )
 
 
 def _is_content(name: str) -> bool:
-    return name.partition("/")[0] == _INSTALLED
+    return name.partition("/")[0] == _DATA_FOLDER
 
 
 def _walk_files(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, Path]]:
-    # Each command that keeps results goes through all files: scandir knows their kinds at once,
-    # which is ten times as fast as to ask each path.
+    # Each command that keeps results walks through all files. `scandir` gives their kinds with
+    # their names, which is ten times as fast as a call for each path.
     with os.scandir(folder) as entries:
         for entry in entries:
             name = entry.name
             if name.startswith(".") or name.endswith("~") or name == "__pycache__":
-                continue  # left behind
+                continue  # not ours
             if entry.is_dir(follow_symlinks=False):
                 yield from _walk_files(entry.path, f"{prefix}{name}/")
             elif entry.is_file():

@@ -1,4 +1,4 @@
-"""Catalogues of kinds: one file each, listed by its name before it is imported."""
+"""Catalogues of kinds: each kind is a file, which is listed by its name before it is imported."""
 
 import pkgutil
 from collections.abc import Iterable, Iterator
@@ -11,10 +11,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Catalogue:
-    """The files of a package and of the folders in it, whatever these are called.
+    """The files of a package and of all folders in it.
 
-    `package` is its dotted name, `path` its `__path__`. No two files have the same name
-    (RuntimeError). A file is called by its name with dashes: `double_well.py` is `double-well`.
+    `package` is the dotted name of the package, `path` its `__path__`. In the catalogue a file has
+    its name with dashes: `double_well.py` is `double-well`. RuntimeError if two files share a name.
     """
 
     package: str
@@ -22,8 +22,8 @@ class Catalogue:
 
     @cached_property
     def _modules(self) -> dict[str, str]:
-        # Sorted by the names of files, not by those with dashes: hypothesis draws from this order,
-        # so another one would change what a seed draws.
+        # Sorted by the names of files, not by those with dashes: hypothesis draws in this order,
+        # and another order would change the draws of a seed.
         entries = sorted(_files(self.package, self.path))
         modules = {file.replace("_", "-"): dotted for file, dotted in entries}
         if len(modules) < len(entries):
@@ -43,7 +43,7 @@ class Catalogue:
         return import_module(self._modules[name])
 
     def folder(self, name: str) -> str:
-        """Return the name of the folder that the file of this name lies in."""
+        """Return the name of the folder that has the file of this name."""
         return self._modules[name].split(".")[-2]
 
 

@@ -1,7 +1,7 @@
 """Classes that hypothesis can draw, each with its function in `verify.strategies`.
 
-A class is recorded by its decorator. A listener is called with each class, also with those that are
-defined later: so hypothesis costs nothing where it is not used.
+A decorator records a class. A listener is called with each class, also with those that are defined
+later. So hypothesis need not be imported here, and costs nothing if it is not used.
 """
 
 from collections.abc import Callable
@@ -27,7 +27,7 @@ def drawn_by(name: str) -> Callable[[C], C]:
 
 
 def listen(listener: Listener) -> None:
-    """Call the listener with each class, those of now and those to come."""
+    """Call the listener with each recorded class now, and with each class recorded later."""
     for cls, name in _CLASSES:
         listener(cls, name)
     if listener not in _LISTENERS:

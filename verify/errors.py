@@ -1,12 +1,14 @@
-"""Errors that a user reads in one line: those of input, and those of the place of work."""
+"""Errors that a user reads in one line: of input, and of the place where tasks run."""
 
 import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
-# Characters that a terminal obeys, or by which it turns the order of the text, instead of showing
-# them: control characters, marks of direction, lone surrogates. Tabs and line feeds are harmless.
-CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+# Characters that a terminal does not show, but obeys or turns the direction of the text by: control
+# characters, marks of direction; and lone surrogates. Tabs and line feeds are harmless.
+CONTROL_CHARACTERS = re.compile(
+    "[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 
 
 class _NotGiven(str):
@@ -19,7 +21,8 @@ NOT_GIVEN = _NotGiven()
 class InputError(ValueError):
     """Bad input: one line that names the input, its value, if any was given, and what is allowed.
 
-    The command line turns it into exit status 2; nothing has been computed when it is raised.
+    The command line turns it into exit status 2. Nearly all input is checked before anything is
+    computed.
     """
 
     def __init__(self, name: str, value: object, problem: str) -> None:
@@ -39,12 +42,12 @@ class InputError(ValueError):
 class LimitError(InputError):
     """Input beyond what is handled exactly: too large, or with an unknown function.
 
-    A claim with such a formula is no mistake of its file, and is left undecided.
+    A claim with such a formula is not a mistake in its file, and is left undecided.
     """
 
 
 class PlaceError(RuntimeError):
-    """A failure of the place where tasks run: workers or a scheduler lost, or other code there.
+    """A failure of the place where tasks run: workers or the scheduler lost, or another version.
 
     The message is one line. The command line turns it into exit status 2; finished tasks are kept.
     """
@@ -59,14 +62,15 @@ def unknown_name(
 ) -> InputError:
     """Return the error for a name outside `candidates`, which suggests the nearest of them.
 
-    `more` ends the message; `aliases` maps further names to those that they stand for.
+    `more` ends the message; `aliases` maps each further name to the one that it stands for.
     """
     from difflib import get_close_matches
 
     names = list(candidates)
     plain = {**aliases, **{plain_name(each): each for each in reversed(names)}}
     plain_text = plain_name(str(name))
-    # Whole words first: `duffing oscillator` is nearer to `duffing` than its letters are.
+    # A name that begins the text as a whole word comes first: letter by letter another name may be
+    # nearer to `duffing oscillator` than `duffing` is.
     nearest = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", plain_text)]
     nearest = sorted(nearest, key=len, reverse=True) or get_close_matches(plain_text, plain, 1, 0.6)
     question = format_suggestion(plain[nearest[0]] if nearest else "")
@@ -81,7 +85,7 @@ def find_nearest(name: str, names: Iterable[str]) -> str:
 
 
 def format_suggestion(name: str) -> str:
-    """Return the question whether that name is meant, and a blank; empty for no name."""
+    """Return the question whether that name is meant, with a blank; an empty text for no name."""
     return f"is {name} meant? " if name else ""
 
 
@@ -95,7 +99,7 @@ def plain_name(name: str) -> str:
 
 
 def without_controls(text: str) -> str:
-    """Return the text with a replacement character for each that a terminal may not get."""
+    """Return the text with a replacement character for each that is not printable, as tabs are."""
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
@@ -106,6 +110,6 @@ def _shorten(value: object) -> str:
     except ValueError:  # an integer beyond Python's limit of printed digits
         text = f"(a {type(value).__name__} of very many digits)"
     text = " ".join(text.split()) or repr(text)
-    if len(text) > 78:  # both ends: a path is known by its last part
+    if len(text) > 78:  # both ends stay, as the last part of a path tells most
         text = f"{text[:38]}…{text[-39:]}"
     return without_controls(text)

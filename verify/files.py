@@ -1,7 +1,7 @@
 """Reading and writing of whole regular files.
 
-A file that is read may be anybody's: a device, a pipe and a file beyond a limit are refused before
-they are read. A file that is written replaces a regular file or nothing, never in part.
+A file to be read may be anybody's: a device, a pipe and a file larger than a limit are refused
+before they are read. A written file replaces a regular file or nothing, and never in part.
 """
 
 import os
@@ -17,21 +17,22 @@ from typing import BinaryIO
 from verify.errors import InputError
 
 MOST_BYTES = 64 * 2**20
-MOST_TEXT = 4 * 2**20  # of what people write by hand
-_MACHINE_MARK = f"@{platform.node()}"  # of several machines that share a folder
-_MOST_NAMES = 1000  # of a folder, among which one is looked for that may be meant
+MOST_TEXT = 4 * 2**20  # bytes, the limit for files that people write by hand
+_MACHINE_MARK = f"@{platform.node()}"  # ends the name of a temporary file: folders may be shared
+_MAX_CANDIDATES = 1000  # the limit on names in a folder among which a similar one is sought
 
 
 @contextmanager
 def open_regular_file(path: Path) -> Iterator[BinaryIO]:
     """Open a regular file for reading, as a context manager.
 
-    Raises InputError, which names it, for what is not there, is no regular file or cannot be read.
+    Raises InputError, which names the path, if it leads to no regular file, or to an unreadable
+    one.
     """
     if "\0" in str(path):
         raise InputError("file", str(path), "is no name of a file: it holds a null character")
     try:
-        # A pipe that nobody writes to would be waited for.
+        # Without O_NONBLOCK the opening of a pipe would wait for a writer.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
         with os.fdopen(handle, "rb") as file:
             if not stat.S_ISREG(os.fstat(handle).st_mode):
@@ -56,8 +57,8 @@ def _suggest_instead(path: Path, error: OSError) -> str:
 
     by_stem: dict[str, Path] = {}
     with suppress(OSError):
-        # Of two files with one stem the last stays in the table: that with the same suffix.
-        entries = islice(path.parent.iterdir(), _MOST_NAMES)
+        # If several files have one stem, the last one stays; that with the right suffix sorts last.
+        entries = islice(path.parent.iterdir(), _MAX_CANDIDATES)
         candidates = sorted(entries, key=lambda file: (file.suffix == path.suffix, file))
         by_stem = {file.stem.lower(): file for file in candidates}
     nearest = get_close_matches(path.stem.strip().lower(), by_stem, n=1, cutoff=0.7)
@@ -70,12 +71,12 @@ def read_bytes(path: Path, most: int | None = MOST_BYTES) -> bytes:
         size = os.fstat(file.fileno()).st_size
         if most is not None and size > most:
             raise InputError("file", str(path), f"has {size} bytes; allowed: {most}")
-        # At most so many bytes even if the file has grown since its size was read.
+        # The limit holds even if the file has grown since its size was read.
         return file.read() if most is None else file.read(most)
 
 
 def read_text(path: Path, most: int | None = MOST_TEXT) -> str:
-    """Return a regular file's text in UTF-8. Raises InputError as `read_bytes` and `text_of`."""
+    """Return the text of a regular file in UTF-8; errors as `read_bytes` and `text_of`."""
     return text_of(read_bytes(path, most), str(path))
 
 
@@ -103,7 +104,7 @@ def check_replaceable(path: Path, name: str = "file") -> None:
 
 
 def _process_mark(process: int) -> str:
-    """Return the part of a temporary file's name that names the process writing it."""
+    """Return the part of a temporary file's name that identifies the process writing it."""
     return f".of-{process}."
 
 
@@ -116,9 +117,9 @@ def clear_unfinished(folder: Path, processes: Iterable[int]) -> None:
 
 
 def clear_abandoned(folder: Path) -> None:
-    """Remove the temporary files of killed processes of this machine from the folder."""
+    """Remove the temporary files of ended processes of this machine from the folder."""
     pattern = re.compile(rf"\..+\.of-(\d+)\.[0-9a-f]+{re.escape(_MACHINE_MARK)}")
-    # Only files of this machine: whether a process of another one is alive cannot be found out.
+    # Only files of this machine: it cannot be known whether a process of another machine is alive.
     for path in folder.glob(".*"):
         match = pattern.fullmatch(path.name)
         if match and not _is_running(int(match[1])):
@@ -128,41 +129,41 @@ def clear_abandoned(folder: Path) -> None:
 
 def _is_running(process: int) -> bool:
     try:
-        if os.name == "posix":  # elsewhere there is no signal that does nothing
-            # Signal 0 is not sent; the call only fails where the process does not exist.
+        if os.name == "posix":  # other systems have no signal that does nothing
+            # Signal 0 is not sent; the call only fails if the process does not exist.
             os.kill(process, 0)
     except (ProcessLookupError, OverflowError):
         return False
-    except OSError:  # it is somebody else's
+    except OSError:  # the process runs, as another user
         pass
     return True
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write the file whole or not at all: to a temporary one beside it, which is then renamed.
+    """Write the file whole or not at all: write a temporary one beside it, and rename that.
 
-    Raises InputError if a link, a device, a pipe or a read-only file stands there, and OSError,
-    which names the file, where it cannot be written.
+    Raises InputError if the path is a folder, a link, a device, a pipe or a read-only file, and
+    OSError, which names the file, if it cannot be written.
     """
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Hidden, so that a listing of results does not see it, and with the process and machine in it,
-    # so that `clear_abandoned` can tell whose it was.
+    # The name is hidden from listings of results, and tells `clear_abandoned` the process and the
+    # machine.
     name = f".{path.name[:100]}{_process_mark(os.getpid())}{os.urandom(8).hex()}{_MACHINE_MARK}"
-    temporary = path.with_name(name)  # known before it is made: an interruption may come at once
+    temporary = path.with_name(name)  # set before the file exists, for the removal below
     try:
-        # O_EXCL: nothing may stand there, no link either. The mode opens the file to others only
-        # when it is whole.
+        # O_EXCL refuses an existing file or link. Others may read the file only when it is whole,
+        # so it begins with the mode 0o600.
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "wb") as file:
             file.write(raw)
             file.flush()
-            os.fsync(file.fileno())  # else a crash after the renaming could leave an empty file
+            os.fsync(file.fileno())  # otherwise a crash after the renaming may leave an empty file
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException as error:
         temporary.unlink(missing_ok=True)
-        if isinstance(error, OSError):  # a full disk names no file
+        if isinstance(error, OSError):  # the error of a full disk names no file
             error.filename = str(path)
         raise

@@ -2,10 +2,10 @@
 
     {"format": "areaproof certificate 2", …}
 
-A format's version is a whole number, which grows when a reader of the old one would misread the
-new. Each format is named where its files are made: `FORMAT` of
+The version of a format is a whole number. It grows if readers of the old version would misread the
+new one. Each format is named where its files are written: `FORMAT` of
 `proof.certificates.certificate_file` and of `scenes.results.report` (results.json), `KEPT` and
-`CHECKPOINT` of `execution.keeping`, `DATA_FORMAT` of `reference.make.models`, `MANIFEST_FORMAT` of
+`CHECKPOINT` of `execution.keeper`, `DATA_FORMAT` of `reference.make.models`, `MANIFEST_FORMAT` of
 `reference.make.data_files`.
 """
 
@@ -16,11 +16,11 @@ from typing import Any
 from verify.errors import InputError
 from verify.files import open_regular_file, read_bytes
 
-_BEGINNING = 200  # bytes within which our files name their format
+_BEGINNING_BYTES = 200  # our files name their format within these
 
 
 def read_json(path: Path, expected: str) -> dict[str, Any]:
-    """Read the object of that format from a file. InputError if there is no such file."""
+    """Read a JSON object of the format `expected`. InputError if the file does not hold one."""
     try:
         data = json.loads(read_bytes(path), object_pairs_hook=reject_repeated_keys)
     except InputError:
@@ -35,7 +35,7 @@ def read_json(path: Path, expected: str) -> dict[str, Any]:
 
 def reject_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Build the object; ValueError if a key stands twice."""
-    # json takes the last of two, other readers the first: they would read different files.
+    # `json` takes the last of two values, other readers take the first.
     result = dict(pairs)
     if len(result) < len(pairs):
         raise ValueError("a key stands twice")
@@ -66,22 +66,22 @@ newer; this version reads 'areaproof certificate 2'
 
 
 def names_format(path: Path, expected: str) -> bool:
-    """Return True if a file's beginning names this format, of whatever version."""
+    """Return True if a file's beginning has the name of this format; its version may differ."""
     try:
         with open_regular_file(path) as file:
-            return expected.rpartition(" ")[0].encode() in file.read(_BEGINNING)
+            return expected.rpartition(" ")[0].encode() in file.read(_BEGINNING_BYTES)
     except InputError:
         return False
 
 
 def _describe_age(actual: object, expected: str) -> str:
-    """Return words for an older or newer version of the same format; else an empty text."""
+    """Return the remark that a version of the same format is older or newer; else an empty text."""
     (name, _, version), (expected_name, _, current) = (
         str(x).rpartition(" ") for x in (actual, expected)
     )
     if name != expected_name or not version.isdecimal():
         return ""
-    # Nine digits decide; int() refuses texts of thousands of them.
+    # The first nine digits are enough; int() refuses texts of thousands of digits.
     return ", which is newer" if int(version[:9]) > int(current) else ", which is older"
 
 

@@ -1,9 +1,9 @@
 """Registration of our classes with hypothesis, for `st.from_type(Hamiltonian)`.
 
-It works in either order of imports: hypothesis calls `register` at the end of its own import (its
-entry point is in pyproject.toml).
-Nothing but the standard library is imported here, and the strategies only when something is drawn:
-hypothesis costs no more where areaproof is installed and not used.
+It works in either order of imports: if hypothesis is imported later, it calls `register` at the end
+of its own import, by the entry point in pyproject.toml. Only the standard library is imported here,
+and the strategies when something is drawn, so that an installed areaproof does not slow down tests
+that do not use it.
 """
 
 import sys
@@ -13,7 +13,7 @@ from verify.drawable import listen
 
 
 def register() -> None:
-    """Register all drawable classes, of now and later; a second call changes nothing."""
+    """Register all drawable classes, and those recorded later; a second call changes nothing."""
     listen(_register_strategy)
 
 

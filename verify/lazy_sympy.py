@@ -1,8 +1,8 @@
 """sympy, imported at the first use of one of its names.
 
-Its import takes as long as all the rest of a short command, and a Hamiltonian from the cache needs
-none of it (`verify.hamiltonians.hamiltonian_store`). A module on the way of a run writes
-`from verify.lazy_sympy import sympy`, and uses no name of it while it is itself imported.
+The import of sympy takes as long as all the rest of a short command, and a Hamiltonian from the
+cache needs no sympy (`verify.hamiltonians.hamiltonian_store`). A module that a run imports writes
+`from verify.lazy_sympy import sympy`, and uses names of sympy only inside its functions.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ class _LateModule(ModuleType):
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(importlib.import_module(self.__name__), name)
-        setattr(self, name, value)  # the next look comes no further than this
+        setattr(self, name, value)  # the next access finds it here
         return value
 
 

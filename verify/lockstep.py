@@ -1,13 +1,13 @@
-"""Functions that run in turn, and wait where their requests can be served together.
+"""Functions that take turns, and wait until their requests can be served together.
 
-Such a function is a generator, a `Course`: by `meet` it yields a request to a `Work`, and goes on
-when the result is there. `run_together` runs several courses, one at a time, until all wait or have
-ended; then one work serves some of its requests, as orbits of one kernel are stepped in the lanes
-of the vector unit. `run_alone` runs a single course.
+Such a function is a generator, a `Course`: by `meet` it yields a request to a `Work`, and continues
+when the result exists. `run_together` runs several courses, one at a time, until all wait or have
+ended; then one work serves some of the requests to it. For example, orbits of one kernel are
+stepped together in the lanes of the vector unit. `run_alone` runs a single course.
 
-Contract: each course returns what it returns alone. The result of a `Work` must not depend on the
-requests that are served with it. Not promised: which course ends first. A course must not wait
-while it has changed what others see, such as flint's precision.
+Contract: each course returns the same value as alone. The result of a request to a `Work` must not
+depend on the requests that are served with it. Not promised: which course ends first. While a
+course waits, it must not have changed a state that others see, such as flint's precision.
 """
 
 import inspect
@@ -26,15 +26,15 @@ class Work(Protocol):
     def advance(self, pending: "Sequence[Pending]") -> None:
         """Serve some of the requests, and finish at least one of them.
 
-        They come in the order in which they wait, and the first must be among those served.
+        The one that has waited longest comes first, and must be among those served.
         """
 
 
 class Pending:
-    """A request to a work, until its result or its error is there.
+    """A request to a work, which becomes finished with a result or an error.
 
-    `state` belongs to the work, for a request that is served in part; `seconds` is the time that
-    this request has taken, its share where it was served together with others.
+    `state` belongs to the work, for a request that is served in part. `seconds` is the time that
+    this request has taken; if it was served together with others, its share of their time.
     """
 
     __slots__ = ("error", "finished", "request", "result", "seconds", "state", "work")
@@ -56,7 +56,7 @@ Course: TypeAlias = Generator[Pending, None, T]
 
 
 def meet(work: Work, request: Any) -> Course[Any]:
-    """Return the work's result for the request, served with those of others; raise its error."""
+    """Return the work's result for the request, or raise its error; other requests may join it."""
     pending = Pending(work, request)
     yield pending
     if pending.error is not None:
@@ -77,8 +77,8 @@ def run_alone(course: Course[T]) -> T:
             result: T = stop.value
             return result
         except BaseException as exception:
-            # The error of a work is raised in the course at its `yield`, where it may be caught.
-            # An error of the course itself has ended it, and goes to the caller.
+            # An error of the course itself has ended it, and goes to the caller. If the course is
+            # suspended, `advance` raised the error: it is thrown into the course at its `yield`.
             if not _is_suspended(course):
                 raise
             error = exception
@@ -90,7 +90,7 @@ def _is_suspended(course: Course[Any]) -> bool:
 
 
 class _ThreadState(threading.local):
-    """The seconds for which others ran since the course of this thread began."""
+    """The seconds for which other courses have run since the course of this thread began."""
 
     seconds_away = 0.0
 
@@ -99,7 +99,7 @@ _THREAD_STATE = _ThreadState()
 
 
 def clock() -> float:
-    """Return the seconds for which this course has run, with the work done for it."""
+    """Return a time in seconds that advances only while this course, or work for it, runs."""
     return time.perf_counter() - _THREAD_STATE.seconds_away
 
 
@@ -123,14 +123,13 @@ def run_together(
 ) -> Iterator[tuple[int, CourseOutcome[T]]]:
     """Run the courses, and yield the number and the outcome of each as it ends.
 
-    At most `max_active` are under way at a time; the next is taken from the iterator as there is
-    room. Where the caller leaves before the end, the courses under way are ended where they wait:
-    a KeyboardInterrupt is raised in them as well.
+    At most `max_active` courses are under way at a time; when one ends, the next is taken from the
+    iterator. If the caller leaves before the end, GeneratorExit is raised in each course that
+    waits, or KeyboardInterrupt if that is why the caller leaves.
     """
     numbered = enumerate(courses)
     waiting: list[_Member[T]] = []
-    # Courses are ended as `close` ends a generator, or by the KeyboardInterrupt of the caller, so
-    # that each can keep its state.
+    # The exception that ends waiting courses, in which each can save its state.
     reason: BaseException = GeneratorExit()
     try:
         while True:
@@ -147,7 +146,7 @@ def run_together(
             for member in [member for member in waiting if member.is_ready]:
                 member.resume()
                 remaining = [m for m in waiting if m is not member]
-                # In one assignment: an interruption may come at any time, and is everybody's.
+                # One assignment, as an interruption may come at any time, and `finally` ends them.
                 waiting = remaining if member.outcome else [*remaining, member]
                 if member.outcome is not None:
                     yield member.number, member.outcome
@@ -160,7 +159,7 @@ def run_together(
 
 
 def _advance(waiting: "Sequence[_Member[Any]]") -> None:
-    """Do the work that has been waited for longest, for all who wait for it.
+    """Let the work of the longest-waiting course serve all requests to it.
 
     So no course waits for ever, and one that is behind the others catches up.
     """
@@ -176,7 +175,8 @@ class _Member(Generic[T]):
         self.number, self.course = number, course
         self.outcome: CourseOutcome[T] | None = None
         self.pending: Pending | None = None
-        self.seconds_away = self.since = 0.0  # seconds for which others ran; when it began to wait
+        # The seconds for which other courses ran; the time at which this one began to wait.
+        self.seconds_away = self.wait_start = 0.0
 
     @property
     def is_ready(self) -> bool:
@@ -184,12 +184,12 @@ class _Member(Generic[T]):
         return self.pending is not None and self.pending.finished
 
     def resume(self) -> None:
-        """Run the course until its next request or its end; a KeyboardInterrupt is raised."""
-        # The course was away since it began to wait, but for the seconds of its own request.
+        """Run the course until its next request or its end; an Exception becomes its outcome."""
+        # The course was away for the time that it has waited, less the seconds of its own request.
         if self.pending is not None:
-            self.seconds_away += time.perf_counter() - self.since - self.pending.seconds
-        # A course may itself run others: the time of the outer one is put back afterwards.
-        outer, _THREAD_STATE.seconds_away = _THREAD_STATE.seconds_away, self.seconds_away
+            self.seconds_away += time.perf_counter() - self.wait_start - self.pending.seconds
+        # A course may itself run others: the time of the outer one is restored below.
+        outer_seconds, _THREAD_STATE.seconds_away = _THREAD_STATE.seconds_away, self.seconds_away
         try:
             self.pending = next(self.course)
         except StopIteration as stop:
@@ -197,11 +197,11 @@ class _Member(Generic[T]):
         except Exception as error:
             self.outcome = CourseOutcome(None, error)
         finally:
-            _THREAD_STATE.seconds_away = outer
-            self.since = time.perf_counter()
+            _THREAD_STATE.seconds_away = outer_seconds
+            self.wait_start = time.perf_counter()
 
     def end(self, reason: BaseException) -> None:
-        """End the course where it waits, if it does."""
+        """Raise `reason` in the course at its `yield`, if it waits; drop what it raises in turn."""
         if _is_suspended(self.course):
             with suppress(BaseException):
                 self.course.throw(reason)

@@ -1,8 +1,8 @@
 """Results for notebooks: HTML tables and LaTeX, and numbers for the tables of other libraries.
 
 The HTML is plain and readable on any background: it has no style sheet, colour or script, and
-everything is escaped. LaTeX is made of formulas and numbers only. The classes that are shown say
-what they show. pandas and xarray are imported where a table of theirs is asked for.
+all text in it is escaped. LaTeX is made for formulas and numbers only. Each class decides which of
+its values are shown. pandas and xarray are imported when a table of theirs is requested.
 """
 
 from collections.abc import Iterable, Sequence
@@ -13,15 +13,16 @@ from typing import Any
 
 from verify.errors import InputError
 
-_LONGEST = 1200  # characters of a formula that is shown
-_CELL = "text-align: left; font-variant-numeric: tabular-nums"
+_MAX_CHARACTERS = 1200  # the limit for a formula that is shown
+_CELL_STYLE = "text-align: left; font-variant-numeric: tabular-nums"
 
 
 def cut(formula: str) -> str:
-    """Return the formula, or its beginning where it is long."""
-    if len(formula) <= _LONGEST:
+    """Return the formula, or its beginning if it is long."""
+    if len(formula) <= _MAX_CHARACTERS:
         return formula
-    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} …"
+    # The last term may be cut: it goes, with the sign before it.
+    return f"{formula[:_MAX_CHARACTERS].rsplit(' ', 2)[0]} …"
 
 
 def html_table(
@@ -29,7 +30,7 @@ def html_table(
 ) -> str:
     """Return a table of texts, whose first column names the rows.
 
-    All is aligned at the left, as words read, and digits have one width.
+    All cells are aligned at the left, and all digits have the same width.
     """
     parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if heads:
@@ -38,8 +39,8 @@ def html_table(
     parts.append("<tbody>")
     # `scope` lets a screen reader name the row and the column of a cell.
     for name, *values in rows:
-        cells = "".join(f'<td style="{_CELL}">{escape(value)}</td>' for value in values)
-        parts.append(f'<tr><th scope="row" style="{_CELL}">{escape(name)}</th>{cells}</tr>')
+        cells = "".join(f'<td style="{_CELL_STYLE}">{escape(value)}</td>' for value in values)
+        parts.append(f'<tr><th scope="row" style="{_CELL_STYLE}">{escape(name)}</th>{cells}</tr>')
     parts.append("</tbody></table>")
     if foot:
         parts.append(f"<p>{escape(foot)}</p>")
@@ -47,8 +48,8 @@ def html_table(
 
 
 def short_latex(formula: str) -> str:
-    """Return the LaTeX, or a remark where it is too long: LaTeX cannot be cut."""
-    return formula if len(formula) <= _LONGEST else r"\text{(too long to be shown)}"
+    """Return the LaTeX, or a remark if it is too long: LaTeX cannot be cut."""
+    return formula if len(formula) <= _MAX_CHARACTERS else r"\text{(too long to be shown)}"
 
 
 def aligned_latex(lines: Iterable[str]) -> str:
@@ -71,7 +72,7 @@ def number_latex(text: str) -> str:
 
 
 def import_library(name: str, feature: str) -> Any:
-    """Import the library of that name; InputError, one line, where it is not installed."""
+    """Import the library of that name; InputError, one line, if it is not installed."""
     try:
         return import_module(name)
     except ImportError:

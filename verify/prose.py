@@ -1,19 +1,20 @@
-"""Prose of results: text, formulas and numbers in turn, which each medium shows in its way.
+"""Prose of results: parts of text, formulas and numbers, which each medium shows in its own way.
 
     prose("ΔJ = ", Formula("-3*h**3*delta*p*q"), " + O(", Formula("h^4"), ")")
-    read_prose("The coefficient of `h^m` in det J vanishes")   # what people write: formulas quoted
+    read_prose("The coefficient of `h^m` in det J vanishes")   # as people write it: formulas quoted
     read_prose("so that ``|Λ| ≤ e^(Nε) − 1``.")                # on a line of its own, quoted twice
 
-A Prose is its own plain text, so whatever takes a string takes it; a page sets its `parts`.
+A Prose is a string, its own plain text, so whatever takes a string takes it; a page typesets its
+`parts`.
 """
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Self
 
-_QUOTE = "`"
-_DISPLAY = re.compile("``([^`]+)``")
-_NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
+_BACKTICK = "`"
+_DISPLAY_PATTERN = re.compile("``([^`]+)``")
+_NUMBER_PATTERN = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
 
 
 class Formula(str):
@@ -39,8 +40,9 @@ PartData = str | dict[str, str]
 
 
 class Prose(str):
-    """Plain text that knows its parts: `str`, `Formula`, `Display` and `Number`; no two texts side
-    by side.
+    """Plain text that knows its parts: `str`, `Formula`, `Display` and `Number`.
+
+    No two parts of plain text stand side by side.
 
     >>> found = Prose("at q = ", Number("0.5"), Prose(" it is ", Formula("h**2")))
     >>> str(found), found.parts
@@ -65,7 +67,7 @@ class Prose(str):
         return instance
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # As a subclass of str it would be pickled without its parts.
+        # By the way of str it would be pickled without its parts.
         return type(self), self.parts
 
     def __add__(self, other: str) -> "Prose":
@@ -80,7 +82,7 @@ class Prose(str):
         return Prose(*between[1:])
 
     def partition(self, sep: str) -> "tuple[Prose, str, Prose]":
-        """Split at the first `sep` within a text, as a str does; each side keeps its parts.
+        """Split at the first `sep` that stands in a part of plain text; each side keeps its parts.
 
         >>> prose("ΔJ = ", Formula("a; b"), "; and so on").partition("; ")[0].parts
         ('ΔJ = ', 'a; b')
@@ -96,7 +98,7 @@ class Prose(str):
         return self, "", Prose()
 
     def as_data(self) -> list[PartData]:
-        """Return the parts for JSON: text as a string, the others under the name of their kind."""
+        """Return the parts for JSON: plain text as a string, others as {kind: text}."""
         names = {kind: name for name, kind in _KINDS.items()}
         return [{names[type(p)]: str(p)} if type(p) in names else str(p) for p in self.parts]
 
@@ -116,8 +118,8 @@ def prose(*parts: str) -> Prose:
 
 
 def number(text: str) -> str:
-    """Return a Number if the text is one; else the text, such as `unknown`."""
-    return Number(text) if _NUMBER.fullmatch(text) else text
+    """Return the text as a Number if it is one; other texts, such as `unknown`, as they are."""
+    return Number(text) if _NUMBER_PATTERN.fullmatch(text) else text
 
 
 def count(n: int, thing: str) -> str:
@@ -142,25 +144,25 @@ def read_prose(text: str) -> Prose:
     >>> read_prose("at q = `-0.5`").as_data()  # a quoted decimal is a Number
     ['at q = ', {'number': '-0.5'}]
 
-    A formula between double backticks is on a line of its own. A backtick without its partner is
-    text; a Prose is returned as it is.
+    A formula between double backticks is on a line of its own. If the number of backticks is odd,
+    the last one is text. A Prose is returned as it is.
     """
     if isinstance(text, Prose):
         return text
-    pieces = _DISPLAY.split(text)
+    pieces = _DISPLAY_PATTERN.split(text)
     return Prose(*(Display(p) if i % 2 else Prose(*_parse_inline(p)) for i, p in enumerate(pieces)))
 
 
 def _parse_inline(text: str) -> Iterator[str]:
-    pieces = text.split(_QUOTE)
+    pieces = text.split(_BACKTICK)
     if len(pieces) % 2 == 0:
         # An odd number of backticks: the last one has no partner, and is text.
-        pieces[-2:] = [_QUOTE.join(pieces[-2:])]
+        pieces[-2:] = [_BACKTICK.join(pieces[-2:])]
     yield from (_parse_quoted(p) if i % 2 else p for i, p in enumerate(pieces))
 
 
 def _parse_quoted(text: str) -> str:
-    return Number(text) if _NUMBER.fullmatch(text) else Formula(text)
+    return Number(text) if _NUMBER_PATTERN.fullmatch(text) else Formula(text)
 
 
 def _unpack_parts(parts: Iterable[str]) -> Iterable[str]:

@@ -1,4 +1,4 @@
-"""Asserts for pytest: what a step function of one's own preserves.
+"""Assertions for pytest on what a step function of one's own preserves.
 
     from verify.testing import assert_area_preserving, assert_convergence_order
 
@@ -10,8 +10,8 @@
         assert_area_preserving(step, "pendulum")
         assert_convergence_order(step, "pendulum", 1)
 
-The step is proved where its code lets symbols through, and else measured; see
-`verify.integrators.step_check`. It is called, also with p, q and h that are no floats.
+If the code of the step works with symbols, the assertion is proved, otherwise measured; see
+`verify.integrators.step_check`. The step is called, also with p, q and h that are not floats.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,6 @@ __all__ = [
     "assert_area_order", "assert_area_preserving", "assert_convergence_order", "assert_symplectic",
 ]  # fmt: skip
 
-# `__tracebackhide__` below makes pytest show the line of the test in place of ours.
 StepFunction = Callable[..., Any]
 
 
@@ -40,17 +39,18 @@ def assert_area_preserving(
 ) -> Finding:
     """Assert that det J ≡ 1 for the map (p, q) ↦ step(p, q, h), and that it is a scheme for H.
 
-    `step(p, q, h)` returns p' and q', numbers or arrays of one entry; where its arguments are named
-    q, p, h or x, v, dt it gets and returns them so. `hamiltonian`: a Hamiltonian, a formula such as
-    "p**2/2 - cos(q)", or the name of a known system. `options`: `parameters`, a mapping of names to
-    exact values; `arguments`, such as "q,p,h"; `p` and `q`, a state to look at first; `step_size`,
-    the largest that is looked at; `within`, a defect that is allowed; `time_limit`, seconds for
-    all.
+    `step(p, q, h)` returns p' and q', numbers or arrays of one entry; if its arguments are named
+    q, p, h or x, v, dt, it gets and returns the values in that order. `hamiltonian`: a Hamiltonian,
+    a formula such as "p**2/2 - cos(q)", or the name of a system. `options`: `parameters`, a mapping
+    of names to exact values; `arguments`, their order, such as "q,p,h"; `p` and `q`, the first
+    state to try; `step_size`, the largest to try; `within`, a defect that is allowed; `time_limit`,
+    the seconds for all calls.
 
     Returns the Finding with its verdict: PROVED, or MEASURED with `probe_error`. Raises
     AssertionError, whose message has the counterexample: initial value, h, det J − 1. An undecided
     claim fails too, and the message says UNDECIDED. Raises InputError for a bad argument.
     """
+    # pytest then shows the line of the test, and not this one.
     __tracebackhide__ = True
     return _assert_claims(step, hamiltonian, Claims(area_preserving=True), options)
 
@@ -61,8 +61,8 @@ def assert_symplectic(
     """Assert that JᵀΩJ ≡ Ω for the map z ↦ step(z, h), and that it is a scheme for H.
 
     In n degrees of freedom `step(p, q, h)` takes and returns arrays of n numbers, and the message
-    has the entry of S = JᵀΩJ − Ω that is not 0. In one degree it is the same as
-    `assert_area_preserving`, which says the rest.
+    has the entry of S = JᵀΩJ − Ω that is not 0. In one degree of freedom it is the same as
+    `assert_area_preserving`, whose options and errors are those of this function too.
     """
     __tracebackhide__ = True
     return _assert_claims(step, hamiltonian, Claims(symplectic=True), options)
@@ -71,7 +71,7 @@ def assert_symplectic(
 def assert_area_order(
     step: StepFunction, hamiltonian: Hamiltonian | str, order: int, **options: Any
 ) -> Finding:
-    """Assert that ΔJ = det J − 1 is O(h^order), or 0; else as `assert_area_preserving`.
+    """Assert that ΔJ = det J − 1 is O(h^order), or 0; options as `assert_area_preserving`.
 
     The scheme lie2 has ΔJ = O(h³), so that `assert_area_order(lie2, H, 3)` passes.
     """
@@ -84,7 +84,7 @@ def assert_convergence_order(
 ) -> Finding:
     """Assert that one step agrees with the exact flow up to h^order, at least.
 
-    Then the global error is O(h^order). Else as `assert_area_preserving`.
+    Then the global error is O(h^order). The options are those of `assert_area_preserving`.
     """
     __tracebackhide__ = True
     return _assert_claims(step, hamiltonian, Claims(order=_check_order(order)), options)
@@ -113,7 +113,7 @@ def _assert_claims(
         parameters=dict(system.values), time_limit=options.get("time_limit", TIME_LIMIT),
     )  # fmt: skip
     finding = check_integrator(callee, system, claims, request_of(system, **places))
-    # UNDECIDED does not hold: an assertion that nothing decides must not pass.
+    # UNDECIDED counts as a failure: an assertion that nothing decides must not pass.
     if not finding.verdict.holds:
         raise AssertionError(_format_message(finding))
     return finding

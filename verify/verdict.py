@@ -8,9 +8,9 @@ class Verdict(StrEnum):
 
     PROVED = "PROVED"  # exact algebra
     ENCLOSED = "ENCLOSED"  # a rigorous numeric enclosure
-    MEASURED = "MEASURED"  # numeric, with its error estimate
+    MEASURED = "MEASURED"  # numbers, with an estimate of their errors
     REFUTED = "REFUTED"  # a counterexample, or the proof of the contrary
-    UNDECIDED = "UNDECIDED"
+    UNDECIDED = "UNDECIDED"  # neither a proof nor a counterexample
 
     @property
     def holds(self) -> bool:

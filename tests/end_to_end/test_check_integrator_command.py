@@ -89,6 +89,54 @@ def test_what_cannot_be_called_is_bad_input_in_one_line(
         sys.modules.pop(name, None)
 
 
+EULER = {
+    "n = 1": (
+        "def step(p, q, h):\n    return p - h*q, q + h*p\n",
+        ["--system", "harmonic", "--param", "omega=1"],
+        ["--q", "1", "--p", "0"],
+        {"leading": "1"},
+        "det J ≡ 1 is claimed; ΔJ has order 2",
+    ),
+    "n = 2": (
+        "def step(p, q, h):\n"
+        "    return [p[0] - h*q[0], p[1] - h*q[1]], [q[0] + h*p[0], q[1] + h*p[1]]\n",
+        ["--hamiltonian", "(p1**2 + p2**2 + q1**2 + q2**2)/2"],
+        ["--q", "1,0", "--p", "0,1"],
+        {"degrees": 2, "leading": "dp1∧dq1 + dp2∧dq2"},
+        "that it is symplectic is claimed; S has order 2",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EULER)
+def test_explicit_euler_is_proved_to_be_of_order_1_and_not_symplectic(
+    folder: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    source, system, place, expected, refuted = EULER[name]
+    (folder / "mine.py").write_text(source)
+    typed = ["check-integrator", "mine.py:step", *system]
+    status, out, _ = here(capsys, *typed, "--json")
+    found = json_of(out)
+    assert (status, found["verdict"], found["how"]) == (0, "PROVED", "proof")
+    assert (found["symplectic"], found["order"], found["convergence_order"]) == (False, 2, 1)
+    assert {key: found[key] for key in expected} == expected
+    status, out, _ = here(capsys, *typed, "--symplectic")
+    assert (status, f"REFUTED: {refuted}" in out) == (1, True)
+    assert here(capsys, *typed, *place, "--step-size", "0.01")[0] == 0
+    for wrong in (["--q", "1,2"], ["--scale", "q=0"], ["--scale", "r=1"], ["--within", "-1"],
+                  ["--step-size", "0"], ["--q", "1,2,3", "--p", "1,2,3"]):  # fmt: skip
+        status, _, err = here(capsys, *typed, *wrong)
+        assert (status, err.count("\n")) == (2, 1)
+
+
+def test_one_number_is_no_place_of_two_degrees(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    system = EULER["n = 2"][1]
+    status, _, err = here(capsys, "check-integrator", "mine:step", *system, "--q", "1", "--p", "1")
+    assert (status, err.count("\n")) == (2, 1)
+
+
 def test_the_help_says_that_it_runs_the_users_code(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = here(capsys, "check-integrator", "--help")
     assert status == 0

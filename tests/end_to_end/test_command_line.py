@@ -188,24 +188,6 @@ def test_bad_input_is_the_same_in_a_process_of_its_own(tmp_path: Path) -> None:
 DECIMAL = re.compile(r"-?\d+(\.\d+)?(e[+-]\d+)?")
 
 
-def test_prove_prints_its_json_keys(capsys: pytest.CaptureFixture[str]) -> None:
-    status, out, err = here(capsys, *arguments("prove", PROVE), "--json")
-    found = json_of(out)
-    assert (status, err) == (0, "")
-    assert {"verdict", "order", "leading", "delta_j", "area_preserving", "telescopes", "potential",
-            "seconds"} <= set(found)  # fmt: skip
-    assert (found["verdict"], int(found["order"]), found["area_preserving"]) == ("PROVED", 3, False)
-    assert found["defect_order"] == found["order"]
-    assert found["leading"] == "3*delta*p*q"
-    assert DECIMAL.fullmatch(found["seconds"])
-
-
-def test_prove_has_no_order_where_area_is_preserved(capsys: pytest.CaptureFixture[str]) -> None:
-    _, out, _ = here(capsys, *arguments("prove", PROVE, scheme="symplectic-euler"), "--json")
-    found = json_of(out)
-    assert (found["order"], found["area_preserving"], found["delta_j"]) == (None, True, "0")
-
-
 @pytest.mark.parametrize(
     ("digits", "asked", "arithmetic", "kind"),
     [

@@ -19,7 +19,7 @@ from verify.arithmetic.arb import bounds, midpoint_and_radius, rational_ball
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide.table_series import _ANGLES, _OCTAVE
+from verify.arithmetic.wide.table_series import _STEPS_PER_OCTAVE, _STEPS_PER_TURN
 from verify.functions import in_rings
 
 WIDTHS = (128, 156, 192, 256, 320, 512)
@@ -120,7 +120,10 @@ class Near:
 def step_of(name: str) -> Fraction:
     """An arb constant as a rational, to more bits than any width here."""
     with flint.ctx.workprec(2 * WIDEST):
-        exact = {"angle": 2 * flint.arb.pi() / _ANGLES, "octave": flint.arb(2).log() / _OCTAVE}
+        exact = {
+            "angle": 2 * flint.arb.pi() / _STEPS_PER_TURN,
+            "octave": flint.arb(2).log() / _STEPS_PER_OCTAVE,
+        }
         return midpoint_and_radius(exact[name])[0] if name in exact else Fraction(1)
 
 
@@ -209,7 +212,7 @@ def defined(form: Format, kind: str, x: Fraction) -> bool | None:
 
     Its value has to be in the format, and its slope; sinh and cosh are given while e^|x| < 2^14.
     """
-    unit, octave = form.value(1), _OCTAVE * step_of("octave")
+    unit, octave = form.value(1), _STEPS_PER_OCTAVE * step_of("octave")
     match kind:
         case "exp" | "sinh" | "cosh":
             inside = 15 * octave - x if kind == "exp" else 14 * octave - abs(x)

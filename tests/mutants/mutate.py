@@ -24,8 +24,8 @@ _QUIET = {"__repr__", "__str__", "_repr_html_", "_repr_latex_"}
 _KEYWORDS = {"strict", "repr", "pipelined", "chunk"}  # of an arithmetic the last two, for speed
 _EFFORTS = {
     "_ATTEMPTS", "_BISECTIONS", "_CANCELLED", "_CHECK", "_DOUBLINGS", "_FIRST_ORDERS", "_GUARD",
-    "_HALVINGS", "_LOST", "MORE_DIGITS", "_NEWTON", "_PATIENCE", "_POINTS", "_ROUGH", "_SETTLED",
-    "_SHORTEST",
+    "_HALVINGS", "_LOST", "MORE_DIGITS", "_NEWTON", "_PATIENCE", "_POINTS", "_ROOT_GUARD_BITS",
+    "_ROUGH", "_SETTLED", "_SHORTEST",
 }  # fmt: skip
 _LARGE = 100
 _SHOWN = 60  # characters of each side of a change

@@ -1,7 +1,7 @@
 """heyoka's Taylor integrator, held at one order and one step size: it is the scheme lieη.
 
-A Taylor step of order η is p' = Σ hⁿ/n! Xⁿp, n = 0 … η (Eq. 2); and since d/dt commutes with
-∂/∂(p, q), the same step of the variational equations is the exact Jacobian of that map. heyoka
+A Taylor step of order η is z' = Σ hⁿ/n! Xⁿz, n = 0 … η (Eq. 2); and since d/dt commutes with
+∂/∂z, the same step of the variational equations is the exact Jacobian of that map. heyoka
 differentiates H and the Taylor coefficients by itself and compiles them by itself: it shares no
 code with us.
 
@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -30,10 +31,13 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 hy = pytest.importorskip("heyoka")
 
 STEP_SIZE = Fraction(1, 128)
+TIME = Fraction(3, 8)  # for an H that depends on it
+ZERO = Fraction(0)
 ROUNDINGS = 2
 MPFR_BITS = 237
-State = list[Fraction]  # p, q, ∂p/∂p₀, ∂p/∂q₀, ∂q/∂p₀, ∂q/∂q₀
-Point = tuple[Fraction, Fraction]  # p, q
+State = list[Fraction]  # z = (p1 …, q1 …), and ∂z/∂z₀ by rows
+Point = tuple[Fraction, ...]  # p1 …, q1 …
+Form = dict[tuple[int, int], Fraction]  # the entries of a 2-form, dz_a∧dz_b with a < b
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class System:
     """H for us and H for heyoka, and the highest η whose exact map we have in a few seconds."""
 
     formula: str
-    theirs: Callable[[Any, Any], Any]
+    theirs: Callable[..., Any]
     highest: int = 10
 
     @property
@@ -63,6 +67,28 @@ SYSTEMS = {
         "sqrt(1 + p**2)*exp(q/4) + cos(p*q)/2",
         lambda p, q: hy.sqrt(1 + p**2) * hy.exp(q / 4) + hy.cos(p * q) / 2,
         highest=6,
+    ),
+}
+IN_TWO_DEGREES = {
+    "cubic": System(  # as Hénon–Heiles, with no third, which heyoka rounds
+        "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/4",
+        lambda p, q, r, s: (p**2 + q**2 + r**2 + s**2) / 2 + r**2 * s - s**3 / 4,
+        highest=4,
+    ),
+    "kepler": System(
+        "(p1**2 + p2**2)/2 - 1/sqrt(q1**2 + q2**2)",
+        lambda p, q, r, s: (p**2 + q**2) / 2 - 1 / hy.sqrt(r**2 + s**2),
+        highest=4,
+    ),
+    "mixed": System(
+        "(p1*q2 + p2)**2/2 + q1*q2*exp(p1/2)",
+        lambda p, q, r, s: (p * s + q) ** 2 / 2 + r * s * hy.exp(p / 2),
+        highest=4,
+    ),
+    "driven": System(
+        "(p1**2 + p2**2)/2 + q1**2*q2 - q1*cos(t)",
+        lambda p, q, r, s: (p**2 + q**2) / 2 + r**2 * s - r * hy.cos(hy.time),
+        highest=4,
     ),
 }
 
@@ -87,11 +113,21 @@ class Precision:
         """How far a component of one step may be off."""
         return Fraction(ROUNDINGS, 2**self.bits) * max(Fraction(1), abs(x))
 
-    def determinant_bound(self, state: State) -> Fraction:
-        """How far the determinant is off where each of its entries is as far as one step may be."""
-        a, b, c, d = (abs(x) for x in state[2:])
-        e = [self.rounding(x) for x in (a, b, c, d)]
-        return d * e[0] + c * e[1] + b * e[2] + a * e[3] + e[0] * e[3] + e[1] * e[2]
+    def defect_bounds(self, state: State) -> Form:
+        """How far each entry of S is off where each entry of J is as far as one step may be."""
+        rows = jacobian(state)
+        n = len(rows) // 2
+        sizes = [[abs(x) for x in row] for row in rows]
+        errors = [[self.rounding(x) for x in row] for row in rows]
+
+        def product(i: int, a: int, j: int, b: int) -> Fraction:
+            e, f = errors[i][a], errors[j][b]
+            return sizes[i][a] * f + sizes[j][b] * e + e * f
+
+        return {
+            (a, b): sum((product(i, a, n + i, b) + product(n + i, a, i, b) for i in range(n)), ZERO)
+            for a, b in combinations(range(2 * n), 2)
+        }
 
 
 def _mpfr(x: float) -> Any:
@@ -117,25 +153,30 @@ class Oracle:
     """heyoka's Taylor integrator of one order, with the tangent map carried along."""
 
     def __init__(self, system: str, precision: Precision, eta: int) -> None:
-        p, q = hy.make_vars("p", "q")
-        h = SYSTEMS[system].theirs(p, q)
-        equations = [(p, -hy.diff(h, q)), (q, hy.diff(h, p))]
+        chosen = (SYSTEMS | IN_TWO_DEGREES)[system]
+        variables = hy.make_vars(*chosen.hamiltonian.coordinates)
+        h, n = chosen.theirs(*variables), len(variables) // 2
+        slopes = [*(-hy.diff(h, x) for x in variables[n:]), *(hy.diff(h, x) for x in variables[:n])]
+        equations = list(zip(variables, slopes, strict=True))
         self.precision, number = precision, precision.number
         self.taylor = hy.taylor_adaptive(
             hy.var_ode_sys(equations, hy.var_args.vars, order=1),
-            [number(0.5), number(0.5)],
+            [number(0.5)] * (2 * n),
             tol=number(math.exp(3 - 2 * eta)),  # 1 − ln(tol)/2 = η − 1/2
             fp_type=precision.type,
             **({"prec": precision.bits} if precision.name == "mpfr" else {}),
         )
         assert self.taylor.order == eta
-        # Which component, and how often by p₀ and by q₀: the order that `State` names.
-        indices = ["000", "100", "010", "001", "110", "101"]
-        assert ["".join(map(str, self.taylor.get_mindex(k))) for k in range(6)] == indices
+        # Which component, and how often by each of z₀: the order that `State` names.
+        unit = np.eye(2 * n, dtype=int).tolist()
+        indices = [[i, *[0] * (2 * n)] for i in range(2 * n)]
+        indices += [[i, *by] for i in range(2 * n) for by in unit]
+        assert [list(self.taylor.get_mindex(k)) for k in range(len(indices))] == indices
 
     def start(self, at: Point) -> None:
-        """The point, with the identity as its tangent map."""
-        for k, x in enumerate((*at, 1, 0, 0, 1)):
+        """The point at TIME, with the identity as its tangent map."""
+        self.taylor.time = self.precision.number(float(TIME))
+        for k, x in enumerate((*at, *np.eye(len(at)).flat)):
             assert Fraction(float(x)) == x
             self.taylor.state[k] = self.precision.number(float(x))
 
@@ -151,6 +192,20 @@ class Oracle:
 oracle = cache(Oracle)
 
 
-def determinant(state: State) -> Fraction:
-    _, _, a, b, c, d = state
-    return a * d - b * c
+def jacobian(state: State) -> list[list[Fraction]]:
+    """Its rows, those of the momenta first."""
+    size = math.isqrt(len(state))  # (2n)² + 2n numbers
+    return [state[size * (1 + i) : size * (2 + i)] for i in range(size)]
+
+
+def defect(state: State) -> Form:
+    """S = JᵀΩJ − Ω above its diagonal; in the plane det J − 1."""
+    rows = jacobian(state)
+    n = len(rows) // 2
+    return {
+        (a, b): sum(
+            (rows[i][a] * rows[n + i][b] - rows[n + i][a] * rows[i][b] for i in range(n)), ZERO
+        )
+        - (b == a + n)
+        for a, b in combinations(range(2 * n), 2)
+    }

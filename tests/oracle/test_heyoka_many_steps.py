@@ -27,7 +27,7 @@ from tests.oracle.by_heyoka import (
     SYSTEMS,
     Precision,
     State,
-    determinant,
+    defect,
     oracle,
 )
 from verify import arithmetic
@@ -64,9 +64,10 @@ def theirs(name: str, precision: Precision, eta: int) -> Theirs:
     chosen.start(START)
     states: list[State] = [[*START, *map(Fraction, (1, 0, 0, 1))]]
     states += [chosen.step() for _ in range(STEPS)]
-    areas = [determinant(state) for state in states]
+    areas = [1 + defect(state)[0, 1] for state in states]
     defects = [after / before - 1 for before, after in pairwise(areas)]
-    off = [SLACK * precision.determinant_bound(x) / areas[k] for k, x in enumerate(states[1:])]
+    bounds = [precision.defect_bounds(state)[0, 1] for state in states[1:]]
+    off = [SLACK * bound / area for bound, area in zip(bounds, areas, strict=False)]
     orbit = _orbit_bound(precision, states)
     return Theirs(
         values={

@@ -11,7 +11,7 @@ from itertools import pairwise
 import pytest
 
 from tests.helpers.constructed.reference import made
-from tests.oracle.by_heyoka import PRECISIONS, SYSTEMS, State, determinant, oracle
+from tests.oracle.by_heyoka import PRECISIONS, SYSTEMS, State, defect, oracle
 from verify.reference.make.models import Data
 
 SLACK = 400  # roundings of so many steps, each of which may grow on the way
@@ -47,7 +47,7 @@ def theirs(name: str, eta: int) -> dict[int, Theirs]:
     chosen.start(AT)
     states: list[State] = [[*AT, *map(Fraction, (1, 0, 0, 1))]]
     states += [chosen.step() for _ in range(STEPS[-1] + 1)]
-    areas = [determinant(state) for state in states]
+    areas = [1 + defect(state)[0, 1] for state in states]
     defects = [after / before - 1 for before, after in pairwise(areas)]
     unit = Fraction(SLACK, 2**SHARPEST.bits) * max(abs(x) for state in states for x in state) ** 2
     return {

@@ -1,1 +1,1 @@
-"""Formulas, the differential ring in which zero is decided, series, jets, enclosures."""
+"""Formulas, the differential ring in which zero is decided, power series, jets, enclosures."""

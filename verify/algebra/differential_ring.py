@@ -1,6 +1,7 @@
 """A differential ring: polynomials in variables and generators, with relations and derivatives.
 
-Its purpose, and the decision whether an element is zero, are described in `verify.algebra.ring`.
+`verify.algebra.ring` describes its purpose, and decides whether an element is zero. A place is the
+position of a generator among all generators of the ring; variables are generators too.
 """
 
 from __future__ import annotations
@@ -10,20 +11,21 @@ from collections.abc import Sequence
 from verify.algebra.identities.polynomials import Generator, Poly, Polynomials, places_in, split
 from verify.lazy_sympy import sympy
 
-_SPARE = 6  # generators that later calls to `inverse` may still add
+_SPARE_GENERATORS = 6  # generators that later calls to `inverse` may still add
 
 
 class RingFullError(Exception):
-    """More generators are needed than the ring was made for."""
+    """More generators are needed than the ring has room for."""
 
 
 class DifferentialRing(Polynomials):
     """Polynomials in the given variables, with room for `room` generators.
 
-    `verify.algebra.ring.Ring` extends it by the decision of zero, by division and by text.
+    `verify.algebra.ring.Ring` extends it by the decision whether an element is zero, by division
+    and by text.
     """
 
-    def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
+    def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE_GENERATORS) -> None:
         super().__init__(variables, room + spare)
         self.variables, self.room = tuple(variables), room + spare
         self.generators: list[Generator] = [
@@ -32,7 +34,7 @@ class DifferentialRing(Polynomials):
         self._by_index = {g.index: g for g in self.generators}
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._inside: dict[int, list[int]] = {}
-        self.expressions: dict[int, sympy.Expr] = {}  # of generators
+        self.expressions: dict[int, sympy.Expr] = {}  # a cache: index of a generator → expression
 
     # -- elements -----------------------------------------------------------------------------
 
@@ -44,10 +46,11 @@ class DifferentialRing(Polynomials):
         return self.reduce(total)
 
     def _functions_in(self, x: Poly) -> list[int]:
-        """Return the generators in x that are no variables, without those in their arguments."""
+        """Return the indices of the generators in x that are no variables; those in arguments do
+        not count."""
         if len(self.generators) == len(self.variables):
             return []
-        # Variables have the places from `room` on, generators those before.
+        # Variables have the places from `room` on, other generators those before.
         return [index for index, power in enumerate(x.degrees()[: self.room]) if power > 0]
 
     def in_variables(self, x: Poly) -> bool:
@@ -59,7 +62,7 @@ class DifferentialRing(Polynomials):
         return self.gradient(index).get(name, self.zero)
 
     def terms_of_diff(self, x: Poly, name: str) -> int:
-        """Bound the number of terms of ∂x/∂name without computing it."""
+        """Return a bound on the number of terms of ∂x/∂name, without computing it."""
         total = len(x)
         for index in self._functions_in(x):
             total += len(x.derivative(index)) * len(self._partial(index, name))
@@ -77,7 +80,7 @@ class DifferentialRing(Polynomials):
         return [g for g in self.generators if g.index in visited]
 
     def _inside_of(self, index: int) -> list[int]:
-        """Return the generators in a generator's argument."""
+        """Return the indices of the generators in a generator's argument."""
         if index not in self._inside:
             argument = self._by_index[index].argument
             self._inside[index] = [] if argument is None else places_in(argument)
@@ -96,9 +99,9 @@ class DifferentialRing(Polynomials):
         return False
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
-        """Split x by the powers of one variable: {power: coefficient}, the coefficients non-zero.
+        """Return the coefficients of x by the powers of one variable: {power: coefficient ≠ 0}.
 
-        The caller ensures that no generator in x depends on that variable.
+        No generator in x may depend on that variable.
         """
         return split(x, self.places[name])
 
@@ -122,7 +125,7 @@ class DifferentialRing(Polynomials):
         return None
 
     def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
-        """Set the gradient by d generator = outer · d inner."""
+        """Set the gradient of the generator by the chain rule d generator = outer · d inner."""
         partials = ((name, self.diff(inner, name)) for name in self.variables)
         gradient = {
             name: self.multiply(outer, part) for name, part in partials if not part.is_zero()
@@ -130,9 +133,9 @@ class DifferentialRing(Polynomials):
         self.set_partials(generator, gradient)
 
     def set_partials(self, generator: Poly, gradient: dict[str, Poly]) -> None:
-        """Set the partial derivatives of the generator that are not 0, by the variables' names."""
+        """Set the generator's partial derivatives that are not 0, by variable."""
         self._gradients[self.gens.index(generator)] = gradient
 
     def gradient(self, index: int) -> dict[str, Poly]:
-        """Return the partial derivatives of a generator that are set, by the variables' names."""
+        """Return the generator's partial derivatives that are not 0, by variable."""
         return self._gradients.get(index, {})

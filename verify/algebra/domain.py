@@ -1,4 +1,4 @@
-"""The domain of a formula: few and simple conditions on p, q, h and the parameters."""
+"""The domain of a formula, as few and simple conditions on p, q, h and the parameters."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from verify.prose import Formula, Prose, join_prose, prose
 
 _SIGNS = {"!=": "≠", ">=": "≥", ">": ">", "<=": "≤", "<": "<"}
 _REVERSED = {"!=": "!=", ">=": "<=", ">": "<"}
-_PRECISION = 128
+_PRECISION = 128  # bits
 
 
 @dataclass(frozen=True)
 class FormulaDomain:
-    """All points at which every requirement holds, and every condition in words is true.
+    """The set of all points at which every requirement and every condition in words holds.
 
-    `words`: conditions that are no inequalities, such as that the equations of an implicit scheme
-    have a solution.
+    `words`: conditions that are no inequalities, as that an implicit scheme's equations have a
+    solution.
     """
 
     requirements: tuple[Requirement, ...] = ()
@@ -37,7 +37,7 @@ class FormulaDomain:
 
     @classmethod
     def from_requirements(cls, requirements: Iterable[Requirement], *words: str) -> FormulaDomain:
-        """Simplify the requirements to a domain; those that always hold are dropped."""
+        """Return the domain of simplified requirements; those that always hold are dropped."""
         simple = {r for requirement in requirements for r in _simplify_or_keep(requirement)}
         return cls(tuple(_merge(simple)), tuple(dict.fromkeys(words)))
 
@@ -78,7 +78,7 @@ class FormulaDomain:
         return embed([r.expression for r in self.requirements], sorted(self.names))
 
     def substitute(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> FormulaDomain:
-        """Substitute values in the domain; InputError if a requirement then fails."""
+        """Substitute values in the domain. Raises InputError if a requirement then fails."""
         if not values or not self.requirements:
             return self
         with limit_effort("domain", ", ".join(self.texts), "to put a value in"):
@@ -92,10 +92,8 @@ class FormulaDomain:
         return FormulaDomain.from_requirements(results, *self.words)
 
     def contains(self, point: Mapping[str, Fraction]) -> bool | None:
-        """Return True if all requirements hold at the point; None if that is not decided.
-
-        The point gives a value to each of `names`.
-        """
+        """Return True if all requirements hold at the point, False if one fails, None if neither is
+        decided. The point has a value for each of `names`."""
         if not self.requirements:
             return True
         ring, elements = self._elements
@@ -111,9 +109,9 @@ class FormulaDomain:
         return [_sign(enclose(ring, x, point, _PRECISION)) for x in elements]
 
     def left_since(self, before: Sequence[int | None], point: Mapping[str, Fraction]) -> list[str]:
-        """Return the conditions that fail on the way from a point with the signs `before`.
+        """Return the conditions that fail between a point with the signs `before` and this point.
 
-        They fail at the new point, or an expression that must not be 0 has the other sign there.
+        A condition fails at this point; or an expression that must not be 0 has changed its sign.
         """
         return [
             str(_format_requirement(r))
@@ -124,33 +122,33 @@ class FormulaDomain:
         ]
 
     def decide(self, ring: Ring, x: Poly) -> Decision:
-        """Decide whether x is zero in this domain, with a witness in it.
+        """Decide whether x is zero in this domain; a witness lies in the domain.
 
-        A point outside refutes no statement about the domain. Where no point of it is found,
-        nothing is decided.
+        If no point of the domain is found, nothing is decided.
         """
         decision = ring.decide(x)
         if decision.zero is None or not self.requirements:
             return decision
         names = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
         points = self._points(list(dict.fromkeys((*names, *sorted(self.names)))))
-        # An identity on an empty domain would be vacuous, so a point of the domain is required.
+        # On an empty domain every identity would hold: so a point of the domain is required.
         if decision.zero:
             return Decision(None) if next(points, None) is None else decision
         return witness(partial(enclose, ring, x), points, _PRECISION) or Decision(None)
 
     def _points(self, names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
-        """Yield points of the domain: small ones, and ones near the boundaries of conditions."""
-        ends = {
+        """Yield points of the domain: first near 0, then near the zeros of conditions that are
+        linear in one variable."""
+        boundaries = {
             symbol.name: Fraction(int(root.p), int(root.q))
             for r in self.requirements
             for symbol in r.expression.free_symbols
             if r.expression.free_symbols == {symbol}
             for root in _root_of_linear(r.expression, symbol)
         }
-        for about in ({}, ends) if ends else ({},):
+        for centre in ({}, boundaries) if boundaries else ({},):
             for point in points(names):
-                moved_point = {name: x + about.get(name, 0) for name, x in point.items()}
+                moved_point = {name: x + centre.get(name, 0) for name, x in point.items()}
                 if moved_point.get("h", 1) > 0 and self.contains(moved_point):
                     yield moved_point
 
@@ -159,7 +157,8 @@ EVERYWHERE = FormulaDomain()
 
 
 def holds(value: Ball | None, relation: Relation) -> bool | None:
-    """Return True if all numbers of a ball are ≠ 0, ≥ 0 or > 0; None if not decided."""
+    """Return True if the relation to 0 holds for all numbers of a ball, False if it holds for none;
+    None if neither is certain."""
     if value is None or not value.is_finite():
         return None
     if relation == "!=":
@@ -182,12 +181,13 @@ def _holds_of_number(r: Requirement) -> bool | None:
 
 @lru_cache(maxsize=512)
 def _simplify_or_keep(requirement: Requirement) -> Iterable[Requirement]:
-    """Simplify a requirement; return it as it is where sympy takes too long."""
+    """Return the simplified requirements; the requirement itself if sympy takes too long."""
     return answer_unless_long(lambda: list(_simplify(*requirement)), [Requirement(*requirement)])
 
 
 def _simplify(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
-    """Replace a condition by conditions on simpler expressions; none where it always holds."""
+    """Return conditions on simpler expressions that are equivalent; none if u is a number, or the
+    condition always holds."""
     if u.is_number:
         return ()
     return _simplify_unequal(u) if relation == "!=" else _simplify_signed(u, relation)
@@ -196,7 +196,7 @@ def _simplify(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
 def _simplify_unequal(u: sympy.Expr) -> Iterable[Requirement]:
     for factor in sympy.Mul.make_args(u):
         base = factor.base if factor.is_Pow and factor.exp.is_Rational else factor
-        # A product is ≠ 0 where each factor is, and a rational power where its base is.
+        # A product is ≠ 0 if each factor is, and a rational power if its base is.
         if base.is_Mul:
             yield from _simplify_unequal(base)
         elif not base.is_number and not _always(base, "!="):
@@ -207,7 +207,8 @@ def _simplify_unequal(u: sympy.Expr) -> Iterable[Requirement]:
 
 
 def _simplify_signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
-    """Simplify the condition that a product of defined factors is ≥ 0 or > 0; a root is ≥ 0."""
+    """Simplify the condition that a product is ≥ 0 or > 0, where its factors are defined. A root is
+    ≥ 0 there."""
     # Positive factors do not change the sign of a product.
     positive = [f for f in sympy.Mul.make_args(u) if f.is_positive]
     product = sympy.Mul(*(f for f in sympy.Mul.make_args(u) if f not in positive))
@@ -240,7 +241,7 @@ def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]
 
 
 def _merge(requirements: Iterable[Requirement]) -> Iterable[Requirement]:
-    """Merge the requirements on one expression to the strictest; order them by their texts."""
+    """Merge the requirements on one expression to the strictest one; order all by their texts."""
     ordered = sorted(requirements, key=lambda r: (to_text(_without_sign(r)), to_text(r.expression)))
     for _, same in groupby(ordered, key=_without_sign):
         group = list(same)
@@ -258,7 +259,7 @@ def _without_sign(r: Requirement) -> sympy.Expr:
 
 
 def _sides(r: Requirement) -> tuple[str, str, str]:
-    """Return left side, relation and right side: q <= 0 in place of −q ≥ 0."""
+    """Return (left side, relation, right side) of the requirement; q <= 0 for −q >= 0."""
     if r.expression.could_extract_minus_sign() and not r.expression.is_Add:
         return to_text(-r.expression), _REVERSED[r.relation], "0"
     return to_text(r.expression), r.relation, "0"

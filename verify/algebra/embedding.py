@@ -1,7 +1,7 @@
 """The embedding of expressions as elements of one ring, with the generators that they need.
 
-`embed(expressions, variables)` builds the ring for all of them at once, since the arguments of all
-sines (and of all exponentials) decide together over which basis they are expanded.
+`embed(expressions, variables)` builds one ring for all expressions: the arguments of all sines (and
+those of all exponentials) together determine the basis over which the functions are expanded.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ from verify.functions.function import CIRCLE, HYPERBOLA, Pair
 from verify.lazy_sympy import sympy
 
 MAX_TERMS = 20000
-_MOST_BITS = 12  # of a number under a root, before it is scaled
-_EXP = "exp"  # a generator of its own where no hyperbolic function of its argument occurs
+_MAX_UNSCALED_BITS = 12  # a number under a root that is 2^±12 or beyond is scaled
+_EXP = "exp"  # is a generator if no hyperbolic function of the same argument occurs
 
 
 def embed(
     expressions: Sequence[sympy.Expr], variables: Sequence[str], most_terms: int = MAX_TERMS
 ) -> tuple[Ring, list[Poly]]:
-    """Build the ring of the expressions over the variables, and each expression as its element.
+    """Return the ring of the expressions over the variables, and its element for each expression.
 
-    Raises InputError if an expression divides by zero, or grows beyond `most_terms` terms.
+    Raises InputError if an expression divides by zero, or expands to more than `most_terms` terms.
     """
     nodes = subexpressions([x for x in expressions if monomials_of(x) is None])
     levels = levels_of(nodes)
@@ -60,13 +60,10 @@ def embed(
 
 
 def _scale(u: Poly, degree: int) -> flint.fmpq:
-    """Return 2^k with u/2^(k·degree) close to 1, for a number u too large or small for fixed point.
-
-    Return 1 for other u.
-    """
+    """Return 2^k with u/2^(k·degree) close to 1 if u is a number unfit for fixed point; else 1."""
     number = u.leading_coefficient() if u.is_constant() else flint.fmpq(0)
     bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
-    return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
+    return flint.fmpq(2) ** (bits // degree if abs(bits) > _MAX_UNSCALED_BITS else 0)
 
 
 class _Builder:
@@ -81,7 +78,7 @@ class _Builder:
     # -- functions ----------------------------------------------------------------------------
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
-        """Add generators for one level of functions, whose arguments are elements already."""
+        """Add generators for one level of nested functions, whose arguments are elements."""
         self.family([f for f in level if is_trigonometric(f)], self.circle, lattice_and_turns)
         exponentials = [f for f in level if applied_function(f).pair is HYPERBOLA]
         self.family(exponentials, self.exponential, lattice)
@@ -95,7 +92,8 @@ class _Builder:
         make: Callable[[Poly, list[sympy.Expr]], Callable[[int], tuple[Poly, Poly]]],
         find: Callable[[Ring, Sequence[Poly]], tuple[list[Poly], list[list[int]]]],
     ) -> None:
-        """Express functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and addition theorems."""
+        """Express functions f(Σ kᵢ bᵢ) by addition theorems: `find` returns the basis bᵢ and the
+        multiples kᵢ of each argument, `make` the function k ↦ (even, odd) at k b."""
         if not functions:
             return
         ring = self.ring
@@ -130,8 +128,8 @@ class _Builder:
     ) -> Callable[[int], tuple[Poly, Poly]]:
         """Return k ↦ (even, odd) with even + odd = exp kb.
 
-        The generators are cosh b and sinh b where hyperbolic functions occur; else exp b, with its
-        inverse where needed, and odd is 0.
+        If hyperbolic functions of b occur, the generators are cosh b and sinh b; else exp b, with
+        its inverse if it is needed, and odd is 0.
         """
         ring = self.ring
         # cosh and sinh need a relation, exp does not: exp alone is the simpler generator.
@@ -171,7 +169,7 @@ class _Builder:
         return reduce(c * d + sign * s * t), reduce(s * d + c * t)
 
     def other(self, function: sympy.Expr) -> None:
-        """Add a function without a partner, whose derivative is a function of its argument."""
+        """Add a function that belongs to no pair; its derivative is algebraic in its argument."""
         ring, u, rule = self.ring, self.element(function.args[0]), applied_function(function)
         same = ring.find(rule.name, u)
         if same is not None:
@@ -190,7 +188,7 @@ class _Builder:
     # -- everything else ----------------------------------------------------------------------
 
     def element(self, node: sympy.Expr) -> Poly:
-        """Return the element of the expression; InputError if it is undefined or too large."""
+        """Return the element of the expression. Raises InputError if that is undefined or large."""
         if node in self.cache:
             return self.cache[node]
         self.cache[node] = self.check_length(self.build(node), node)
@@ -244,7 +242,7 @@ class _Builder:
         root = self.root(base / scale**finest, finest, node) * scale
         n *= finest // degree
         if n < 0:
-            # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.
+            # 1/R = R^(finest−1)/u needs no new inverse: that of u is in the derivative of R.
             inverse = self.ring.multiply(root ** (finest - 1), self.inverse(base, node))
             return self.power_of_element(inverse, -n, node)
         return self.power_of_element(root, n, node)
@@ -265,8 +263,9 @@ class _Builder:
         return root
 
     def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
-        """Return the root of u = c·v^common, |v| being ±v everywhere: c^(1/n)·|v|^(common/n)."""
-        from verify.algebra.positivity import size_of_base  # which few formulas need
+        """Return the root c^(1/n)·|v|^(common/n) of u = c·v^common, n = `degree`; |v| must be ±v
+        everywhere."""
+        from verify.algebra.positivity import size_of_base  # few formulas need it
 
         size = size_of_base(self.ring, u, common)
         if size is None:
@@ -276,7 +275,7 @@ class _Builder:
         root = v if index == 1 else self.root(v, index, node)
         rational = rational_root(c, degree)
         number = self.ring.context.constant(c if rational is None else rational)
-        # The number's own root is one more generator, unless it is rational.
+        # The root of the number c is one more generator, unless it is rational.
         number = self.root(number, degree, node) if rational is None else number
         return self.check_length(self.ring.multiply(root, number), node)
 

@@ -22,7 +22,7 @@ def enclose(
 ) -> Ball | None:
     """Return a ball (flint.arb) that contains x at the point, or None if x is not defined.
 
-    Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
+    `precision`: in bits. A polynomial in the variables is evaluated exactly, and rounded once.
     """
     if ring.in_variables(x):
         values = [flint.fmpq()] * ring.room
@@ -38,7 +38,7 @@ def enclose(
 def enclose_defined(
     ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
 ) -> Ball:
-    """Enclose x at the point; ValueError if x may be undefined there."""
+    """Return a ball that contains x at the point. Raises ValueError if x may be undefined there."""
     ball = enclose(ring, x, point, precision)
     if ball is None:
         raise ValueError(f"an element is not defined at {dict(point)}")
@@ -48,7 +48,7 @@ def enclose_defined(
 def enclose_over(ring: DifferentialRing, x: Poly, box: Mapping[str, Ball]) -> Ball | None:
     """Return a ball that contains x at every point of a box, or None if x may be undefined.
 
-    The box is a product of balls. Computed in flint's present precision.
+    The box has a ball for each variable. The computation is at flint's present precision.
     """
     balls = enclose_all(ring, [x], box)
     return None if balls is None else balls[0]
@@ -63,20 +63,20 @@ def enclose_all(
 
 def power_of(x: Ball, n: int) -> Ball:
     """Return xⁿ of a ball, n ≥ 1, by squaring, which keeps the ball narrow."""
-    # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
-    # and is then undefined around 0.
+    # arb's ** uses the logarithm, which is undefined around 0, if it does not see that the exponent
+    # is an integer.
     half = square(power_of(x, n // 2)) if n > 1 else flint.arb(1)
     return half * x if n % 2 else half
 
 
 def _of_balls(function: Function) -> Callable[[Ball, int], Ball]:
-    """Return the function on balls, with an ignored second argument, a root's degree."""
+    """Return the function on balls; a second argument, the degree of a root, is ignored."""
     of_balls: Callable[[Ball], Ball] = function.of_balls(flint.arb)
     return lambda x, _: of_balls(x)
 
 
 def square(x: Ball) -> Ball:
-    """Return x² of a ball from its ends, which is narrower than x · x."""
+    """Return x² of a ball, from the least and the greatest |x|; it is narrower than x · x."""
     low, high = x.abs_lower(), x.abs_upper()
     return (low * low).union(high * high)
 
@@ -89,10 +89,11 @@ BALLS: dict[str, Callable[[Ball, int], Ball]] = {
 
 
 def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
-    """Yield rational points to look for a witness at: small ones first, then ever farther ones.
+    """Yield rational points at which a witness is sought: first near 0, then farther and farther.
 
-    They have no pattern that a formula could share, and both signs, since a root or a logarithm
-    may be defined on one side only, or far out. Every call yields the same points.
+    Their coordinates have both signs, since a root or a logarithm may be defined on one side only,
+    or far out; and no simple relations, which a formula might share. Every call yields the same
+    points.
     """
     for values in _halton_points(len(names)):
         yield dict(zip(names, values, strict=True))
@@ -102,7 +103,7 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
         for name in names:
             # A linear congruential generator with a fixed seed, so that witnesses are reproducible.
             state = (1103515245 * state + 12345) % 2**31
-            reach = 2 + 10 * count // _FAR_POINTS  # up to 2^reach, and down to 2^−reach
+            reach = 2 + 10 * count // _FAR_POINTS  # sizes are from 2^−reach to 2^reach
             scale = Fraction(2) ** (state // 4096 % (2 * reach) - reach + 1)
             value = Fraction(state % 4096 + 1, 4096) * scale
             point[name] = value if state >> 29 & 1 else -value
@@ -111,7 +112,7 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
 
 @lru_cache(maxsize=16)
 def _halton_points(count: int) -> list[tuple[Fraction, ...]]:
-    """Return the first points, near the origin, with this many coordinates."""
+    """Return the first points, near the origin, with `count` coordinates."""
     primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
     size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(count)]
     signs = list(product((1, -1), repeat=min(count, 4))) or [()]
@@ -123,14 +124,11 @@ def _halton_points(count: int) -> list[tuple[Fraction, ...]]:
     return values
 
 
-Terms = list[tuple[flint.fmpq, list[tuple[int, int]]]]  # coefficients, generators with their powers
+Terms = list[tuple[flint.fmpq, list[tuple[int, int]]]]  # (coefficient, [(generator, power), …])
 
 
 class Enclosures:
-    """Elements of a ring prepared once, to be enclosed over many boxes.
-
-    Equal elements are evaluated once.
-    """
+    """Elements of a ring to be enclosed over many boxes; equal ones are evaluated once."""
 
     def __init__(self, ring: DifferentialRing, elements: Sequence[Poly]) -> None:
         self.ring, self.elements = ring, elements
@@ -142,7 +140,7 @@ class Enclosures:
 
     @cached_property
     def _distinct(self) -> tuple[list[Terms], list[int]]:
-        """The terms of the distinct elements, and the number of each element among these."""
+        """The terms of the distinct elements, and for each element its number among these."""
         distinct: list[Poly] = []
         numbers = []
         for x in self.elements:
@@ -152,7 +150,7 @@ class Enclosures:
         return [_terms(x) for x in distinct], numbers
 
     def enclose_at(self, point: Mapping[str, Fraction], precision: int) -> list[Ball] | None:
-        """Enclose the elements at the point; None if one is not defined there."""
+        """Return balls that contain the elements at the point; None if one may be undefined."""
         with working_precision(precision):
             return self.enclose_over(
                 {
@@ -162,14 +160,13 @@ class Enclosures:
             )
 
     def enclose_over(self, box: Mapping[str, Ball]) -> list[Ball] | None:
-        """Enclose the elements over the box; None if one may be undefined in it.
+        """Return balls that contain the elements over the box; None if one may be undefined in it.
 
-        Computed in flint's present precision.
+        The computation is at flint's present precision.
         """
         balls_of_generators = _Point()
         for g, argument in self._generators:
-            # Generators come oldest first, so the balls of an argument are there when it is
-            # evaluated.
+            # Generators come oldest first: the generators of an argument have balls already.
             value = _value(g, argument, balls_of_generators, box)
             if not value.is_finite():
                 return None

@@ -2,7 +2,7 @@
 
 The text is never evaluated as code. Allowed are the caller's names (or any parameter name), exact
 numbers, + − * / ** (also written ^), `pi`, and the functions in `FUNCTIONS`. Decimals are exact:
-`0.1` is 1/10. Everything else is an InputError.
+`0.1` is 1/10. Everything else raises InputError.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from verify.algebra.expressions.function_nodes import (
     requirements_of_function,
     requirements_of_power,
 )
-from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_power_of_name
+from verify.algebra.expressions.monomials import MAX_NESTING, Monomials, is_power_of_name
 from verify.algebra.limits import check_expression, check_power, is_within_reach
 from verify.arithmetic.exact import rational
 from verify.effort import limit_effort
@@ -46,14 +46,14 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Div: operator.truediv,
 }
 _is_zero = operator.attrgetter("is_zero")
-_SHORT = 18  # digits of a number that is surely within the limits
+_SHORT_DIGITS = 18  # an integer with so many digits is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 
 
 @lru_cache(maxsize=256)
 def symbol(name: str) -> sympy.Symbol:
-    """Return the one symbol of that name: real, so that √(q²) is |q|, which is not smooth."""
+    """Return the symbol of that name: it is real, so √(q²) becomes |q|, which is not smooth."""
     return sympy.Symbol(name, real=True)
 
 
@@ -80,10 +80,10 @@ def parameter_name(name: str) -> str:
 
 
 def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formula") -> sympy.Expr:
-    """Parse `text` to the exact expression that it writes.
+    """Parse `text` to an exact expression.
 
-    `names`: the names that may occur; None allows p, q, t and any parameter name. `source` is the
-    name under which an error speaks of the text. Raises InputError, never anything else.
+    `names`: the names that may occur; None allows p, q, t and any parameter name. `source`: what
+    the text is called in an error message. Raises InputError, and no other exception.
     """
     return read(text, names, source=source)[0]
 
@@ -91,9 +91,9 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
 def read(
     text: str, names: Iterable[str] | None = None, *, source: str = "formula"
 ) -> tuple[sympy.Expr, list[Requirement]]:
-    """Parse `text`, and collect the requirements for it to be defined as it is written.
+    """Parse `text`; return the expression, and the requirements for the text to be defined.
 
-    They include requirements of parts that sympy's simplification removes; see
+    These include requirements of parts that sympy's simplification removes; see
     `verify.algebra.expressions.function_nodes`. The arguments are those of `parse`.
     """
     if not isinstance(text, str):
@@ -121,7 +121,7 @@ def _tree(line: str, text: str, source: str) -> ast.expr:
     try:
         if "#" not in line:  # Python would skip the rest of the line as a comment
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # Python's own remarks on the text, such as '1if'
+                warnings.simplefilter("ignore")  # Python warns of texts such as '1if'
                 return ast.parse(line, mode="eval").body
     except SyntaxError as error:
         offset = error.offset and error.offset - 1
@@ -133,14 +133,14 @@ def _tree(line: str, text: str, source: str) -> ast.expr:
 
 
 def _nodes() -> ModuleType:
-    """Import the module of messages about mistakes, only when there is one."""
+    """Return the module of messages about mistakes, which is imported only for a mistake."""
     from verify.algebra import node_mistakes
 
     return node_mistakes
 
 
 class _Reader:
-    """A reader of one syntax tree into an expression; its methods take a node and its depth."""
+    """A reader of one syntax tree into an expression; most methods take a node and its depth."""
 
     def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
@@ -154,7 +154,7 @@ class _Reader:
         return LimitError(self.source, self.text, self.with_place(problem, at))
 
     def with_place(self, problem: str, position: ast.expr | int | None) -> str:
-        """Prefix the problem with the place in the text of that node or offset of the line."""
+        """Prefix the problem with the place in the text of a node, or of an offset in the line."""
         if position is None:
             return problem
         from verify.algebra.text_mistakes import format_place, index_of
@@ -183,11 +183,11 @@ class _Reader:
         )
 
     def number(self, node: ast.Constant) -> sympy.Expr:
-        # The source text, not node.value: that is already a rounded float.
+        # The text is read, not node.value, which is a rounded float.
         digits = self.line[node.col_offset : node.end_col_offset]
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
             raise self.fail(_nodes().no_number(node.value, digits), node)
-        if digits.isdecimal() and len(digits) <= _SHORT:
+        if digits.isdecimal() and len(digits) <= _SHORT_DIGITS:
             return sympy.Integer(int(digits))
         try:
             value = rational(digits, self.source)
@@ -222,18 +222,17 @@ class _Reader:
             raise self.fail(_nodes().wrong_arguments(name, node, self.line), node)
         argument = self.read(node.args[0], depth + 1)
         self.required += requirements_of_function(name, argument)
-        # sympy sums and simplifies as it builds: infinities must not get into it.
-        # A root is a power here, so that it is subject to the same limits as u**(1/2).
+        # A root is a power here, so that it has the same limits as u**(1/2).
         if name == "sqrt":
             return self.power(argument, sympy.S.Half)
-        if name == "exp" and argument.has(sympy.log):  # a power, which has limits of its own
+        if name == "exp" and argument.has(sympy.log):  # sympy makes powers of it: they have limits
             return self.finite(self.exponential(argument))
         if not argument.free_symbols and not is_within_reach(argument):
             raise self.exceed_limit(f"{name} of a constant that is too large, or not defined")
         value = self.finite(
             self.apply(function(name), argument, description=f"{name} of that argument")
         )
-        # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
+        # sympy turns tan(q + pi/2) into −cot(q), and cot is not among the functions.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 
     def exponential(self, argument: sympy.Expr) -> sympy.Expr:
@@ -248,7 +247,8 @@ class _Reader:
         return result
 
     def operation(self, node: ast.BinOp, depth: int) -> sympy.Expr:
-        """Read a chain of + and −, or of * and /, from its left end; its length adds no depth."""
+        """Read a power, or a chain of + and − or of * and / from its left end; the length of a
+        chain does not count as depth."""
         if isinstance(node.op, ast.Pow):
             base, exponent = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
             return self.power(base, exponent, node.right)
@@ -263,11 +263,11 @@ class _Reader:
             return self.finite(self.sum(first, chain, depth))
         minus = False
         if isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
-            minus, first = True, first.operand  # −a/b reads back as −(a/b), as it is printed
+            minus, first = True, first.operand  # −a/b is read as −(a/b), which prints as −a/b
         value = self.read(first, depth + 1)
         factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
         if value.is_Rational and all(op is ast.Mult and is_power_of_name(x) for op, x in factors):
-            # sympy remembers a product of names, and makes a number times it at once.
+            # sympy caches a product of names; then a number times it is fast.
             value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
             return self.finite(-value if minus else value)
         for (op, right), step in zip(factors, reversed(chain), strict=True):
@@ -278,11 +278,11 @@ class _Reader:
         return self.finite(-value if minus else value)
 
     def sum(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> sympy.Expr:
-        """Read the terms of a chain of + and −, and sum them at once as it may be long."""
+        """Read the terms of a chain of + and −, and add them all at once, since it may be long."""
         signs = [(step.right, -1 if isinstance(step.op, ast.Sub) else 1) for step in chain]
         plain, others = Monomials(self.line, self.name), []
         for node, sign in ((first, 1), *reversed(signs)):
-            if depth + DEEPEST >= MAX_DEPTH or not plain.take(node, sign):
+            if depth + MAX_NESTING >= MAX_DEPTH or not plain.take(node, sign):
                 term = self.read(node, depth + 1)
                 others.append(term if sign > 0 else -term)
         return sympy.Add(*others, plain.sum())

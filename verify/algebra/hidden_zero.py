@@ -1,22 +1,24 @@
-"""The proof that a ring element is the zero function where its normal form does not show it.
+"""The proof that a ring element is the zero function although its normal form is not 0.
 
-The element is translated to a field of functions in which more identities show:
-- cosines and sines are expanded over parts of angles, rational multiples of π being split off, and
-  hyperbolic functions are of exponentials;
-- roots and logarithms are those of irreducible factors, as |·|^r and log |·| are homomorphisms;
-- numbers are distinguished from 0 by a bound from below (`identities.algebraic_numbers`).
-An element that is then still not 0 may be shown to be 0 by a relation between logarithms or between
-arctangents, or between square roots. Every step is an identity of functions wherever the element is
-defined; an element that is defined nowhere is not called zero.
+The element is translated to a field of functions in which more identities are visible:
 
-Relations with whole coefficients are found numerically, by the LLL algorithm at one point, and then
-proved exactly: Σ kᵢ log |fᵢ| = 0 where Π fᵢ^(2kᵢ) = 1; and Σ kᵢ atan uᵢ is a multiple of π where
-Π (1 + i uᵢ)^kᵢ is real, the same multiple everywhere on a convex set, so that a ball at one point
+- cosines and sines are expanded over parts of angles, after rational multiples of π are split off;
+  hyperbolic functions become exponentials;
+- roots and logarithms become those of irreducible factors, as |·|^r and log |·| are homomorphisms;
+- numbers are distinguished from 0 by a lower bound (`identities.algebraic_numbers`).
+
+If the element is still not 0, a relation between logarithms, between arctangents or between square
+roots may show that it is. Every step is an identity of functions wherever the element is defined;
+an element that is defined nowhere is not called zero.
+
+Relations with integer coefficients are found numerically, by the LLL algorithm at one point, and
+then proved exactly. Σ kᵢ log |fᵢ| = 0 if Π fᵢ^(2kᵢ) = 1. Σ kᵢ atan uᵢ is a multiple of π if
+Π (1 + i uᵢ)^kᵢ is real; it is the same multiple everywhere on a convex set, and a ball at one point
 determines it.
 
-Where x is a polynomial in square roots ρ, the product of x with its conjugates, in which signs of
-the ρ are changed, is a polynomial in the ρ². On a connected set a product of analytic functions is
-0 only where one factor is: x is, if none of its conjugates is 0 at one point.
+Let x be a polynomial in square roots ρ. Its product with its conjugates, in which signs of the ρ
+are changed, is a polynomial in the ρ². On a connected set a product of analytic functions is 0 only
+if one factor is: so x is, if no conjugate is 0 at one point.
 """
 
 from collections.abc import Callable, Iterator
@@ -34,15 +36,15 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.functions import in_rings
 from verify.functions.function import CIRCLE
 
-_MOST_UNITS = 12
-_BITS_EACH = 32
-_LARGEST = 64  # multiple, where powers of a function are to be made
-_LARGEST_OF_NUMBERS = 4096
-_BITS_OF_ANGLE = 128
-_MOST_ROOTS = 4
-_BITS_OF_CONJUGATES = 256
+_MAX_UNITS = 12
+_BITS_PER_UNIT = 32
+_MAX_MULTIPLE = 64  # in relations of functions, whose powers are computed
+_MAX_MULTIPLE_OF_NUMBERS = 4096
+_ANGLE_BITS = 128
+_MAX_ROOTS = 4
+_CONJUGATE_BITS = 256
 
-Multiples = dict[int, int]  # of units, by their places; none is 0
+Multiples = dict[int, int]  # place of a unit → its multiple ≠ 0 in a relation
 
 
 def is_hidden_zero(ring: DifferentialRing, x: Poly) -> bool:
@@ -53,11 +55,11 @@ def is_hidden_zero(ring: DifferentialRing, x: Poly) -> bool:
     kinds = {g.kind for g in ring.generators_in(x)}
     functions = [in_rings()[kind] for kind in kinds & in_rings().keys()]
     waves = any(f.pair is CIRCLE for f in functions)
-    # Half-angle tangents serve to find factors, which only roots and logarithms need.
+    # With half-angle tangents more polynomials factor, which only roots and logarithms need.
     factored = "root" in kinds or any(f.pair is None and not f.turns for f in functions)
-    # The form without tangents is tried first, as it adds no denominators.
-    ways = (False, True) if waves and factored else (False,)
-    return any(_is_shown(ring, x, point, tangents) for tangents in ways)
+    # The form without tangents is tried first, since it adds no denominators.
+    options = (False, True) if waves and factored else (False,)
+    return any(_is_shown(ring, x, point, tangents) for tangents in options)
 
 
 def _is_shown(ring: DifferentialRing, x: Poly, names: Names, tangents: bool) -> bool:
@@ -85,10 +87,10 @@ def _vanishes(t: FieldImage, ring: DifferentialRing, x: Poly, names: Names) -> b
 
 
 def eliminate_related(t: FieldImage, x: Poly, names: Names, convex: Callable[[], bool]) -> Poly:
-    """Replace logarithms and arctangents in x that are rational combinations of others.
+    """Return x without those logarithms and arctangents that are rational combinations of others.
 
-    `names`: returns balls for the names, in flint's precision, at a point where x is defined.
-    `convex`: returns True if the arguments of the arctangents in x are defined on a convex set.
+    `names()` returns balls for the names, at flint's precision, at a point where x is defined.
+    `convex()` returns True if the arguments of the arctangents in x are defined on a convex set.
     """
     logarithms = [place for place in places_in(x) if place in t.powers.logarithms]
     x = _eliminate(t.field, x, logarithms, names, lambda k: _is_sum_of_logarithms(t, k))
@@ -97,7 +99,7 @@ def eliminate_related(t: FieldImage, x: Poly, names: Names, convex: Callable[[],
     angles = angles if angles == constant or convex() else constant
     if not angles:
         return x
-    # π is the oldest of them, which is never replaced.
+    # π stands last, so that it is never the unit that is replaced.
     angles.append(t.field.place(t.angles.pi))
     return _eliminate(t.field, x, angles, names, lambda k: _is_sum_of_angles(t, k, names))
 
@@ -111,7 +113,7 @@ def _eliminate(
 ) -> Poly:
     remaining = list(places)
     # Each relation eliminates one unit, so the search is repeated with the others.
-    while 1 < len(remaining) <= _MOST_UNITS:
+    while 1 < len(remaining) <= _MAX_UNITS:
         multiples = next((k for k in _candidates(field, remaining, names) if is_relation(k)), None)
         if multiples is None:
             break
@@ -122,8 +124,8 @@ def _eliminate(
 
 
 def _candidates(field: Field, places: list[int], names: Names) -> Iterator[Multiples]:
-    """Yield small multiples of units whose sum seems to be 0."""
-    bits = _BITS_EACH * (len(places) + 1)
+    """Yield small integer multiples of units whose sum seems to be 0 at the point."""
+    bits = _BITS_PER_UNIT * (len(places) + 1)
     with working_precision(2 * bits):
         point = Point(field, names())
         balls = [point.unit(place) * flint.arb(2) ** bits for place in places]
@@ -131,17 +133,17 @@ def _candidates(field: Field, places: list[int], names: Names) -> Iterator[Multi
             return
         wholes = [int(ball.mid().floor().unique_fmpz() or 0) for ball in balls]
     # The rows (e_i, 2^bits·ball_i) span a lattice; a short vector of it is a relation with small
-    # coefficients. LLL finds it where it exists, and the caller proves it.
+    # coefficients. LLL finds such vectors, and the caller proves the relation.
     rows = [[*(int(i == j) for j in range(len(places))), w] for i, w in enumerate(wholes)]
     for row in flint.fmpz_mat(rows).lll().tolist():
         multiples = [int(k) for k in row[:-1]]
         size = sum(map(abs, multiples))
-        if size <= _LARGEST_OF_NUMBERS and abs(int(row[-1])) <= 2 * size:
+        if size <= _MAX_MULTIPLE_OF_NUMBERS and abs(int(row[-1])) <= 2 * size:
             yield {place: k for place, k in zip(places, multiples, strict=True) if k}
 
 
 def _replace_unit(field: Field, x: Poly, multiples: Multiples, place: int) -> Poly:
-    """Replace the unit of that place in x by the others in the relation."""
+    """Return x with the unit of that place replaced by the other units of the relation."""
     gens, value, total = field.ring.gens, field.ring.zero, field.ring.zero
     for other, k in multiples.items():
         if other != place:
@@ -176,14 +178,14 @@ def _is_sum_of_angles(t: FieldImage, multiples: Multiples, names: Names) -> bool
             return False
     except UndecidedError:
         return False
-    with working_precision(_BITS_OF_ANGLE):
+    with working_precision(_ANGLE_BITS):
         point = Point(field, names())
         total = sum((point.unit(place) * k for place, k in multiples.items()), flint.arb(0))
-        return bool(abs(total) < 1)  # a multiple of π that is below 1 is 0
+        return bool(abs(total) < 1)  # a multiple of π below 1 in size is 0
 
 
 def _check_multiple(k: int, *, number: bool) -> None:
-    if abs(k) > (_LARGEST_OF_NUMBERS if number else _LARGEST):
+    if abs(k) > (_MAX_MULTIPLE_OF_NUMBERS if number else _MAX_MULTIPLE):
         raise UndecidedError("too high a power")
 
 
@@ -191,22 +193,22 @@ def _check_multiple(k: int, *, number: bool) -> None:
 
 
 def vanishes_by_conjugates(t: FieldImage, x: Poly, names: Names) -> bool:
-    """Return True if x is shown to be 0 on a connected set with the point of `names`."""
+    """Return True if x is shown to be 0 on a connected set that contains the point of `names`."""
     field = t.field
-    # Tangents have poles, and signs jump: with them conjugates need not be analytic.
+    # Tangents have poles, and signs jump: conjugates with them need not be analytic.
     if any(key[0] in ("tangent", "sign") for key in field.unit_by_key):
         return False
     conjugates = [x]
     product = x
     while not product.is_zero():
         place = next((p for p in places_in(product) if _is_square_root(t, p)), None)
-        if place is None or len(conjugates) > 2**_MOST_ROOTS:
+        if place is None or len(conjugates) > 2**_MAX_ROOTS:
             break
         conjugates += [_conjugate(field, y, place) for y in conjugates]
         product = field.multiply(product, _conjugate(field, product, place))
     if len(conjugates) == 1 or not vanishes(field, product):
         return False
-    with working_precision(_BITS_OF_CONJUGATES):
+    with working_precision(_CONJUGATE_BITS):
         point = Point(field, names())
         return all(not point.enclose(y).contains(0) for y in conjugates[1:])
 

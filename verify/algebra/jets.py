@@ -1,13 +1,13 @@
-"""The jets of every smooth H: derivatives H_ij = ∂_pⁱ∂_q^j H as independent variables.
+"""The jets of every smooth H: the derivatives H_ij = ∂_pⁱ∂_q^j H as independent variables.
 
-At a point the derivatives of a smooth H up to any order may take any values (those of a polynomial
-are free already). So a polynomial in the H_ij vanishes for every H at every point exactly where it
-is the zero polynomial, and zero needs no decision. ∂/∂p sends H_ij to H_(i+1)j, ∂/∂q to H_i(j+1),
-and X = H_p ∂_q − H_q ∂_p is the derivative along the flow. For separable H = T(p) + V(q) the mixed
-derivatives are 0. Of an H that depends on t, D = ∂_t + X takes the place of X.
+At a point the derivatives of a smooth H up to any order may take any values (those of polynomials H
+do already). So a polynomial in the H_ij vanishes for every H at every point if and only if it is
+the zero polynomial: this is easy to decide. ∂/∂p maps H_ij to H_(i+1)j, ∂/∂q maps it to H_i(j+1);
+X = H_p ∂_q − H_q ∂_p is the derivative along the flow. For separable H = T(p) + V(q) the mixed
+derivatives are 0. If H depends on t, D = ∂_t + X takes the place of X.
 
 A scheme for every H is a pair of series in h over these polynomials: lists of the coefficients of
-h⁰, h¹, …, cut off at the same power.
+h⁰, h¹, …, up to the same power.
 
 In n degrees of freedom the partial derivatives of a smooth H(p1 … pn, q1 … qn) are independent
 variables for the same reason.
@@ -23,7 +23,7 @@ from verify.algebra.identities.polynomials import Polynomials
 from verify.algebra.zero_test import Decision
 from verify.errors import LimitError
 
-_MOST_JETS = 4000
+_MAX_JETS = 4000
 Poly = flint.fmpq_mpoly
 Series = list[Poly]
 Index = tuple[int, ...]  # the number of derivatives by each variable
@@ -33,8 +33,8 @@ class JetsInDegrees(Polynomials):
     """The ring of the variables and of H's derivatives of orders 1 … `order`.
 
     `separable`: H = T(p) + V(q), whose mixed derivatives are 0. `timed`: t is one more variable.
-    Raises LimitError for more derivatives than a computer can hold polynomials in. It is a
-    `verify.algebra.power_series.CoefficientRing`.
+    Its construction raises LimitError if there are so many derivatives that polynomials in them
+    would not fit in memory. It is a `verify.algebra.power_series.CoefficientRing`.
     """
 
     def __init__(
@@ -44,8 +44,8 @@ class JetsInDegrees(Polynomials):
         self.order, self._half, self.separable = order, len(names) // 2, separable
         kinds, by = (2, self._half + timed) if separable else (1, len(self.variables))
         count = kinds * math.comb(by + order, order)
-        if count > _MOST_JETS:
-            problem = f"about {count} derivatives of H would be needed; allowed: {_MOST_JETS}"
+        if count > _MAX_JETS:
+            problem = f"about {count} derivatives of H would be needed; allowed: {_MAX_JETS}"
             raise LimitError("degrees", self._half, problem)
         self.indices = [x for n in range(1, order + 1) for x in self._of_order(n)]
         names_of_derivatives = [self._name_of(index) for index in self.indices]
@@ -70,7 +70,8 @@ class JetsInDegrees(Polynomials):
         return "H_" + "".join(name * n for name, n in zip(self.variables, index, strict=True))
 
     def derivative(self, index: Index) -> Poly:
-        """Return that derivative of H; OverflowError beyond the ring's order."""
+        """Return the derivative of H with this index. Raises OverflowError beyond the ring's
+        order."""
         if self._vanishes(index):
             return self.zero
         if sum(index) > self.order:
@@ -88,14 +89,14 @@ class JetsInDegrees(Polynomials):
         by, count = self.places[name], len(self.variables)
         total = x.derivative(by)
         for place, degree in enumerate(x.degrees()[count:], count):
-            if degree > 0:  # −1 of zero
+            if degree > 0:  # flint's degrees of the polynomial 0 are −1
                 index = list(self.indices[place - count])
                 index[by] += 1
                 total += x.derivative(place) * self.derivative(tuple(index))
         return total
 
     def decide(self, x: Poly) -> Decision:
-        """Decide zero: x is 0 for every H if it is the zero polynomial, else not for some H."""
+        """Decide whether x is 0 for every H: if and only if it is the zero polynomial."""
         return Decision(bool(x.is_zero()))
 
     def vanishes(self, x: Poly) -> bool:
@@ -110,8 +111,8 @@ class JetsInDegrees(Polynomials):
 class Jets(JetsInDegrees):
     """The jets of H(p, q): p, q and H_ij for 1 ≤ i + j ≤ `order`.
 
-    `timed`: of H(p, q, t), with t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1. A derivative beyond the
-    order raises OverflowError.
+    `timed`: those of H(p, q, t), with t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1. A derivative
+    beyond the order raises OverflowError.
 
     >>> jets = Jets(2)
     >>> jets.text(jets.diff(jets.h(1, 0) ** 2, "q"))
@@ -124,16 +125,14 @@ class Jets(JetsInDegrees):
         self.p, self.q = self.gens[:2]
 
     def _of_order(self, n: int) -> Iterator[Index]:
-        """Iterate over the indices of order n, without derivatives by t alone.
-
-        Those occur in no derivative along the flow.
-        """
+        """Return an iterator over the indices of order n, without derivatives by t alone, which
+        occur in no derivative along the flow."""
         if not self.timed:
             return super()._of_order(n)
         return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
-        """Return ∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
+        """Return ∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 if H does not depend on time."""
         if self.timed:
             return self.derivative((i, j, k))
         return self.zero if k else self.derivative((i, j))

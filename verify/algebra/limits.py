@@ -1,9 +1,9 @@
 """Limits of exact expressions: they must be finite, real, smooth and of bounded size.
 
-sympy evaluates as it builds: 2**a at a = 10^300, or the sign of log(sin(exp(exp(a)))) at a = 100,
-would never end. So powers and constants are checked before sympy sees them, constants by ball
-arithmetic, which says at once that one is out of reach; and where values are put into an
-expression, its tree is rebuilt here from its leaves, with the same checks at every step.
+sympy evaluates when it builds an expression: 2**a at a = 10^300, or the sign of
+log(sin(exp(exp(a)))) at a = 100, would never end. So powers and constants are checked before sympy
+gets them; for constants ball arithmetic tells at once that one is too large. When values are
+substituted in an expression, its tree is rebuilt here from its leaves, with the same checks.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from verify.lazy_sympy import sympy
 
 MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
-MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
-MAX_BITS = 4000  # of the size of a constant
+MAX_ROOT_BITS = 2000  # for a number's bits times the index of its root: sympy factors the number
+MAX_CONSTANT_BITS = 4000  # a constant must be below 2^4000 in size
 
 
 def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
@@ -52,9 +52,9 @@ def check_expression(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
             raise LimitError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
-    # Powers are checked here again, as sympy may have combined exponents to larger ones.
+    # Powers are checked again here, as sympy may have combined exponents to larger ones.
     for power in powers:
-        if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
+        if power.exp.is_Rational:  # else it is sympy's form of exp(x·log(y))
             check_power(power.base, power.exp, source, text)
     if sympy.I in other_nodes or any(map(_is_of_nonpositive, other_nodes)):
         raise InputError(source, text, "is not real, so it is not defined")
@@ -83,9 +83,9 @@ def _small_polynomial(x: sympy.Expr) -> bool:
 
 
 def _one_product(x: sympy.Expr) -> sympy.Expr:
-    """Flatten a product: 2·(−p) to −2·p.
+    """Return x with products flattened, as 2·(−p) to −2·p.
 
-    From √(−p)·√(−p) sympy makes a product within a product, or one with several numbers.
+    For √(−p)·√(−p) sympy makes a product within a product, or one with several numbers.
     """
     nested = x.is_Mul and (
         any(factor.is_Mul for factor in x.args) or sum(f.is_Number for f in x.args) > 1
@@ -94,7 +94,7 @@ def _one_product(x: sympy.Expr) -> sympy.Expr:
 
 
 def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
-    """Return the rational numbers, the powers, and the other nodes but sums, products, names."""
+    """Return the rational numbers, the powers, and the nodes that are no sum, product or name."""
     numbers, powers, other_nodes = [], [], []
     waiting = [expression]
     while waiting:
@@ -111,12 +111,13 @@ def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr]
 
 
 def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
-    """Raise InputError if that rational power is not real, or may be too large for sympy."""
+    """Raise InputError if a rational power is not real, LimitError if it may be too large for
+    sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and _is_nonpositive(base) and not base.is_zero:
         raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
-    # sympy tries to factor the number under a root, which takes unbounded time for large ones.
+    # sympy tries to factor a number under a root, which takes unbounded time for large ones.
     if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
         raise LimitError(source, text, "a root of a number in it has too many digits")
 
@@ -148,14 +149,13 @@ def is_within_reach(constant: sympy.Expr) -> bool:
     """Return True if the constant is finite and below 2^4000 in size, by ball arithmetic."""
     with working_precision(128):
         ball = _ball(constant)
-        # 128 bits suffice: only the order of magnitude matters, and a doubtful ball counts as too
-        # large.
-        limit = flint.arb(2) ** MAX_BITS
+        # 128 bits suffice for the order of magnitude; a ball across the limit counts as too large.
+        limit = flint.arb(2) ** MAX_CONSTANT_BITS
         return ball is not None and ball.is_finite() and abs(ball) < limit
 
 
 def _ball(node: sympy.Expr) -> flint.arb | None:
-    """Enclose the constant, or return None if this module does not know the expression."""
+    """Return a ball around the constant; None if it has a function without balls."""
     if node.is_Rational:
         return flint.arb(flint.fmpq(int(node.p), int(node.q)))
     if node is sympy.pi:
@@ -182,8 +182,10 @@ def _ball(node: sympy.Expr) -> flint.arb | None:
 def substitute(
     expression: sympy.Expr, values: Mapping[sympy.Symbol, sympy.Rational], description: str
 ) -> sympy.Expr:
-    """Substitute the values in the expression; InputError("parameter", description, …) if that
-    fails."""
+    """Return the expression with the values in place of the symbols.
+
+    Raises InputError("parameter", description, …) if that fails.
+    """
     if not values:
         return expression
 
@@ -196,7 +198,7 @@ def substitute(
         _check_rebuilding(node, arguments, description)
         try:
             return node.func(*arguments)
-        except (ArithmeticError, AttributeError, TypeError, RecursionError):  # from within sympy
+        except (ArithmeticError, AttributeError, TypeError, RecursionError):  # sympy's own errors
             raise _problem(description, f"{node} cannot be handled exactly there") from None
 
     with limit_effort("parameter", description, "to put it in"):

@@ -1,8 +1,8 @@
 """Polynomials as vectors over their monomials: linear combinations, and bases of lattices.
 
-One polynomial is written as a combination of others by equations over the rationals. The
-arguments of sines, or of exponentials, span a lattice, over a basis of which the functions are
-expanded.
+A polynomial is written as a combination of others by solving equations over the rationals. The
+arguments of sines, or of exponentials, span a lattice; the functions are expanded over a basis of
+it.
 """
 
 import math
@@ -14,17 +14,15 @@ from verify.algebra.identities.polynomials import terms_of
 from verify.algebra.ring import Poly, Ring
 
 _PRIME = 2_305_843_009_213_693_951  # 2⁶¹ − 1
-MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
-_FEW = 2
+MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b and cos b up to this k
+_SMALL_MULTIPLE = 2  # with multiples up to this, no multiples of π are split off
 
 
 def solve_combination(
     columns: Sequence[Poly], target: Poly
 ) -> tuple[dict[int, flint.fmpq] | None, int]:
-    """Solve Σ coefficient·column = target: return {index: coefficient} and the columns' rank.
-
-    The coefficients are None if there is no solution.
-    """
+    """Solve Σ coefficient·column = target. Return {index: coefficient}, or None if there is no
+    solution; and the columns' rank."""
     rows, entries = _entries((*columns, target))
     matrix = flint.fmpq_mat(rows, len(columns) + 1)
     for place, coefficient in entries:
@@ -39,10 +37,10 @@ def solve_combination(
 
 
 def may_combine(columns: Sequence[Poly], target: Poly) -> bool:
-    """Return True if `target` is a combination of the columns modulo a prime, a cheap test.
+    """Return True if `target` is a combination of the columns modulo a prime: a cheap test.
 
-    If it is not, then it is none over the rationals either, unless the prime divides a denominator
-    of every such combination: good enough to give up a search, not to refute.
+    If it is not, it is none over the rationals either, unless the prime divides a denominator of
+    every such combination: a reason to give up a search, but no proof.
     """
     rows, entries = _entries((*columns, target))
     matrix = flint.nmod_mat(rows, len(columns) + 1, _PRIME)
@@ -55,10 +53,8 @@ def may_combine(columns: Sequence[Poly], target: Poly) -> bool:
 
 
 def _entries(elements: Sequence[Poly]) -> tuple[int, list[tuple[tuple[int, int], flint.fmpq]]]:
-    """Return the entries of a matrix with a row for each monomial and a column for each element.
-
-    They are the number of rows, and a list of ((row, column), coefficient).
-    """
+    """Return the number of rows, and [((row, column), coefficient), …], of the matrix that has a
+    row for each monomial and a column for each element."""
     rows: dict[tuple[int, ...], int] = {}
     entries = []
     for column, x in enumerate(elements):
@@ -72,12 +68,12 @@ def _entries(elements: Sequence[Poly]) -> tuple[int, list[tuple[tuple[int, int],
 
 
 def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
-    """Return a basis of the lattice the arguments span, and each argument as integers over it.
+    """Return a basis of the lattice that the arguments span, and the integer coordinates of each
+    argument.
 
     Arguments are vectors of rational coefficients over their monomials; the basis is the Hermite
-    normal form of their integer multiples. Where a multiple would be large (sin(100 q) and
-    sin(q)) each argument is a basis element of its own: that is correct, only an identity may
-    remain hidden.
+    normal form of their integer multiples. If a coordinate would be large, as for sin(100 q) and
+    sin(q), the distinct arguments are the basis: this is correct, but may hide an identity.
     """
     terms = [dict(terms_of(a)) for a in arguments]
     monomials = sorted({m for t in terms for m in t}, reverse=True)
@@ -91,7 +87,7 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
         distinct = [a for k, a in enumerate(arguments) if a not in arguments[:k]]
         return distinct, [[int(a == b) for b in distinct] for a in arguments]
     for k, vector in enumerate(basis):
-        if all(row[k] <= 0 for row in multiples):  # exp(−q²) by itself, not by 1/exp(q²)
+        if all(row[k] <= 0 for row in multiples):  # exp(−q²) is a generator, and not 1/exp(q²)
             basis[k] = [-v for v in vector]
             multiples = [[*row[:k], -row[k], *row[k + 1 :]] for row in multiples]
     elements = [
@@ -104,17 +100,16 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
 
 
 def lattice_and_turns(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
-    """Return a basis as `lattice`, with multiples of π as elements where that is simpler.
+    """Return the same as `lattice`, but with multiples of π in the basis if that is simpler.
 
-    For 3 p − q + 9π/5, q + π/3 and 3 p any basis without them needs large multiples.
+    For 3 p − q + 9π/5, q + π/3 and 3 p a basis without these needs large multiples.
     """
     basis, multiples = lattice(ring, arguments)
     pi = ring.find("pi", None)
-    if pi is None or max(abs(k) for row in multiples for k in row) <= _FEW:
+    if pi is None or max(abs(k) for row in multiples for k in row) <= _SMALL_MULTIPLE:
         return basis, multiples
     turns = [pi * a[pi.monoms()[0]] for a in arguments]
-    # The multiple of π is split off each argument, and the rest is expanded over a basis of its
-    # own.
+    # The multiple of π is split off each argument; the remainders have their own basis.
     remainders = [a - turn for a, turn in zip(arguments, turns, strict=True)]
     moving = [remainder for remainder in remainders if not remainder.is_zero()]
     if not moving:
@@ -132,7 +127,7 @@ def lattice_and_turns(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly]
 
 
 def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:
-    """Return integers k with Σ kᵢ basisᵢ = row, for a basis in echelon form that spans it."""
+    """Return integers k with Σ kᵢ basisᵢ = row; the basis is in echelon form."""
     remainder, result = list(row), []
     for vector in basis:
         pivot = next(j for j, v in enumerate(vector) if v)

@@ -1,4 +1,4 @@
-"""Messages about what Python reads and no formula has: functions, comparisons, indices, lists."""
+"""Messages about syntax of Python that no formula has: functions, comparisons, indices, lists."""
 
 import ast
 import re
@@ -7,9 +7,9 @@ from collections.abc import Collection
 from verify.errors import find_nearest, format_suggestion
 from verify.functions import by_name
 
-_LONGEST = 40  # characters of what is quoted
+_MAX_QUOTED_LENGTH = 40  # characters; longer texts are cut in messages
 _CASES = "a formula has no cases, since H must be smooth"
-# What is made of functions, unless it is one itself; {0} and {1} are the arguments, in parentheses.
+# Functions that formulas express by others; {0} and {1} are the arguments, in parentheses.
 _BY_FUNCTIONS = {
     "sec": "(1/cos{0})", "csc": "(1/sin{0})", "cosec": "(1/sin{0})", "cot": "(1/tan{0})",
     "ctg": "(1/tan{0})", "sech": "(1/cosh{0})", "csch": "(1/sinh{0})", "coth": "(1/tanh{0})",
@@ -22,7 +22,7 @@ _BY_FUNCTIONS = {
 _REPLACEMENTS = {
     **{name: form for name, form in _BY_FUNCTIONS.items() if name not in by_name()},
     **{other: f"{name}{{0}}" for name, f in by_name().items() for other in f.synonyms},
-    "log": "(log{0}/log{1})",  # to a base
+    "log": "(log{0}/log{1})",  # log(x, base)
 }
 _WITH_CASES = frozenset({"heaviside", "step", "relu", "piecewise", "where", "clip", "mod", "fmod"})
 _VARIABLES = frozenset({"p", "q", "h", "t", "pi"})
@@ -63,7 +63,8 @@ def operator_not_allowed(node: ast.BinOp) -> str:
 
 
 def stop_of(node: ast.expr, line: str) -> int:
-    """Return the offset in the line of what is not allowed: of a comma, of an operator."""
+    """Return the offset in the line of the part that is not allowed: a comma, an operator, or the
+    node itself."""
     match node:
         case ast.Tuple(elts=[first, *_]):
             return line.find(",", first.end_col_offset)
@@ -74,7 +75,7 @@ def stop_of(node: ast.expr, line: str) -> int:
 
 
 def unknown_function(node: ast.Call, line: str, functions: Collection[str]) -> str:
-    """Describe a call of something that is no function of formulas, and what to write."""
+    """Describe a call of a name that is no function of formulas, and say what to write."""
     callee = _source(node.func, line)
     inside = ", ".join(_source(each, line) for each in node.args)
     listed = f"allowed: {', '.join(sorted(functions))}"
@@ -106,7 +107,7 @@ def _write_instead(name: str, node: ast.Call, line: str) -> str:
     form = _REPLACEMENTS[name]
     arguments = [f"({_source(each, line)})" for each in node.args]
     text = form.format(*arguments, "(…)", "(…)")
-    # A name or a number wants no parentheses, but for a function's.
+    # A name or a number needs no parentheses, unless they are those of a function's argument.
     return re.sub(r"(?<![A-Za-z0-9_])\((\w+)\)", r"\1", text)
 
 
@@ -126,7 +127,7 @@ def unknown_name(name: str, names: Collection[str], functions: Collection[str]) 
         example = "q" if names else "2"
         return f"unknown name {name!r}; it is a function: write {name}({example}); {listed}"
     meant = format_suggestion(find_nearest(name, sorted(names)))
-    return f"unknown name {name[:_LONGEST]!r}; {meant}{listed}"
+    return f"unknown name {name[:_MAX_QUOTED_LENGTH]!r}; {meant}{listed}"
 
 
 def no_number(value: object, text: str) -> str:
@@ -136,7 +137,7 @@ def no_number(value: object, text: str) -> str:
         complex: "H is real; there is no imaginary unit",
         bool: "write 1 or 0",
     }.get(type(value), "allowed: 0.001, 1e-3, 7/3")
-    return f"{text[:_LONGEST]!r} is not a number; {more}"
+    return f"{text[:_MAX_QUOTED_LENGTH]!r} is not a number; {more}"
 
 
 def exponent_with_names(base: str, exponent: str) -> str:
@@ -152,4 +153,4 @@ def exponent_with_names(base: str, exponent: str) -> str:
 
 def _source(node: ast.expr, line: str) -> str:
     text = (ast.get_source_segment(line, node) or type(node).__name__).strip()
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+    return text if len(text) <= _MAX_QUOTED_LENGTH else f"{text[: _MAX_QUOTED_LENGTH - 1]}…"

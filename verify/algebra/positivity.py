@@ -1,9 +1,8 @@
-"""The positivity of ring elements, and their domains: points of these, and convexity.
+"""The positivity of ring elements, and their domains: points in them, and convexity.
 
-An element is defined where every divisor in it is not 0 and the arguments of its roots and
-logarithms are positive. On a convex set (any connected one would do) an analytic function that is
-locally constant is constant. The root of an even power of v is |v|, which is smooth where v has
-one sign.
+An element is defined where no divisor in it is 0 and the arguments of its roots and logarithms are
+positive. On a convex set (any connected one would do) an analytic function that is locally constant
+is constant. The root of an even power of v is |v|, which is smooth if v has one sign.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -22,23 +21,24 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.functions import in_rings
 
 _BITS = 128
-_NEARBY = 10**6
+_PERTURBATION_DIVISOR = 10**6  # a coordinate x is moved by x·√prime over this
 _PRIMES = [n for n in range(2, 1000) if all(n % k for k in range(2, isqrt(n) + 1))]
 
 
 def sign_everywhere(ring: DifferentialRing, x: Poly, *, strict: bool = False) -> int | None:
-    """Return 1 if x ≥ 0 wherever it is defined, −1 if x ≤ 0, None if neither is shown.
+    """Return 1 if x ≥ 0 wherever it is defined, −1 if x ≤ 0 there, None if neither is shown.
 
-    `strict`: x ≠ 0 is shown, too.
+    `strict`: 1 if x > 0, −1 if x < 0.
     """
     sign = definite_sign(x, _RingGenerators(ring, x), strict=strict)
     return sign if sign or ring.in_variables(x) else _sign_in_field(ring, x, strict=strict)
 
 
 def _sign_in_field(ring: DifferentialRing, x: Poly, *, strict: bool) -> int | None:
-    """Find the sign in terms of exponentials.
+    """Return the sign if it is visible in terms of exponentials.
 
-    In them cosh 5 q is a positive sum, while as a polynomial in cosh q its sign is not seen.
+    In them cosh 5 q is a positive sum; the sign of cosh 5 q as a polynomial in cosh q is not
+    visible.
     """
     try:
         image = translate_element(ring.generators_in(x), x, tangents=False)
@@ -50,7 +50,7 @@ def _sign_in_field(ring: DifferentialRing, x: Poly, *, strict: bool) -> int | No
 
 
 class _RingGenerators:
-    """The signs and bounds of the generators in an element of a ring."""
+    """Facts about the generators in an element of a ring (see `identities.signs.Facts`)."""
 
     def __init__(self, ring: DifferentialRing, x: Poly) -> None:
         self.ring = ring
@@ -82,11 +82,9 @@ class _RingGenerators:
 
 
 def _positive_where(g: Generator) -> Callable[[Poly], Poly] | bool:
-    """Return True if the generator is positive wherever it is defined, else False.
-
-    For an inverse return a function of its argument that is positive where the generator is.
-    """
-    if g.kind in ("pi", "root"):  # a root inside of where it is defined
+    """Return True if the generator is positive wherever it is defined, False if it is not known to
+    be; or a function of its argument that is positive if and only if the generator is."""
+    if g.kind in ("pi", "root"):  # a root is 0 at most at the boundary of its domain
         return True
     if g.kind == "inverse":
         return lambda u: u
@@ -95,7 +93,8 @@ def _positive_where(g: Generator) -> Callable[[Poly], Poly] | bool:
 
 
 def _inside(g: Generator) -> Poly | None:
-    """Return what must be positive for a root or a function like log; None for others."""
+    """Return the element that must be positive for a root or a logarithm to be defined; None for
+    other generators."""
     if g.kind == "root":
         return g.inner
     function = in_rings().get(g.kind)
@@ -103,25 +102,23 @@ def _inside(g: Generator) -> Poly | None:
 
 
 def size_of_base(ring: DifferentialRing, u: Poly, power: int) -> tuple[flint.fmpq, Poly] | None:
-    """Return |c| and |v| for u = c·v^power; `power` divides the multiplicities of u's factors.
-
-    None if the sign of a factor that matters is not shown, or u is not positive.
-    """
+    """Return |c| and |v| for u = c·v^power; None if the sign of a factor that matters is not shown,
+    or u is not positive. `power` divides the multiplicities of u's factors."""
     c, factors = u.factor()
     size, sign = ring.one, 1 if c > 0 else -1
     for f, n in factors:
         sign_of_factor = sign_everywhere(ring, f) if int(n) // power % 2 else 1
         if sign_of_factor is None:
             return None
-        # A factor to an even power of |v| needs no sign; one to an odd power must have a shown
-        # sign.
+        # A factor with an even power in |v| needs no sign; one with an odd power must have one.
         size = ring.multiply(size, (f * sign_of_factor) ** (int(n) // power))
         sign *= sign_of_factor ** int(n)
     return (abs(c), size) if sign > 0 else None
 
 
 def point_of(ring: DifferentialRing, x: Poly) -> Names | None:
-    """Find a point around which x is defined and may be 0, as balls for the names; else None."""
+    """Return a point at which x is defined and may be 0, as a function that returns balls for the
+    names; None if x is not 0 at the first point where it is defined, or no such point is found."""
     generators = ring.generators_in(x)
     names = [g.name for g in generators if g.kind == "variable"]
     positive = [inside for g in generators if (inside := _inside(g)) is not None]
@@ -136,14 +133,13 @@ def point_of(ring: DifferentialRing, x: Poly) -> Names | None:
 
 
 def _perturb(point: Mapping[str, Fraction]) -> Names:
-    """Return a point near a rational one, whose coordinates have no accidental relation."""
+    """Return a point near a rational one whose coordinates satisfy no relation by accident."""
 
     def balls() -> Mapping[str, flint.arb]:
         return {
-            # Square roots of different primes are linearly independent over the rationals, so no
-            # linear relation between the coordinates holds by accident.
+            # Square roots of distinct primes are linearly independent over the rationals.
             name: flint.fmpq(value.numerator, value.denominator)
-            * (1 + flint.arb(_PRIMES[k % len(_PRIMES)]).sqrt() / _NEARBY)
+            * (1 + flint.arb(_PRIMES[k % len(_PRIMES)]).sqrt() / _PERTURBATION_DIVISOR)
             for k, (name, value) in enumerate(sorted(point.items()))
         }
 
@@ -151,16 +147,15 @@ def _perturb(point: Mapping[str, Fraction]) -> Names:
 
 
 def is_convex(ring: DifferentialRing, elements: Iterable[Poly], inside: Poly) -> bool:
-    """Return True if the set where the elements are defined, within the domain of `inside`, is
-    convex.
+    """Return True if the elements' domain within the domain of `inside` is shown to be convex.
 
-    That is shown where the divisors have no zero, or their zeros are planes and the domain of
-    `inside` lies on one side of each.
+    It is if the divisors have no zeros, or if their zeros are planes and the domain of `inside`
+    lies on one side of each.
     """
     half_spaces = _half_spaces(ring, ring.generators_in(inside))
     for g in ring.generators_in(*elements):
-        shaped = g.inner if g.kind == "inverse" else _inside(g)
-        for f, _ in _factors(shaped) if shaped is not None else ():
+        nonzero = g.inner if g.kind == "inverse" else _inside(g)
+        for f, _ in _factors(nonzero) if nonzero is not None else ():
             sign = sign_everywhere(ring, f, strict=True)
             if sign is None and f not in half_spaces:
                 return False

@@ -1,17 +1,15 @@
 """Power series in h truncated after hⁿ, and functions of (p, q) at a point given by such series.
 
-A function's Taylor series around (p, q) needs only its partial derivatives, so that
-f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, for any f; no closed
-form of a composition is needed.
+The Taylor series of f around (p, q) needs only partial derivatives of f. So f(p + u, q + v) with
+u, v = O(h) is exact in every kept coefficient, for any f, without a closed form of the composition.
 
-The coefficients of series and forms are elements of a ring of functions with derivatives.
-`verify.algebra.ring.Ring` is one, in which zero is decided; the jets of every H are another, in
-which zero is the zero polynomial.
+The coefficients are elements of a ring of functions with derivatives: `verify.algebra.ring.Ring`,
+in which zero is decided, or the jets of every H, in which only the zero polynomial is zero.
 
 The step of a scheme that solves linear equations is a quotient of polynomials in h. With
-D = d₀ + d₁ h + …, d₀ a number, the series r₀ + r₁ h + … of 1/D is r₀ = 1/d₀,
-r_n = −(d₁ r_{n−1} + … + d_n r₀)/d₀: no derivative of a quotient is needed, which would have more
-terms with each order.
+D = d₀ + d₁ h + …, d₀ a number, the series r₀ + r₁ h + … of 1/D has r₀ = 1/d₀ and
+r_n = −(d₁ r_{n−1} + … + d_n r₀)/d₀. Derivatives of the quotient, which have more and more terms,
+are not needed.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,7 +23,7 @@ from verify.algebra.zero_test import Decision
 
 
 class CoefficientRing(Protocol):
-    """A ring of functions with derivatives; see the module's text."""
+    """A ring of functions with derivatives (see the module's docstring)."""
 
     @property
     def zero(self) -> Poly:
@@ -37,7 +35,7 @@ class CoefficientRing(Protocol):
 
     @property
     def places(self) -> Mapping[str, int]:
-        """The variables by their names."""
+        """The places of the variables, by name."""
 
     def reduce(self, x: Poly) -> Poly:
         """Return x in normal form."""
@@ -66,7 +64,7 @@ class CoefficientRing(Protocol):
 
 @dataclass(frozen=True)
 class Series:
-    """The series Σ hᵏ coefficients[k], the coefficients in normal form in `ring`, free of h."""
+    """The series Σ hᵏ coefficients[k]; the coefficients are in normal form, and do not have h."""
 
     ring: CoefficientRing
     coefficients: tuple[Poly, ...]
@@ -75,7 +73,7 @@ class Series:
     def from_coefficients(
         cls, ring: CoefficientRing, coefficients: Sequence[Poly], most: int
     ) -> "Series":
-        """Make the series with these first coefficients, as far as h^most."""
+        """Return the series up to h^most with these first coefficients, and 0 for the others."""
         padded = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
         return cls(ring, tuple(padded))
 
@@ -104,13 +102,13 @@ class Series:
         for i, x in enumerate(self.coefficients):
             if not x.is_zero():
                 for j, y in enumerate(other.coefficients[: most + 1 - i]):
-                    # Terms beyond h^most are never formed; the sums are reduced once, at the end.
+                    # Terms beyond h^most are not formed; the sums are reduced once, at the end.
                     if not y.is_zero():
                         total[i + j] += x * y
         return Series(ring, tuple(map(ring.reduce, total)))
 
     def divide_by(self, divisor: "Series", inverse: Poly) -> "Series":
-        """Divide by a series; `inverse` is that of its first coefficient."""
+        """Return the quotient by a series; `inverse` is the inverse of its first coefficient."""
         ring = self.ring
         quotient: list[Poly] = []
         # From Σ d_j c_(k−j) = x_k: c_k = (x_k − Σ_(j≥1) d_j c_(k−j))/d_0.
@@ -146,7 +144,7 @@ class Series:
 
 
 class Derivatives:
-    """A ring element with its derivatives, each computed once."""
+    """A ring element with its derivatives, which are cached."""
 
     def __init__(self, ring: CoefficientRing, element: Poly) -> None:
         self.ring, self.element = ring, element
@@ -167,17 +165,21 @@ class Derivatives:
 
 
 def expand_at(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:
-    """Expand the ring element x at a moved point, up to h^most.
+    """Return the series of the ring element x at a moved point, up to h^most.
 
-    `moves`: the variables' names with their displacements, series that are O(h). Taylor's formula
-    is applied to one variable after the other, which is fast for an x with few of them.
+    `moves`: (name, displacement) of the variables; a displacement is a series that is O(h).
+    Taylor's formula is applied to one variable after the other, which is fast if x has few.
     """
     ring = x.ring
-    cut = [(name, Series.from_coefficients(ring, move.coefficients, most)) for name, move in moves]
-    for name, move in cut:
+    truncated = [
+        (name, Series.from_coefficients(ring, move.coefficients, most)) for name, move in moves
+    ]
+    for name, move in truncated:
         if not move.coefficients[0].is_zero():
             raise ValueError(f"{name} is moved at h = 0")
-    terms = _taylor_terms(x, cut, Series.from_coefficients(ring, [ring.one], most), Fraction(1))
+    terms = _taylor_terms(
+        x, truncated, Series.from_coefficients(ring, [ring.one], most), Fraction(1)
+    )
     return sum(terms, Series.from_coefficients(ring, [], most))
 
 
@@ -190,8 +192,7 @@ def _taylor_terms(
         return
     (name, move), *further_moves = moves
     n = 0
-    # move = O(h), so `power` vanishes after at most `most` + 1 factors, also where x is no
-    # polynomial.
+    # move = O(h), so `power` vanishes after at most `most` + 1 factors, even if x is no polynomial.
     while not (x.element.is_zero() or power.vanishes):
         yield from _taylor_terms(x, further_moves, power, share)
         n += 1
@@ -199,7 +200,7 @@ def _taylor_terms(
 
 
 class QuotientSeries:
-    """An expander of a ring's elements to their first `length` coefficients at h = 0."""
+    """An expander of a ring's elements in powers of h, up to `length` coefficients."""
 
     def __init__(self, ring: Ring, length: int) -> None:
         self.ring, self.most = ring, length - 1
@@ -207,7 +208,8 @@ class QuotientSeries:
         self._cache: dict[int, Series | None] = {}
 
     def expand(self, x: Poly) -> Series | None:
-        """Expand x; None if h is in another function, or a divisor is no number at h = 0."""
+        """Return the series of x; None if h is in a function other than an inverse, or a divisor
+        is no number ≠ 0 at h = 0."""
         inner = self._with_h(x)
         if inner is None:
             powers = self.ring.powers(x, "h")
@@ -229,7 +231,8 @@ class QuotientSeries:
         return Series.from_coefficients(self.ring, coefficients, self.most)
 
     def _with_h(self, x: Poly) -> int | None:
-        """Return the newest generator in x that has h in its argument; None without one."""
+        """Return the index of the newest generator in x whose argument has h; None if there is
+        none."""
         degrees = x.degrees()
         for g in reversed(self.ring.generators):
             if degrees[g.index] and g.argument is not None and self.ring.depends(g.argument, "h"):
@@ -244,9 +247,9 @@ class QuotientSeries:
         return self._cache[index]
 
     def _one_over(self, divisor: Series) -> Series | None:
-        begin = divisor.coefficients[0]
-        # The recursion divides by d₀ in every order, which must be a number other than 0.
-        if begin.is_zero() or not begin.is_constant():
+        d0 = divisor.coefficients[0]
+        # The recursion divides by d₀ in every order: it must be a number other than 0.
+        if d0.is_zero() or not d0.is_constant():
             return None
-        first = 1 / begin.leading_coefficient()
-        return self._series([self.ring.one]).divide_by(divisor, self.ring.one * first)
+        inverse = 1 / d0.leading_coefficient()
+        return self._series([self.ring.one]).divide_by(divisor, self.ring.one * inverse)

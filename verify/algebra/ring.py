@@ -6,21 +6,23 @@ atan u, u^(1/n), 1/u and π. Relations hold between generators (sin² + cos² = 
 and each generator knows its derivative, so that the ring is closed under ∂/∂p, ∂/∂q and ∂/∂h.
 
 Contract. `decide(x)` answers
-- zero, when x with its denominators cleared reduces to 0 modulo the relations, here or in a field
-  in which phases, factors under logarithms and roots, and algebraic numbers are distinguished (see
-  `verify.algebra.zero_test`): exact algebra, and every relation is an identity of functions
-  wherever x is defined;
-- not zero, with a witness: a rational point at which an enclosure of x excludes 0 (Arb's ball
-  arithmetic, so rounding is accounted for);
-- neither (None), when the relations do not show it zero and no point shows it non-zero.
-`simplify` plays no part in either. The third answer can occur only where generators hide an
-identity, as exp(q √(3 + 2 √2)) does, or names of parts do; the callers report UNDECIDED.
+
+- zero, if x with its denominators cleared reduces to 0 modulo the relations, here or in a field in
+  which phases, factors under logarithms and roots, and algebraic numbers are distinguished (see
+  `verify.algebra.hidden_zero`). This is exact algebra, and every relation is an identity of
+  functions wherever x is defined;
+- not zero, with a witness: a rational point at which a ball around x excludes 0 (by Arb's ball
+  arithmetic, which accounts for rounding);
+- neither (None), if the relations do not show that x is zero and no point shows that it is not.
+
+`simplify` plays no part in this. The third answer can occur only if generators hide an identity, as
+exp(q √(3 + 2 √2)) does; callers report it as UNDECIDED.
 
 Functions of sums are expanded over a basis of the lattice that their arguments span, so that
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not treated as independent.
 
 A record holds a ring and an element of it as plain data, from which both are rebuilt without
-parsing: what `verify.algebra.embedding.embed` builds, without additions by schemes.
+parsing. It has the generators that `verify.algebra.embedding.embed` adds, and none of schemes.
 """
 
 from __future__ import annotations
@@ -43,9 +45,9 @@ from verify.algebra.zero_test import decide_zero
 from verify.functions import in_rings
 from verify.lazy_sympy import sympy
 
-_MOST_FACTORS = 4  # that an inverse is made of
-_LONG = 100  # terms of an argument, from which on it is not factored
-_MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
+_MAX_FACTORS = 4  # a product of more factors gets one inverse
+_LONG_ARGUMENT = 100  # an argument with so many terms is not factored in texts
+_MAX_FACTORED_TERMS = 300  # with more terms, factoring and sympy take seconds
 
 
 class Ring(DifferentialRing):
@@ -58,7 +60,7 @@ class Ring(DifferentialRing):
         return decide_zero(self, self.reduce(x))
 
     def vanishes(self, x: Poly) -> bool | None:
-        """Return `decide(x).zero`, without computing a witness where none is needed."""
+        """Return `decide(x).zero`; no witness is computed if none is needed."""
         x = self.reduce(x)
         if x.is_zero():
             return True
@@ -69,16 +71,15 @@ class Ring(DifferentialRing):
     # -- quotients ----------------------------------------------------------------------------
 
     def inverse(self, u: Poly) -> Poly:
-        """Return 1/u, by the inverses of u's irreducible factors (of u itself, if they are many).
+        """Return 1/u, by the inverses of u's irreducible factors; of u itself if there are many.
 
-        Raises ZeroDivisionError if u is zero, or cannot be shown not to be.
+        Raises ZeroDivisionError unless u is shown not to be the zero function.
         """
         if self.decide(u).zero is not False:
             raise ZeroDivisionError
         content, factors = u.factor()
-        # Each inverse is one more generator with a relation; many of them make every reduction
-        # slower.
-        if len(factors) > _MOST_FACTORS:
+        # Each inverse is one more generator with a relation, and makes every reduction slower.
+        if len(factors) > _MAX_FACTORS:
             content, factors = u.leading_coefficient(), [(u / u.leading_coefficient(), 1)]
         result = self.context.constant(1 / content)
         for factor, power in factors:
@@ -97,22 +98,22 @@ class Ring(DifferentialRing):
     # -- text ---------------------------------------------------------------------------------
 
     def expression(self, x: Poly) -> sympy.Expr:
-        """Convert x to an expression, with its terms as they stand in the ring."""
+        """Return x as an expression, with its terms as they stand in the ring."""
         return _sum_of_terms(x, self._expressions_of_generators(x))
 
     def expression_at_0(self, x: Poly, variable: sympy.Symbol) -> sympy.Expr:
-        """Convert x to an expression at variable = 0; nan if it is undefined there."""
+        """Return x at variable = 0 as an expression; nan if it is undefined there."""
         try:
             expressions = self._expressions_of_generators(x)
             generators = {k: g.subs(variable, 0) for k, g in expressions.items()}
             if any(g.has(*undefined_values()) for g in generators.values()):
                 return self.expression(x).subs(variable, 0)
-        except TypeError:  # sympy has compared a nan within with a number
+        except TypeError:  # sympy compared a nan inside with a number
             return sympy.nan
         return _sum_of_terms(x, generators)
 
     def as_product(self, x: Poly) -> sympy.Expr:
-        """Convert x to an expression, factored into irreducible polynomials in the generators."""
+        """Return x as an expression, factored into irreducible polynomials in the generators."""
         if x.is_zero():
             return sympy.Integer(0)
         content, factors = x.factor()
@@ -120,8 +121,8 @@ class Ring(DifferentialRing):
         return sympy.Mul(_rational(content), *parts)
 
     def text(self, x: Poly) -> str:
-        """Format x as a formula: factored where it has few terms, else as it stands in the ring."""
-        if len(x) <= _MOST_FACTORED:
+        """Return x as a formula: factored if it has few terms, else as it stands in the ring."""
+        if len(x) <= _MAX_FACTORED_TERMS:
             return to_text(self.as_product(x))
         names = {
             f"_{g.index}": f"({to_text(self._generator_expression(g))})"
@@ -130,23 +131,23 @@ class Ring(DifferentialRing):
         return re.sub(r"\b_\d+\b", lambda name: names[name[0]], str(x)).replace("^", "**")
 
     def _expressions_of_generators(self, x: Poly) -> dict[int, sympy.Expr]:
-        """Return the expressions of the generators in x, by their places."""
+        """Return the expressions of the generators in x, by place."""
         generators = {g.index: g for g in self.generators}
         return {k: self._generator_expression(generators[k]) for k in places_in(x)}
 
     def _generator_expression(self, g: Generator) -> sympy.Expr:
-        """Convert the generator to an expression, which is cached."""
+        """Return the generator as an expression, which is cached."""
         if g.index not in self.expressions:
             self.expressions[g.index] = _apply_function(g, self._argument(g))
         return self.expressions[g.index]
 
     def _argument(self, g: Generator) -> sympy.Expr:
-        """Return the generator's argument as an expression; 0 where it has none."""
+        """Return the generator's argument as an expression; 0 if it has none."""
         if g.argument is None:
             return sympy.S.Zero
         rule = in_rings().get(g.kind)
-        # Factored, the argument is mostly the product that was written; of a pair it is a sum.
-        factored = rule is not None and rule.pair is None and len(g.inner) < _LONG
+        # The factored argument is mostly the product that a user wrote; that of a pair is a sum.
+        factored = rule is not None and rule.pair is None and len(g.inner) < _LONG_ARGUMENT
         return (self.as_product if factored else self.expression)(g.inner)
 
 
@@ -160,7 +161,7 @@ def _sum_of_terms(x: Poly, generators: Mapping[int, sympy.Expr]) -> sympy.Expr:
 
 
 def _apply_function(g: Generator, argument: sympy.Expr) -> sympy.Expr:
-    """Apply the generator's function to an expression, which is ignored by a variable and π."""
+    """Return the generator's function of an expression; a variable and π ignore it."""
     if g.kind == "variable":
         return symbol(g.name)
     return _FUNCTIONS[g.kind](argument, g.degree)
@@ -185,7 +186,7 @@ def _rational(value: flint.fmpq) -> sympy.Rational:
 
 # -- a ring and an element as plain data ----------------------------------------------------------
 
-Record = dict[str, Any]  # of lists, texts and whole numbers
+Record = dict[str, Any]  # the values are lists, texts and integers
 _Terms = list[tuple[list[int], str, str]]  # exponents, numerator, denominator
 
 
@@ -216,7 +217,7 @@ def ring_from_record(record: Mapping[str, Any]) -> tuple[Ring, Poly]:
     places = ring.context.gens()
     for kind, argument, degree in record["generators"]:
         ring.add(kind, None if argument is None else _poly(ring, argument), degree)
-    # Generators come before relations and gradients, which refer to them by their places.
+    # Generators are added first: relations and gradients refer to them by place.
     for index, power, relation in record["relations"]:
         ring.relate(places[index], power, _poly(ring, relation))
     for index, gradient in record["gradients"]:
@@ -225,7 +226,7 @@ def ring_from_record(record: Mapping[str, Any]) -> tuple[Ring, Poly]:
 
 
 def _terms(x: Poly) -> _Terms:
-    # In hexadecimal: Python reads no decimal number of more than 4300 digits.
+    # In hexadecimal, since Python reads no decimal number of more than 4300 digits.
     return [([*map(int, powers)], f"{int(c.p):x}", f"{int(c.q):x}") for powers, c in terms_of(x)]
 
 

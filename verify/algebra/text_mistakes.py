@@ -1,4 +1,4 @@
-"""Messages about the text of a formula that is refused before it is a tree, with the place in it.
+"""Messages about a formula's text that cannot be parsed, with the place of the mistake.
 
 Such a text has a character that no formula has, or Python does not read it as an expression.
 """
@@ -16,8 +16,8 @@ _TOKEN = re.compile(
 )
 _CLOSES = {")": "(", "]": "[", "}": "{"}
 _INFIX = ("+", "-", "*", "/", "**", "^")
-_FIRST = ("+", "-")  # operators that may begin a formula
-_PYTHON = frozenset({"True", "False", "None"})  # constants of Python that no formula has
+_LEADING_OPERATORS = ("+", "-")  # a formula may begin with them
+_PYTHON_CONSTANTS = frozenset({"True", "False", "None"})
 _CONDITIONS = frozenset({"if", "else", "and", "or", "not"})
 _CASES = "a formula has no cases, since H must be smooth"
 _STRAY = {
@@ -49,7 +49,8 @@ Mistake = tuple[int, str]  # index in the text, and the message with what to wri
 
 
 def syntax_mistake(text: str, functions: Collection[str], offset: int | None) -> str:
-    """Describe the mistake in a text that is no expression; `offset`: where Python stopped."""
+    """Describe the mistake in a text that is no expression; `offset`: where Python's parser
+    stopped."""
     tokens = [_Token(str(m.lastgroup), m[0], m.start()) for m in _TOKEN.finditer(text)]
     mistakes = [
         *_brackets(tokens),
@@ -85,7 +86,7 @@ def _brackets(tokens: Sequence[_Token]) -> Iterator[Mistake]:
 def _stray(tokens: Sequence[_Token]) -> Iterator[Mistake]:
     """Yield the words and characters that no formula has."""
     for before, token in pairwise((None, *tokens)):
-        assert token is not None  # noqa: S101 - only the first of the pairs' first is None
+        assert token is not None  # noqa: S101 - only `before` of the first pair is None
         if token.text in _STRAY:
             yield token.start, _STRAY[token.text]
         elif token.text in _CONDITIONS:
@@ -100,7 +101,7 @@ def _stray(tokens: Sequence[_Token]) -> Iterator[Mistake]:
                     else "leave out the quotation mark"
                 ),
             )
-        elif keyword.iskeyword(token.text) and token.text not in _PYTHON:
+        elif keyword.iskeyword(token.text) and token.text not in _PYTHON_CONSTANTS:
             more = f"write another name, such as {token.text}_"
             yield token.start, f"{token.text} is a reserved word of Python; {more}"
         elif before is not None and before.text == "\\":
@@ -119,7 +120,7 @@ def _latex(command: str) -> str:
 def _neighbours(
     text: str, tokens: Sequence[_Token], functions: Collection[str]
 ) -> Iterator[Mistake]:
-    """Yield neighbours that an operator should separate, or between which something is missing."""
+    """Yield mistakes between neighbours: a missing operator or operand, or parentheses."""
     for before, after in pairwise(tokens):
         pair = " ".join(text[before.start : after.start + len(after.text)].split())
         begins = after.kind != "sign" or after.text == "("
@@ -138,7 +139,7 @@ def _neighbours(
 
 
 def _missing_sign(text: str, before: _Token, after: _Token, pair: str) -> str:
-    if before.kind == "number" and before.text + after.text == pair:  # nothing between them
+    if before.kind == "number" and before.text + after.text == pair:  # no blank between them
         # Fortran writes exponents that Python does not read, such as 1d-3.
         if exponent := re.match(r"[dDfF]([+-]?\d+)", text[after.start :]):
             return f"write {before.text}e{exponent[1]} for {before.text}{exponent[0]}"
@@ -152,7 +153,7 @@ def _missing_sign(text: str, before: _Token, after: _Token, pair: str) -> str:
 def _ends(tokens: Sequence[_Token]) -> Iterator[Mistake]:
     if tokens and tokens[-1].text in _INFIX:
         yield tokens[-1].start, f"something is missing after {tokens[-1].text}"
-    if tokens and tokens[0].text in _INFIX and tokens[0].text not in _FIRST:
+    if tokens and tokens[0].text in _INFIX and tokens[0].text not in _LEADING_OPERATORS:
         yield tokens[0].start, f"something is missing before {tokens[0].text}"
 
 
@@ -207,16 +208,16 @@ def _instead(c: str, following: str) -> str:
 
 
 def format_place(text: str, index: int) -> str:
-    """Format the column, from 1, of a character, and its line where there are several."""
+    """Return the column of a character, from 1, and its line if there are several."""
     before = text[:index]
     column = f"column {index - before.rfind(chr(10))}"
     return f"line {before.count(chr(10)) + 1}, {column}" if "\n" in text.strip() else column
 
 
 def index_of(text: str, offset: int) -> int:
-    """Convert an offset in the line that Python reads to an index in the text.
+    """Return the index in the text for an offset in the line that Python reads.
 
-    In that line ^ is written **, and each run of blanks is one space.
+    In that line ^ became **, and each run of blanks one space.
     """
     position = last = 0
     for match in re.finditer(r"\S+|\s+", text.strip()):

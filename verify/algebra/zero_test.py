@@ -1,7 +1,7 @@
-"""The decision whether a ring element is the zero function; see `verify.algebra.ring`.
+"""The decision whether a ring element is the zero function (see `verify.algebra.ring`).
 
-The normal form decides, or a witness, a point at which it is not 0. Where neither does, the
-denominators are cleared, and then `verify.algebra.hidden_zero` looks further.
+First the normal form may decide, or a witness: a point at which the element is not 0. If neither
+does, the denominators are cleared, and then `verify.algebra.hidden_zero` looks further.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -15,10 +15,10 @@ from verify.algebra.enclosure import Ball, Enclosures, enclose, points
 from verify.algebra.identities.polynomials import Poly, split
 
 _FIRST_POINTS = 4
-_PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
-_MOST_ENCLOSED = 80_000  # terms evaluated with one precision, over all points
+_PRECISIONS = (64, 256, 1024)  # bits
+_MAX_ENCLOSED_TERMS = 80_000  # are evaluated at one precision, over all points
 
-Value = Callable[[Mapping[str, Fraction], int], Ball | None]  # of a point and bits
+Value = Callable[[Mapping[str, Fraction], int], Ball | None]  # (point, bits) → ball
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ def decide_zero(ring: DifferentialRing, x: Poly) -> Decision:
         return Decision(True)
     generators = ring.generators_in(x)
     names = [g.name for g in generators if g.kind == "variable"]
-    # A point usually tells at once; clearing denominators can be long work.
+    # A point usually decides at once; clearing denominators can take long.
     value = _values(ring, x)
     decision = witness(value, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
     if decision is None and (clear_inverses(ring, x).is_zero() or _is_hidden(ring, x)):
         return Decision(True)
     terms = len(x) + sum(len(g.argument) for g in generators if g.argument is not None)
-    most = max(_FIRST_POINTS, _MOST_ENCLOSED // terms)
+    most = max(_FIRST_POINTS, _MAX_ENCLOSED_TERMS // terms)
     # Points near a zero need more bits, so the search is repeated with higher precision.
     for precision in _PRECISIONS:
         decision = decision or witness(value, islice(points(names), most), precision)
@@ -65,7 +65,7 @@ def _values(ring: DifferentialRing, x: Poly) -> Value:
 def witness(
     value: Value, points_to_try: Iterable[dict[str, Fraction]], precision: int
 ) -> Decision | None:
-    """Return the decision by the first point at which the value is shown not to be 0, or None."""
+    """Return the decision of the first point at which the value is shown not to be 0, or None."""
     for point in points_to_try:
         ball = value(point, precision)
         if ball is not None and not ball.contains(0):
@@ -74,7 +74,7 @@ def witness(
 
 
 def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
-    """Multiply x by the powers of denominators that remove every inverse; in normal form."""
+    """Return x times the powers of denominators that remove every inverse, in normal form."""
     for g in reversed([g for g in ring.generators if g.kind == "inverse"]):
         parts = split(x, g.index)
         highest = max(parts, default=0)
@@ -88,6 +88,6 @@ def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
 
 
 def _is_hidden(ring: DifferentialRing, x: Poly) -> bool:
-    from verify.algebra.hidden_zero import is_hidden_zero  # which few elements need
+    from verify.algebra.hidden_zero import is_hidden_zero  # few elements need it
 
     return is_hidden_zero(ring, x)

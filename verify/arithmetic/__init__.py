@@ -1,7 +1,7 @@
-"""Arithmetic: exact rationals, balls; `systems/` has one number system a file.
+"""Arithmetic: exact rationals and balls; `systems/` has one file for each number system.
 
-A file of `systems/` defines `NUMBER_SYSTEM`, all that is asked of it before it computes; only then
-is its library imported. Adding a number system is adding one file.
+A file of `systems/` defines `NUMBER_SYSTEM`, the description that is read before the system
+computes; its library is imported only when it computes. To add a number system, add one file.
 """
 
 from functools import cache
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from verify.arithmetic.number_system import Arithmetic, NumberSystem
 
 AUTO = "auto"  # the fastest number system that certifies the digits
-ALIASES = {  # what others call them
+ALIASES = {  # names that others use → the names here
     **dict.fromkeys(("double", "float", "binary64"), "float64"),
     **dict.fromkeys(("quad", "float128", "bigfloat", "multiprecision"), "mpfr"),
     **dict.fromkeys(("interval", "arb"), "ball"),
@@ -60,14 +60,18 @@ def automatic() -> "tuple[NumberSystem, ...]":
 
 
 def step_cost(name: str) -> int:
-    """Return how many float64 steps a step is worth, about; of `auto` in the one that it tries
-    first."""
+    """Return about how many steps of float64 take as long as one step of the number system.
+
+    For `auto` it is the system that `auto` tries first.
+    """
     return _first(name).cost
 
 
 def in_lanes(name: str) -> bool:
-    """Return True if several orbits are stepped together; of `auto` by the one that it tries
-    first."""
+    """Return True if the number system steps several orbits together.
+
+    For `auto` it is the system that `auto` tries first.
+    """
     return _first(name).in_lanes
 
 

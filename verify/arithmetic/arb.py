@@ -13,7 +13,9 @@ from verify.arithmetic.flint_precision import working_precision
 Ball = flint.arb
 UNKNOWN = flint.arb.nan()
 _BITS = 256
-_MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
+# The largest binary exponent that is converted to a rational: a ball's exponent has no limit, and a
+# rational with a huge one would fill the memory.
+_MAX_EXPONENT = 1 << 17
 
 
 class Reported(Protocol):
@@ -56,14 +58,14 @@ def is_representable(x: Ball) -> bool:
     if not x.is_finite():
         return False
     parts = x.mid().man_exp(), flint.arb(x.rad()).man_exp()
-    return all(abs(int(exponent)) <= _MOST_EXPONENT for _, exponent in parts)
+    return all(abs(int(exponent)) <= _MAX_EXPONENT for _, exponent in parts)
 
 
 def midpoint_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
-    """Return the ball's midpoint and radius as exact rationals; of one that is too small those of a
-    wider one around 0.
+    """Return the ball's midpoint and radius as exact rationals.
 
-    Raises OverflowError for one that is too large: as a rational it would fill all memory.
+    If a binary exponent is below −2^17, they are those of a wider ball, which contains this one.
+    Raises OverflowError if an exponent is above 2^17: the rational would fill all memory.
     """
     midpoint, midpoint_error = _rational(*x.mid().man_exp())
     radius, radius_error = _rational(*flint.arb(x.rad()).man_exp())
@@ -71,14 +73,14 @@ def midpoint_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
 
 
 def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> tuple[Fraction, Fraction]:
-    """Return the number, and 0; or, if it is too small, 0 and a bound of its size."""
+    """Return (the number, 0); or (0, a bound on its size) if its exponent is too small."""
     numerator, power = int(mantissa), int(exponent)
-    if power > _MOST_EXPONENT:
+    if power > _MAX_EXPONENT:
         raise OverflowError("a ball is too large for a rational")
     # 2^power has more bits than a computer can hold; it is replaced by an interval around 0 that
     # contains it, which keeps the enclosure rigorous.
-    if power < -_MOST_EXPONENT:
-        return Fraction(0), Fraction(abs(numerator), 1 << _MOST_EXPONENT)
+    if power < -_MAX_EXPONENT:
+        return Fraction(0), Fraction(abs(numerator), 1 << _MAX_EXPONENT)
     number = Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
     return number, Fraction(0)
 
@@ -98,7 +100,8 @@ def format_ball(x: Ball, digits: int = 6) -> str:
 
 
 def format_fixed(x: Ball, places: int) -> str:
-    """Return the ball's midpoint with so many decimal places, if both its ends round to it."""
+    """Return the decimal with `places` places to which both ends of the ball round; else the known
+    digits of the ball."""
     if not is_representable(x):
         return "unknown"
     low, high = bounds(x)
@@ -109,9 +112,9 @@ def format_fixed(x: Ball, places: int) -> str:
 
 
 def decimal_of_units(units: int, places: int) -> str:
-    """Write an integer number of 10^−places as a decimal.
+    """Return units · 10^−places as a decimal; `places` is at least 1.
 
-    >>> place(-12345, 2)
+    >>> decimal_of_units(-12345, 2)
     '-123.45'
     """
     digits = f"{abs(units):0{places + 1}d}"
@@ -119,8 +122,8 @@ def decimal_of_units(units: int, places: int) -> str:
 
 
 def slope(points: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return the least-squares slope of y over x and its standard error, of at least three
-    points."""
+    """Return the least-squares slope of y over x and its standard error, for three points (x, y) or
+    more."""
     count = len(points)
     mean_x = sum(x for x, _ in points) / count
     mean_y = sum(y for _, y in points) / count

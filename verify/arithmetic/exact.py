@@ -1,10 +1,10 @@
-"""User numbers as exact rationals, and back to decimals whose every digit is known.
+"""Users' numbers as exact rationals, and rationals as decimals whose every digit is known.
 
 `0.001` written by a user is 1/1000, in Python as in a file or on the command line: a float stands
-for the shortest decimal that is read back to it, which is how it prints. So `0.1` is 1/10, and
-`0.1 + 0.2`, which Python has rounded, is 0.30000000000000004. Who means a float's binary value
-writes `Fraction(0.1)`; who means 1/3 writes `"1/3"` or `Fraction(1, 3)`. numpy's numbers are read
-in the same way, a float32 by its own shortest decimal.
+for the shortest decimal that Python reads back to it, which is what it prints. So `0.1` is 1/10,
+and `0.1 + 0.2`, which Python has rounded, is 0.30000000000000004. To give a float's binary value,
+write `Fraction(0.1)`; to give 1/3, write `"1/3"` or `Fraction(1, 3)`. numpy's numbers are read in
+the same way, a float32 by its own shortest decimal.
 """
 
 import re
@@ -19,16 +19,16 @@ import gmpy2
 from verify.errors import InputError
 
 Number = int | str | float | Decimal | Fraction
-"""A number of a user, as `rational` reads it: exact, or a float that stands for its decimal."""
+"""A user's number, as `rational` reads it: exact, or a float that stands for its decimal."""
 NumberOrList = Number | Sequence[Number]
-"""One number, or one for each degree of freedom."""
+"""One number, or a list with one for each degree of freedom."""
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
-_MAX_BITS = 8000  # of the numerator, and of the denominator
-_MAX_LENGTH = 5000  # characters: more than two numbers of so many bits have
-_ORDINARY = Fraction(1, 1000), 10**4
-_SHORT = 10  # characters
+_MAX_BITS = 8000  # the limit for the numerator, and for the denominator
+_MAX_LENGTH = 5000  # characters; two integers of 8000 bits have fewer together
+_PLAIN_RANGE = Fraction(1, 1000), 10**4  # sizes that are printed without an exponent
+_SHORT_LENGTH = 10  # characters
 
 
 class Mpf(Protocol):
@@ -42,8 +42,8 @@ def rational(value: Number, name: str = "number") -> Fraction:
     """Return the exact value of a user's number.
 
     Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
-    infinities, booleans, other types, exponents beyond ±1000, and more than 8000 bits; so `text`
-    of what it returns is read again.
+    infinities, booleans, other types, exponents beyond ±1000, and more than 8000 bits. Therefore
+    `rational` accepts what `text` writes of its results.
 
     >>> rational("0.1"), rational(0.1), rational("7/3")
     (Fraction(1, 10), Fraction(1, 10), Fraction(7, 3))
@@ -54,7 +54,7 @@ def rational(value: Number, name: str = "number") -> Fraction:
         raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
     if isinstance(value, str | Decimal):
         number = _from_text(str(value), name)
-    else:  # numpy's integers overflow inside a Fraction
+    else:  # a numpy integer becomes Python's: it would overflow inside a Fraction
         number = Fraction(int(value) if isinstance(value, Integral) else value)
     if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MAX_BITS:
         raise _too_long(name, value)
@@ -62,7 +62,7 @@ def rational(value: Number, name: str = "number") -> Fraction:
 
 
 def positive(value: Number, name: str) -> Fraction:
-    """Return the exact value; InputError unless it is greater than zero."""
+    """Return the exact value. Raises InputError unless it is greater than 0."""
     number = rational(value, name)
     if number <= 0:
         raise InputError(name, value, "must be greater than 0")
@@ -70,8 +70,7 @@ def positive(value: Number, name: str) -> Fraction:
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:
-    """Return the value, if it is a whole number from `least` to `most`; else raise
-    InputError."""
+    """Return the value if it is a whole number from `least` to `most`; else raise InputError."""
     count = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
     if count is None or count < least or (most is not None and count > most):
         range_text = f"{least} or more" if most is None else f"{least} … {most}"
@@ -82,8 +81,8 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
 
 
 def as_whole(value: Any, least: int = 1, most: int | None = None) -> str:
-    """Return advice what to write for 1e6, 10.0 and 1,000; empty if that is no whole number
-    of the range."""
+    """Return advice to write 1e6, 10.0 or 1,000 as a whole number; empty if the value is none from
+    `least` to `most` (without it 10^15)."""
     try:
         number = rational(re.sub("[,_]", "", value) if isinstance(value, str) else value)
     except InputError:
@@ -97,7 +96,7 @@ def _from_text(text: str, name: str) -> Fraction:
     if len(stripped) > _MAX_LENGTH:
         raise _too_long(name, text)
     match = _NUMBER.fullmatch(stripped)
-    # `\d` matches the digits of every script; a number here is written in ASCII.
+    # `\d` matches the digits of every script, but only ASCII digits are accepted.
     if match is None or not stripped.isascii():
         from verify.arithmetic.number_mistakes import number_mistake
 
@@ -118,9 +117,9 @@ def _too_long(name: str, value: Number) -> InputError:
 
 
 def _is_float(value: object) -> TypeGuard[float]:
-    """Return True for a float, or one of numpy's; numpy itself is not imported for that."""
-    of_numpy = type(value).__module__ == "numpy" and isinstance(value, Real)
-    return isinstance(value, float) or (of_numpy and not isinstance(value, Integral))
+    """Return True for a float, Python's or numpy's; numpy is not imported to see it."""
+    is_numpy_real = type(value).__module__ == "numpy" and isinstance(value, Real)
+    return isinstance(value, float) or (is_numpy_real and not isinstance(value, Integral))
 
 
 def _from_float(value: float, name: str) -> Fraction:
@@ -131,7 +130,8 @@ def _from_float(value: float, name: str) -> Fraction:
 
 
 def text(value: Fraction) -> str:
-    """Return a short exact text of a rational: a decimal if it ends, else a quotient.
+    """Return an exact text of a rational: a decimal if it ends after at most 20 places and
+    |value| < 10^20, else a quotient.
 
     >>> text(Fraction(1, 8)), text(Fraction(1, 3))
     ('0.125', '1/3')
@@ -151,12 +151,13 @@ def text(value: Fraction) -> str:
 
 
 def plain(value: Fraction, digits: int) -> str:
-    """Return so many significant digits, without an exponent if the number is of ordinary size.
+    """Return the value with `digits` significant digits, without an exponent if it is 0 or
+    10^−3 ≤ |value| < 10^4.
 
     >>> plain(Fraction(1, 3), 5)
     '0.33333'
     """
-    ordinary = value == 0 or _ORDINARY[0] <= abs(value) < _ORDINARY[1]
+    ordinary = value == 0 or _PLAIN_RANGE[0] <= abs(value) < _PLAIN_RANGE[1]
     return f"{float(value):.{digits}g}" if ordinary else decimal(value, digits)
 
 
@@ -167,23 +168,23 @@ def short(value: Fraction) -> str:
     ('1/3', '4.86e-15')
     """
     exact_text = text(value)
-    return exact_text if len(exact_text) <= _SHORT else decimal(value, 3)
+    return exact_text if len(exact_text) <= _SHORT_LENGTH else decimal(value, 3)
 
 
 def quotient(x: Any) -> Any:
-    """Return a float, a number of MPFR or a rational as gmpy2's rational, which compares,
+    """Return a float, a number of MPFR or a rational as a rational of gmpy2, which compares,
     subtracts and divides some ten times as fast as a Fraction."""
-    return gmpy2.mpq(*x.as_integer_ratio())  # given x itself it takes four times as long
+    return gmpy2.mpq(*x.as_integer_ratio())  # mpq(x) would take four times as long
 
 
 def fraction(x: Any) -> Fraction:
-    """Return the Fraction that a rational of gmpy2 or a finite number of MPFR is."""
+    """Return a rational of gmpy2, or a finite number of MPFR, as the Fraction that equals it."""
     numerator, denominator = x.as_integer_ratio()
     return Fraction(int(numerator), int(denominator))
 
 
 def of_mpf(x: Mpf) -> Fraction:
-    """Return the rational that a finite number of mpmath is."""
+    """Return a finite number of mpmath as the Fraction that equals it."""
     sign, mantissa, exponent, _ = x._mpf_
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -size if sign else size
@@ -203,15 +204,16 @@ def decimal(value: Fraction, digits: int) -> str:
 def _format_units(units: int, exponent: int, digits: int) -> str:
     mantissa = gmpy2.mpz(abs(units)).digits()  # str() stops at 4300 digits
     exponent += len(mantissa) - 1
-    mantissa = mantissa[:digits]  # 9.99… rounded up to 10 has one more
+    mantissa = mantissa[:digits]  # 9.99… rounded up is 10.0…, which has one digit more
     sign = "-" if units < 0 else ""
     point = f".{mantissa[1:]}" if digits > 1 else ""
     return f"{sign}{mantissa[0]}{point}e{exponent:+03d}"
 
 
 def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
-    """Return (units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits`
-    digits.
+    """Return (units, exponent): value ≠ 0 is rounded half-even to units·10^exponent.
+
+    `units` has `digits` digits, or one more if it was rounded up to 10^digits.
 
     >>> rounded_units(Fraction(1, 3), 4)
     (3333, -4)
@@ -236,7 +238,7 @@ def magnitude(value: Fraction) -> int:
     3
     """
     top, bottom = abs(value.numerator), value.denominator
-    # Bit lengths place the exponent within one; the comparison settles it.
+    # log₁₀ 2 ≈ 30103/100000: the bit lengths give the exponent, or a little less.
     exponent = (top.bit_length() - bottom.bit_length()) * 30103 // 100000 - 1
     if exponent < 0:
         top *= 10**-exponent
@@ -249,11 +251,11 @@ def magnitude(value: Fraction) -> int:
 
 
 def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]:
-    """Return `value` with the digits that `bound` allows (at most `most`), and the printed text's
-    bound.
+    """Return `value` as a text with the digits that `bound` allows (at most `most`), and a bound on
+    the text's error.
 
-    The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
-    The returned bound includes the rounding of the text. If no digit is known the text is "0".
+    The unit of the last digit is at least twice `bound`, so that this digit is right to one unit.
+    The returned bound includes the rounding of the text. If no digit is known, the text is "0".
 
     >>> known_digits(Fraction(1, 3), Fraction(1, 10**5), 12)
     ('3.333e-01', '4.34e-05')
@@ -262,12 +264,12 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
     if not digits:
         return "0", upper(abs(value) + bound)
     units, exponent = rounded_units(value, digits)
-    off = abs(value - units * Fraction(10) ** exponent)
-    return _format_units(units, exponent, digits), upper(bound + off)
+    rounding = abs(value - units * Fraction(10) ** exponent)
+    return _format_units(units, exponent, digits), upper(bound + rounding)
 
 
 def known_text(value: Fraction, bound: Fraction, most: int) -> str:
-    """Return the text of `known_digits` alone, if its bound is not needed.
+    """Return the text of `known_digits` without its bound.
 
     >>> known_text(Fraction(1, 3), Fraction(1, 10**5), 12)
     '3.333e-01'
@@ -277,8 +279,8 @@ def known_text(value: Fraction, bound: Fraction, most: int) -> str:
 
 
 def _count_known_digits(value: Fraction, bound: Fraction, most: int) -> int:
-    """Return how many digits the bound allows, `most` at most; 0 if none is known, or value =
-    0."""
+    """Return the number of digits that the bound allows, at most `most`; 0 if no digit is known, or
+    the value is 0."""
     if not value:
         return 0
     # The last printed digit must have a unit of at least twice the bound.
@@ -286,7 +288,7 @@ def _count_known_digits(value: Fraction, bound: Fraction, most: int) -> int:
 
 
 def upper(bound: Fraction) -> str:
-    """Return a bound rounded up to three significant digits.
+    """Return a bound as a text, rounded up to three significant digits.
 
     >>> upper(Fraction(1, 3))
     '3.34e-01'

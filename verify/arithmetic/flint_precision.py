@@ -1,5 +1,5 @@
-"""flint's precision and its length of series, which are one for the whole process, set for a while
-and given back."""
+"""flint's precision and its length of power series, set for a while and then restored: both are
+global to the process."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,25 +14,24 @@ _ONE_THREAD = RLock()
 
 @contextmanager
 def working_precision(bits: int) -> Iterator[None]:
-    """Set ball arithmetic with so many bits, by one thread at a time; leave flint's as it was."""
-    # The precision is one for the process: another thread that set its own meanwhile would change
-    # ours.
+    """Set the precision of ball arithmetic in bits for a while; one thread at a time may do so."""
+    # The precision is global: another thread that set its own meanwhile would change ours.
     with _ONE_THREAD, flint.ctx.workprec(bits):
         yield
 
 
 @contextmanager
 def length_of_series(terms: int) -> Iterator[None]:
-    """Set power series of so many terms; leave flint's length of them as it was."""
-    before, flint.ctx.cap = flint.ctx.cap, terms
+    """Set the number of terms of flint's power series for a while."""
+    previous_cap, flint.ctx.cap = flint.ctx.cap, terms
     try:
         yield
     finally:
-        flint.ctx.cap = before
+        flint.ctx.cap = previous_cap
 
 
 class AtEachPrecision(Generic[T]):
-    """A value computed by `make` at flint's precision, once for each precision."""
+    """A value that `make` computes at flint's present precision, once for each precision."""
 
     __slots__ = ("_make", "_values")
 
@@ -48,9 +47,10 @@ class AtEachPrecision(Generic[T]):
 
 
 def sign_of(value: Callable[[], flint.arb]) -> int:
-    """Return the sign, 1 or −1, of a real number that is known not to be 0.
+    """Return the sign, 1 or −1, of a real number that must not be 0.
 
-    `value` gives an enclosure in flint's precision, which is raised until it excludes 0.
+    `value` returns an enclosure of it at flint's precision. The precision is doubled until the
+    enclosure excludes 0: for the number 0 this would not end.
     """
     bits = 128
     while True:

@@ -1,6 +1,6 @@
-"""Arrays of floats behind the names of mpmath's context, so that one formula serves both.
+"""Arrays of floats with the interface of mpmath's context, so that one formula serves both.
 
-numpy is imported when a number or a function is first asked for.
+numpy is imported when a number or a function is first used.
 """
 
 from fractions import Fraction
@@ -13,10 +13,10 @@ _PI = "3.14159265358979323846264338327950288419716939937510582"
 
 
 class FloatContext:
-    """The part of `mp` that formulas use, elementwise, in float64 or in the C compiler's long
-    double.
+    """The part of mpmath's context that formulas use, elementwise in float64 or in long double.
 
-    `wide`: long double, which has 64 bits or more on most machines, and 53 on the others.
+    `wide`: in the C compiler's long double, which has 64 bits or more on most machines, and 53 on
+    others.
     """
 
     def __init__(self, wide: bool = False) -> None:
@@ -30,7 +30,7 @@ class FloatContext:
 
     @cached_property
     def type(self) -> Any:
-        """numpy's type of its numbers."""
+        """The numpy type of its numbers."""
         return self._np.longdouble if self.wide else self._np.float64
 
     @cached_property
@@ -49,9 +49,10 @@ class FloatContext:
         return self._np.asarray(x, dtype=self.type)[()]
 
     def rational(self, x: Fraction) -> Number:
-        """Return an exact rational, rounded once."""
-        # The float64 nearest to x and the remainder, added in long double: rounded once, except
-        # where the remainder itself is rounded across a tie.
+        """Return an exact rational, rounded to the nearest number; long doubles, in rare cases, to
+        the second nearest."""
+        # The float64 nearest to x, plus the remainder in float64, added in long double: only if the
+        # rounded remainder lies across a tie is the sum not the nearest number.
         high = float(x)
         return self.type(high) + (float(x - Fraction(high)) if self.wide else 0)
 
@@ -66,7 +67,7 @@ class FloatContext:
 
 
 def number(mp: Context, x: Fraction) -> Number:
-    """Return an exact rational, rounded once."""
+    """Return an exact rational as a number of the context."""
     if isinstance(mp, FloatContext):
         return mp.rational(x)
     return mp.mpf(x.numerator) / x.denominator

@@ -1,4 +1,4 @@
-"""A guess at the number that a text was meant to be: the number to write instead."""
+"""A guess at the number that a user meant by a text: the number to write instead."""
 
 import re
 import unicodedata
@@ -10,15 +10,15 @@ _DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"[+-]?{_DECIMAL}(?:/\d+)?", re.ASCII)
 _QUOTIENT = re.compile(rf"([+-]?{_DECIMAL})/({_DECIMAL})", re.ASCII)
 _GROUPED = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
-_LONGEST = 60  # characters of a text for which a number is looked for
+_MAX_LENGTH = 60  # characters; a number is guessed for texts up to this length
 
 
 def number_mistake(text: str) -> str:
-    """Return why the text is no exact number, and what to write."""
-    meant = next(_guess_numbers(text), None) if len(text) <= _LONGEST else None
+    """Return the reason why a text is no exact number, and what to write instead."""
+    meant = next(_guess_numbers(text), None) if len(text) <= _MAX_LENGTH else None
     if meant is not None:
         return f"is no number as it is written; write {meant}"
-    plain = _plain(text[:_LONGEST]).lower()
+    plain = _plain(text[:_MAX_LENGTH]).lower()
     if re.search(r"pi|π|sqrt|√", plain) or re.fullmatch(r"[+-]?(\d+\*)?e", plain):
         more = "numbers are rational; write as many digits as are wanted, as 1.5707963"
     elif re.search(r"°|deg|rad", plain):
@@ -35,15 +35,15 @@ def number_mistake(text: str) -> str:
 
 
 def _guess_numbers(text: str) -> Iterator[str]:
-    """Yield numbers that the text may be meant for, the likeliest first."""
+    """Yield the numbers that a user may have meant, the likeliest first."""
     plain = _plain(text)
     if _GROUPED.fullmatch(plain):
         thousands = plain.replace(",", "")
         yield thousands if plain.count(",") > 1 else f"{thousands} or {plain.replace(',', '.')}"
     if "," in plain and "." in plain:
-        last = max(",", ".", key=plain.rfind)
-        separator = "," if last == "." else "."
-        plain = plain.replace(separator, "").replace(last, ".")
+        decimal_point = max(",", ".", key=plain.rfind)  # the later of the two
+        separator = "," if decimal_point == "." else "."
+        plain = plain.replace(separator, "").replace(decimal_point, ".")
     tries = (
         plain.replace(",", "."),
         re.sub(r"[dD]([+-]?\d+)$", r"e\1", plain),
@@ -72,8 +72,8 @@ def _from_other_base(text: str) -> Iterator[str]:
 
 
 def _plain(text: str) -> str:
-    """Return the text in ASCII if there is such a character, without quotation marks and
-    brackets around it."""
+    """Return the text with ASCII characters for those that have one, and without quotation marks
+    and brackets around it."""
     plain = re.sub("[−‐-―]", "-", unicodedata.normalize("NFKC", text)).replace("⁄", "/")
     plain = re.sub(r"\s*([/*^])\s*|^([+-])\s+", r"\1\2", plain)
     return re.sub(r"""^[\s=({\['"“„‘]+|[\s)}\]'"”’;]+$""", "", plain)

@@ -1,7 +1,7 @@
-"""The integrators of others → a Report: what each claims, held against what is found.
+"""The report on the integrators of other libraries: their claims, each with its verdict.
 
-Its parts, a library's own code or a file of printed tables each, are looked at by themselves, in a
-process of their own where there are several.
+A part is a library's own code, or a file of printed tables. With several workers each part is
+judged in a process of its own.
 """
 
 import time
@@ -31,14 +31,17 @@ from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
-_LEAST = "is not installed: pip install 'areaproof[{}]'"
+_NOT_INSTALLED = "is not installed: pip install 'areaproof[{}]'"
 TITLE = "The integrators of others, verified"
 
 
 @dataclass(frozen=True)
 class PartResult:
-    """The claims of one part. `version`: of a library, None if it is not installed, and "" for
-    what needs none; `broken`: some of it fails here."""
+    """The claims of one part.
+
+    `version`: that of the library, None if it is not installed, and "" for a part that needs none;
+    `broken`: True if a part of it fails here.
+    """
 
     title: str
     version: str | None
@@ -50,10 +53,10 @@ class PartResult:
 def make_integrators_report(
     command: str, on_library: Callable[[str], None] = lambda _: None, workers: int = 1
 ) -> Report:
-    """Make the report of all libraries that are installed, and of the printed tables.
+    """Build the report on all libraries that are installed, and on the printed tables.
 
-    `on_library` is called with the title of each part before it is looked at. `workers`: processes;
-    with one, all is looked at here.
+    `on_library` is called with the title of each part before it is judged. `workers`: the number of
+    processes; 1 means this process itself.
     """
     start = time.perf_counter()
     parts = look_at_each(workers, on_library)
@@ -132,7 +135,7 @@ def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[PartResul
                 processes.release(future)
                 # A process that died did so by a library's fault, which must not end the report; an
                 # exception of ours must.
-                if error is not None and not processes.lost(error):
+                if error is not None and not processes.is_worker_loss(error):
                     raise error
                 by_name[name] = _report_lost(name) if error is not None else future.result()
     return [by_name[name] for name in every]
@@ -152,7 +155,7 @@ def _tables(path: Path) -> PartResult:
 def _library(name: str) -> PartResult:
     module, version = libraries.get(name), libraries.installed_version(name)
     if version is None:
-        reason = _LEAST.format(getattr(module, "EXTRA", "peers"))
+        reason = _NOT_INSTALLED.format(getattr(module, "EXTRA", "peers"))
         return PartResult(module.TITLE, None, (), ((module.TITLE, reason),))
     with contain_effects():
         claims, failed = _claims(module, f"{module.TITLE} {version}".strip())

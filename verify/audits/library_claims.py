@@ -1,7 +1,7 @@
-"""The claims that are made for someone else's integrator, each with its verdict and evidence.
+"""The claims on an integrator of another library, each with its verdict and evidence.
 
-An integrator is a library's own code, or a table that a library has in its sources: a TOML file for
-each library in `reports/audits`, as `verify check-table` takes it, whose `title` is the library
+An integrator is a library's own code, or a table from its sources. The tables of each library are
+in a TOML file in `reports/audits`, as `verify check-table` takes it, whose `title` is the library
 with its version. Both are reported in the same way.
 """
 
@@ -47,26 +47,33 @@ from verify.schemes.printed.sentences import ruling_on_digits, ruling_on_order
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
-_LITERATURE = "literature.toml"  # has a reader of its own, with more to tell of splittings
-_NONE = Prose()
-_PLACES = ((Fraction(1, 5), Fraction(-1, 4), Fraction(3, 10), Fraction(1, 7)),)  # p, then q
+_LITERATURE_FILE = "literature.toml"  # `verify.audits.libraries.literature` reads it
+_NO_EVIDENCE = Prose()
+_SYMPLECTICITY_POINTS = (
+    (Fraction(1, 5), Fraction(-1, 4), Fraction(3, 10), Fraction(1, 7)),
+)  # p, then q
 _SYMPLECTIC = "symplectic: det J ≡ 1"
-_IN_TIME = "where the force depends on time"
-_UNSAID = f"its order {_IN_TIME}, of which nothing is said"
-_FOLLOWING = ("row sums", "symmetric", "stage order")
-_ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
-# What is claimed, its reproduction, and a second look, where there are means that share no code.
+_IN_TIME_TEXT = "where the force depends on time"
+_UNCLAIMED_IN_TIME = f"its order {_IN_TIME_TEXT}, of which nothing is said"
+_FOLLOWING_KINDS = ("row sums", "symmetric", "stage order")
+_KINDS_WITH_PROGRAM = ("agreement", "in time")  # their program is shown, whatever the verdict is
+# A claim, the program that reproduces it, and a second look, which returns None if no means are
+# left that share no code with the first.
 _Claim = tuple[TableClaim, str, Callable[[], Look | None]]
 
 
 def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
-    """Yield one claim for the order and one for symplecticity, where they are made; of a printed
-    table one for the order and one for its digits. `prefix` begins the ids."""
+    """Yield the claims of an integrator: on its order and on its symplecticity, if they are made;
+    for a printed table, on its order and on its digits.
+
+    `prefix`: the beginning of the ids.
+    """
     for claim, code, look in _claims(integrator.method, integrator):
         ending = f". Driven: {integrator.driven}"
         result = result_of(claim, prefix, integrator.name, section, integrator.source, ending, look)
         shows_code = (
-            result.verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or claim.kind in _ALWAYS_TOLD
+            result.verdict in (Verdict.REFUTED, Verdict.UNDECIDED)
+            or claim.kind in _KINDS_WITH_PROGRAM
         )
         yield result.model_copy(update={"reproduction": code if shows_code else ""})
 
@@ -102,7 +109,7 @@ def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
     wrong = False
     for claim in claims:
         # A wrong coefficient that costs the order breaks these conditions as well.
-        follows = claim.kind in _FOLLOWING or (
+        follows = claim.kind in _FOLLOWING_KINDS or (
             claim.kind == "order in time" and claim.severity == Severity.WRONG_ORDER
         )
         if not (wrong and follows and claim.verdict is Verdict.REFUTED):
@@ -156,7 +163,7 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     if claimed is not None:
         order = order_of(table, claimed, rounded)
         wrong = order.order < claimed and not rounded
-        repaired = repair(table, claimed) if wrong else _NONE
+        repaired = repair(table, claimed) if wrong else _NO_EVIDENCE
         ruling = judge_exact_order(claimed, order, symplecticity(table, rounded), rounded, repaired)
         embedded = "embedded" in integrator.name
         severity = Severity.WRONG_WEIGHTS if embedded else Severity.WRONG_ORDER
@@ -181,18 +188,20 @@ def _at_tableau(method: ExactTableau, name: str, claimed: int) -> Look:
 
 @_claims.register
 def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
-    point = (method.points or (POINTS if method.hamiltonian.degrees == 1 else _PLACES))[0]
+    point = (
+        method.points or (POINTS if method.hamiltonian.degrees == 1 else _SYMPLECTICITY_POINTS)
+    )[0]
     order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
     timed = method.hamiltonian.time_dependent
     if order is not None:
-        statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
+        statement = f"order {order}, too, {_IN_TIME_TEXT}" if timed else f"order {order}"
         severity = Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER
         ruling = judge_measured_order(order, finding(method), area)
         claim = TableClaim("order", statement, *ruling, severity)
         script = reproductions.write_order_program(code, point, order, timed)
         yield claim, script, partial(look_at_step, integrator, order)
     elif timed:
-        claim = TableClaim("in time", _UNSAID, *report_unclaimed(finding(method)))
+        claim = TableClaim("in time", _UNCLAIMED_IN_TIME, *report_unclaimed(finding(method)))
         yield claim, reproductions.write_time_program(code, point), _no_look
     if area:
         ruling = judge_measured_area(finding(method))
@@ -206,7 +215,7 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def files() -> list[Path]:
     """Return the files, one a library."""
     folder = content("reports", "audits")
-    return [path for path in sorted(folder.glob("*.toml")) if path.name != _LITERATURE]
+    return [path for path in sorted(folder.glob("*.toml")) if path.name != _LITERATURE_FILE]
 
 
 def claims_of_tables(table_file: TableFile) -> Iterator[ClaimResult]:

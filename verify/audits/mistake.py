@@ -1,9 +1,9 @@
-"""A described mistake, with all that is measured of it; or why it is not reported.
+"""A described mistake with its evidence, or the reason why it is not reported.
 
-A person has read of each mistake: the words that claim, the line to blame, and the correction. One
-TOML file describes one, `reports/audits/findings/NAME.toml`. Nothing in it is taken for true: the
-claims must be refuted where it is reported, and the tables and programs are run again, the tables
-also with the entries changed as the correction would have them.
+A person has described each mistake in a TOML file, `reports/audits/findings/NAME.toml`: the claim
+in its own words, the line to blame, and the correction. Nothing in it is taken for true. A mistake
+is reported only if the claims are refuted in the same run, and if the tables and programs show it
+when they are run again. The corrected tables and programs must show the claimed order.
 """
 
 import re
@@ -40,8 +40,11 @@ Text = Annotated[str, Field(min_length=1, max_length=20000)]
 
 
 class TableCorrection(Frozen):
-    """A printed table, by the first word of its file's title and its name; which of its claims; and
-    the entries that the mend changes, by key, row and column from 1, to their texts."""
+    """The correction of a printed table.
+
+    `id`: the first word of the title of its file, "/" and its name. `kind`: that of the claim.
+    `changes`: the new texts of entries, by key, row and column, counted from 1, as "a.3.2".
+    """
 
     id: Text
     kind: Text
@@ -49,10 +52,11 @@ class TableCorrection(Frozen):
 
 
 class Description(Frozen):
-    """A mistake as a person has read it: where it is, what holds instead, and how it is mended.
+    """A mistake as a person has described it: where it is, what holds instead, and its correction.
 
-    `claims`: ids of what is refuted, with * for any text. `program` is in the library's `language`;
-    `mended`, the same with the mend; `ran`: by whom it was run and when, unless it is run here.
+    `claims`: the ids of the refuted claims, with * for any text. `program`: shows the mistake, in
+    the library's `language`; `mended`: the same with the correction. `ran`: who has run it and
+    when, if it cannot be run here.
     """
 
     title: Text
@@ -71,12 +75,12 @@ class Description(Frozen):
     table: tuple[TableCorrection, ...] = ()
 
     def tells_of(self, claim: str) -> bool:
-        """Return True if it is about the claim of that id."""
+        """Return True if it concerns the claim of that id."""
         return any(fnmatchcase(_plain(claim), _plain(pattern)) for pattern in self.claims)
 
 
 def _plain(text: str) -> str:
-    """Replace the brackets that stand for more than themselves in a pattern."""
+    """Replace square brackets, which have a meaning of their own in a pattern."""
     return text.replace("[", "(").replace("]", ")")
 
 
@@ -86,12 +90,12 @@ def folder() -> Path:
 
 
 def descriptions() -> dict[str, Description]:
-    """Read all descriptions, by name. Raises InputError for a file that is none."""
+    """Read all descriptions, by name. Raises InputError for a file that is no description."""
     return {path.stem: read(path) for path in sorted(folder().glob("*.toml"))}
 
 
 def read(path: Path) -> Description:
-    """Read one description. InputError names the file."""
+    """Read one description. Raises InputError, which names the file."""
     try:
         return Description.model_validate(read_toml(path))
     except ValidationError as error:
@@ -99,11 +103,11 @@ def read(path: Path) -> Description:
         raise problem from None
 
 
-RIGHT = "right"
+RIGHT_TIMES = "right"
 
 
 def entry_of(name: str) -> TableEntry:
-    """Return the printed table of that id. Raises InputError for none."""
+    """Return the printed table of that id. Raises InputError if there is none."""
     entry = _entries().get(name)
     if entry is None:
         raise InputError("table", name, "is none of the printed tables in reports/audits")
@@ -120,10 +124,10 @@ def _entries() -> dict[str, TableEntry]:
 
 
 def change_entries(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
-    """Return the table with those entries. Raises InputError for a key that it has not."""
+    """Return the table with these entries changed. Raises InputError for a key that it lacks."""
     data = entry.model_dump(exclude_unset=True)
     for key, value in changes.items():
-        if key == "times" and value == RIGHT:
+        if key == "times" and value == RIGHT_TIMES:
             data["times"] = _right_times(entry)
         else:
             _put_entry(data, key, value)
@@ -149,8 +153,7 @@ def _put_entry(data: dict[str, Any], key: str, value: str) -> None:
 
 
 def _right_times(entry: TableEntry) -> list[str]:
-    """Return the time that each part should read: what the other kind's parts before it add up
-    to."""
+    """Return the right time of each part: the sum of the earlier parts of the other kind."""
     if not isinstance(entry, AlternatingEntry):
         raise InputError("changes", "times", "are made right of kicks and drifts alone")
     naming = Naming(entry.numbers)
@@ -164,15 +167,17 @@ def _right_times(entry: TableEntry) -> list[str]:
     return times
 
 
-_SECONDS = 300.0
-_ORDER = re.compile(r"^order on (.+): (-?\d+\.\d+)$", re.MULTILINE)
-_WITHIN = 0.3  # of the order that a program prints
+_PROGRAM_SECONDS = 300.0
+_PRINTED_ORDER = re.compile(r"^order on (.+): (-?\d+\.\d+)$", re.MULTILINE)
+_ORDER_TOLERANCE = 0.3  # a correction raises a printed order by 1, less this number, at least
 
 
 @dataclass(frozen=True)
 class ProgramOutput:
-    """The output of a program, and the orders that it names, by problem; `failed`: why it did not
-    end well."""
+    """The output of a program, and the orders that it prints, by problem.
+
+    `failed`: the reason of a failure, "" if it has ended well.
+    """
 
     printed: str
     orders: dict[str, float]
@@ -181,7 +186,7 @@ class ProgramOutput:
 
 @dataclass(frozen=True)
 class TableEvidence:
-    """One table: its claimed order, its steps' orders as printed, and with the mend."""
+    """One table: its claimed order, and the convergence as printed and with the correction."""
 
     name: str
     claimed: int
@@ -191,7 +196,7 @@ class TableEvidence:
 
 @dataclass(frozen=True)
 class ConfirmedFinding:
-    """A confirmed finding: the description, the refuted claims, and what was run."""
+    """A confirmed finding: the description, the refuted claims, and the results of what was run."""
 
     name: str
     described: Description
@@ -206,9 +211,11 @@ class NotConfirmedError(Exception):
 
 
 def confirm(name: str, described: Description, claims: Sequence[ClaimResult]) -> ConfirmedFinding:
-    """Confirm a mistake on the claims that were judged just now. Raises NotConfirmedError where one
-    that it is about is not refuted, or where a table or a program does not show it, or not the
-    correction."""
+    """Confirm a mistake on the claims that were judged in this run.
+
+    Raises NotConfirmedError if a claim that it concerns is not refuted, if a table or a program
+    does not show it, or if the correction does not help.
+    """
     # Only claims that were judged in this run count: a newer version of the library may be right.
     matching = tuple(claim for claim in claims if described.tells_of(claim.id))
     if not matching:
@@ -247,7 +254,7 @@ def _confirm_table(correction: TableCorrection) -> TableEvidence:
     if correction.changes and (
         not corrected_orders
         or min(corrected_orders) < claimed
-        or any(x.below(claimed) for x in mended)
+        or any(x.is_below(claimed) for x in mended)
     ):
         raise NotConfirmedError(f"{correction.id}: with the mend its order is not {claimed}")
     return TableEvidence(correction.id, claimed, printed.slopes, mended)
@@ -263,8 +270,8 @@ def _run_confirmed(program: str) -> ProgramOutput:
 def _compare(program: ProgramOutput, mended: ProgramOutput | None) -> None:
     """Check that the correction raises every order by nearly one, at least."""
     for problem, order in (mended.orders if mended else {}).items():
-        before = program.orders.get(problem)
-        if before is None or order < before + 1 - _WITHIN:
+        printed_order = program.orders.get(problem)
+        if printed_order is None or order < printed_order + 1 - _ORDER_TOLERANCE:
             raise NotConfirmedError(f"the mend does not raise the order on {problem}")
 
 
@@ -272,7 +279,7 @@ def _compare(program: ProgramOutput, mended: ProgramOutput | None) -> None:
 
 
 def run(program: str) -> ProgramOutput:
-    """Run the lines of a program; only what it prints is let through."""
+    """Run the lines of a Python program in a process; return its output."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.py"
         path.write_text(program, encoding="utf-8")
@@ -281,12 +288,12 @@ def run(program: str) -> ProgramOutput:
                 [sys.executable, str(path)],
                 capture_output=True,
                 text=True,
-                timeout=_SECONDS,
+                timeout=_PROGRAM_SECONDS,
                 cwd=folder,
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            return ProgramOutput("", {}, f"does not end within {_SECONDS:.0f} s")
-    orders = {name: float(order) for name, order in _ORDER.findall(process.stdout)}
+            return ProgramOutput("", {}, f"does not end within {_PROGRAM_SECONDS:.0f} s")
+    orders = {name: float(order) for name, order in _PRINTED_ORDER.findall(process.stdout)}
     last = process.stderr.strip().splitlines()[-1:] if process.returncode else []
     return ProgramOutput(process.stdout.strip(), orders, " ".join(last))

@@ -1,4 +1,4 @@
-"""A report of integrators → one Markdown note for each mistake that is described and confirmed."""
+"""Markdown notes on a report of integrators, one for each described and confirmed mistake."""
 
 import platform
 import re
@@ -19,16 +19,18 @@ from verify.files import write_atomically
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
 
-_CLAIMED, _HOLDS = re.compile(r"order (\d+)"), re.compile(r"order is (\d+)")
-_OFF = re.compile(r"of h\^(\d+), .*? fails by (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
+_CLAIMED_ORDER, _ORDER_THAT_HOLDS = re.compile(r"order (\d+)"), re.compile(r"order is (\d+)")
+_FIRST_WRONG_TERM = re.compile(r"of h\^(\d+), .*? fails by (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
 _WEIGHTS = ", embedded weights"
 
 
 def write_findings(
     report: Report, folder: Path, on_finding: Callable[[str], None] = lambda _: None
 ) -> tuple[list[Path], dict[str, str]]:
-    """Write the notes; return their paths, and by name why any was not written. Raises what the
-    disk raises."""
+    """Write the notes; return their paths, and by name the reason why a note was not written.
+
+    Raises OSError.
+    """
     folder.mkdir(exist_ok=True)
     paths: list[Path] = []
     reasons: dict[str, str] = {}
@@ -46,7 +48,7 @@ def write_findings(
 
 
 def _describe_versions(confirmed: ConfirmedFinding, report: Report) -> str:
-    """Describe what was judged, in which version, and by what."""
+    """Describe the version that was judged, and the versions of areaproof and Python."""
     versions = report.provenance.versions if report.provenance else {}
     library = confirmed.described.library
     opening = f"Judged here: {library} {versions[library]}, " if library in versions else "Judged "
@@ -54,9 +56,9 @@ def _describe_versions(confirmed: ConfirmedFinding, report: Report) -> str:
 
 
 def note(confirmed: ConfirmedFinding, versions: str) -> str:
-    """Return the text, which can be sent as it is.
+    """Return the text of the note, which can be sent as it is.
 
-    `versions`: of the library, as it is judged here, and of what judges it.
+    `versions`: a sentence on the versions of the library, of areaproof and of Python.
     """
     context = {"said": confirmed.described, "orders": list(_orders(confirmed.claims))}
     return _template().render(confirmed=confirmed, versions=versions, **context).rstrip() + "\n"
@@ -72,11 +74,14 @@ def _template() -> Template:
 
 
 def _orders(claims: Sequence[ClaimResult]) -> Iterator[tuple[str, ...]]:
-    """Yield for each method the claimed order, the one that holds, and the first term that is
-    off."""
+    """Yield a row for each method: its label, the claimed order, the order that holds, the first
+    wrong power of h, and the size of its error."""
     for claim in claims:
-        claimed, holds = _CLAIMED.search(str(claim.statement)), _HOLDS.search(str(claim.evidence))
-        gap = _OFF.search(str(claim.evidence))
+        claimed, holds = (
+            _CLAIMED_ORDER.search(str(claim.statement)),
+            _ORDER_THAT_HOLDS.search(str(claim.evidence)),
+        )
+        gap = _FIRST_WRONG_TERM.search(str(claim.evidence))
         if claimed and holds:
             term = f"h^{gap[1]}" if gap else "–"
             by = f"{abs(float(gap[2])):.1e}" if gap else "–"

@@ -1,4 +1,7 @@
-"""A few lines of Python that show by themselves what was found of someone else's code or table."""
+"""Reproductions: a few lines of Python that show a finding on another library's code or table.
+
+They need nothing of this package.
+"""
 
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,9 @@
-"""A second look at a printed table: its steps in high precision, against the solution by mpmath.
+"""A second look at a printed table: its steps with 60 digits, against the solution by mpmath.
 
-It shares no code with the conditions that tables are judged by: the step is carried out as its
-library does, and the solution is Taylor's, by `mpmath.odefun`.
+The first look tests algebraic conditions on the table. This module shares with it only the reading
+of the table: it carries out steps as a program that uses the table would, and compares them with
+the Taylor series solution of `mpmath.odefun`. The order is read off the errors of one step: with a
+method of order r they shrink as h^(r+1).
 """
 
 import math
@@ -21,33 +23,36 @@ from verify.integrators.tables.tableau_claims import BlocksEntry, block_of
 from verify.schemes.printed.naming import Naming
 
 _DIGITS = 60
-_SIZES = tuple(mp.mpf(1) / 2**k for k in range(4, 8))
-_LARGE = tuple(
-    mp.mpf(k) / 16 for k in (16, 12, 8, 6, 4, 3, 2)
-)  # where rounded numbers allow no less
-_SMALL = tuple(mp.mpf(1) / 2**k for k in (14, 16, 18, 20))  # where a small residue is seen
-_TURNS = 80  # of a fixed point: with h ≤ 1/16 each gains more than a digit
-_ABOVE = 20  # times the unit of the last digits an error must be, in parts of h
-_SHORT = 1e-7  # the unit of decimals that are taken for exact
-_WITHIN = 0.3  # of a whole power
+_STEP_SIZES = tuple(mp.mpf(1) / 2**k for k in range(4, 8))
+# For tables whose rounded numbers hide the errors of smaller steps.
+_LARGE_STEP_SIZES = tuple(mp.mpf(k) / 16 for k in (16, 12, 8, 6, 4, 3, 2))
+# For errors of a low order whose coefficient is small.
+_SMALL_STEP_SIZES = tuple(mp.mpf(1) / 2**k for k in (14, 16, 18, 20))
+# With h ≤ 1/16 each sweep of the fixed-point iteration gains more than a digit; with the large step
+# sizes convergence is not certain.
+_SWEEPS_OF_IMPLICIT_STAGES = 80
+# An error counts if it is larger than this number times h times the unit of the last printed digit.
+_NOISE_FACTOR = 20
+_SHORT_UNIT = 1e-7  # decimals whose last digit has at least this unit are taken as exact
+_ORDER_TOLERANCE = 0.3  # the largest distance of a slope from a whole number that passes for it
 Vector = list[Any]
 
 
 @dataclass(frozen=True)
 class SeparableSystem:
-    """H = T(p) + b(t) V(q), by T', V' and b."""
+    """H = T(p) + b(t) V(q): `speed` is T', `slope_of_potential` is V', and `b` the factor."""
 
     formula: str
     speed: Callable[[Any], Any]
-    slope: Callable[[Any], Any]
+    slope_of_potential: Callable[[Any], Any]
     b: Callable[[Any], Any]
 
     def kick(self, t: Any, p: Any, q: Any) -> Any:
-        """Return p' at that time."""
-        return -self.b(t) * self.slope(q)
+        """Return p', the derivative of p by t."""
+        return -self.b(t) * self.slope_of_potential(q)
 
     def drift(self, t: Any, p: Any, q: Any) -> Any:
-        """Return q' at that time."""
+        """Return q', the derivative of q by t."""
         return self.speed(p)
 
 
@@ -60,91 +65,104 @@ _QUARTIC = "p²/2 + p⁴/4"
 
 
 @cache
-def systems(timed: bool, quadratic: bool) -> tuple[SeparableSystem, SeparableSystem]:
-    """Return a pendulum, and an oscillator of degree 4; with a kinetic energy of degree 4 for
-    methods of any T(p); driven, where a time is judged."""
+def systems(driven: bool, quadratic: bool) -> tuple[SeparableSystem, SeparableSystem]:
+    """Return a pendulum, and an oscillator with a potential of degree 4.
+
+    `driven`: the potential has a factor that depends on t, to judge times. `quadratic`: T = p²/2,
+    for methods that need this; otherwise T has the degree 4.
+    """
     speed = mp.mpf if quadratic else _cubic
     kinetic = _QUADRATIC if quadratic else _QUARTIC
-    rate = (lambda t: 1 + mp.cos(2 * t) / 2) if timed else (lambda t: mp.mpf(1))
-    factor = "(1 + cos(2t)/2) " if timed else ""
+    b = (lambda t: 1 + mp.cos(2 * t) / 2) if driven else (lambda t: mp.mpf(1))
+    factor = "(1 + cos(2t)/2) " if driven else ""
     return (
-        SeparableSystem(f"H = {kinetic} − {factor}cos q", speed, mp.sin, rate),
-        SeparableSystem(f"H = {kinetic} + {factor}(q²/2 + q⁴/4)", speed, _cubic, rate),
+        SeparableSystem(f"H = {kinetic} − {factor}cos q", speed, mp.sin, b),
+        SeparableSystem(f"H = {kinetic} + {factor}(q²/2 + q⁴/4)", speed, _cubic, b),
     )
 
 
-Step = Callable[[SeparableSystem, Any, Any, Any, Any], Vector]  # of t, p, q, h
+# A function of the system, t, p, q and h that returns p and q after one step.
+Step = Callable[[SeparableSystem, Any, Any, Any, Any], Vector]
 
 
 @dataclass(frozen=True)
 class SystemConvergence:
-    """The convergence on one system: step sizes with the errors of one step, and the order that
-    those show which are above what rounded numbers leave; None if no whole power is seen."""
+    """The convergence on one system.
+
+    `rows`: step sizes with the errors of one step. `order`: that of the method by those errors that
+    are above the effect of rounded numbers; None if they follow no whole power. `last_powers`: the
+    last two slopes of ln(error) over ln(h), or fewer.
+    """
 
     formula: str
     rows: tuple[tuple[float, float], ...]
     order: int | None
-    last: tuple[float, ...] = ()
+    last_powers: tuple[float, ...] = ()
 
-    def below(self, claimed: int) -> bool:
-        """Return True if the order is seen to be lower: a whole power, or slopes that stay below
-        it."""
+    def is_below(self, claimed: int) -> bool:
+        """Return True if the order is lower than claimed, or if both last slopes are too low."""
         if self.order is not None:
             return self.order < claimed
-        return len(self.last) > 1 and max(self.last) < claimed + 1 - _WITHIN
+        if len(self.last_powers) < 2:
+            return False
+        return max(self.last_powers) < claimed + 1 - _ORDER_TOLERANCE
 
 
-def slopes_of(
-    entry: TableEntry, timed: bool, embedded: bool = False, small: bool = False
+def measure_convergence(
+    entry: TableEntry, driven: bool, embedded: bool = False, small: bool = False
 ) -> tuple[SystemConvergence, SystemConvergence]:
-    """Measure the table as it is printed, at both systems.
+    """Measure the convergence of the table as it is printed, on both systems.
 
-    `embedded`: with its embedded weights; `small`: of steps so small that a small residual of a low
-    order is seen.
+    `driven`: on systems that depend on t. `embedded`: with the embedded weights. `small`: with very
+    small steps, at which an error of a low order and a small coefficient shows.
     """
     with mp.workdps(_DIGITS):
         step, naming = _step(entry, embedded)
-        units = [float(x) for x in naming.printed_numbers.units.values() if x < _SHORT]
-        noise = _ABOVE * max(units, default=0.0)  # what they leave in a step, in parts of h
-        pair = systems(timed, entry.kind == "nystrom")
-        by_system = [
-            _measure_slopes(system, step, noise, _SMALL if small else _SIZES) for system in pair
-        ]
-        # Where the rounded numbers hide the power, larger steps show it above their error.
-        if not small and any(slopes.order is None for slopes in by_system):
-            by_system = [_measure_slopes(system, step, noise, _LARGE) for system in pair]
+        units = [float(x) for x in naming.printed_numbers.units.values() if x < _SHORT_UNIT]
+        # The rounding of the printed numbers changes one step by about noise · h.
+        noise = _NOISE_FACTOR * max(units, default=0.0)
+        pair = systems(driven, entry.kind == "nystrom")
+        step_sizes = _SMALL_STEP_SIZES if small else _STEP_SIZES
+        by_system = [_measure_system(system, step, noise, step_sizes) for system in pair]
+        # If rounding hides the power, the errors of larger steps show it.
+        if not small and any(convergence.order is None for convergence in by_system):
+            by_system = [_measure_system(system, step, noise, _LARGE_STEP_SIZES) for system in pair]
     return by_system[0], by_system[1]
 
 
-def _measure_slopes(
-    system: SeparableSystem, step: Step, noise: float, sizes: Sequence[Any]
+def _measure_system(
+    system: SeparableSystem, step: Step, noise: float, step_sizes: Sequence[Any]
 ) -> SystemConvergence:
-    (t, p, q), flow = _solution(system)
+    """Measure the convergence on one system; `step_sizes` fall."""
+    (t, p, q), flow = _start_and_flow(system)
     errors = []
-    for h in sizes:
+    for h in step_sizes:
         end = step(system, t, p, q, h)
         errors.append(max(abs(x - y) for x, y in zip(end, flow(t + h), strict=True)))
-    rows = tuple((float(h), float(error)) for h, error in zip(sizes, errors, strict=True))
-    # Rounded digits leave an error of about noise · h in one step: below it no power is seen.
-    clear_rows = [row for row in rows if row[1] > noise * row[0]]
-    powers = [math.log(x / y) / math.log(h / k) for (h, x), (k, y) in pairwise(clear_rows)]
-    last = tuple(powers[-2:])
-    return SystemConvergence(system.formula, rows, _order(last), last)
+    rows = tuple((float(h), float(error)) for h, error in zip(step_sizes, errors, strict=True))
+    clear_rows = [(h, error) for h, error in rows if error > noise * h]
+    powers = [
+        math.log(large_error / small_error) / math.log(large / small)
+        for (large, large_error), (small, small_error) in pairwise(clear_rows)
+    ]
+    last_powers = tuple(powers[-2:])
+    return SystemConvergence(system.formula, rows, _estimate_order(last_powers), last_powers)
 
 
 @cache
-def _solution(system: SeparableSystem) -> tuple[Vector, Callable[[Any], Vector]]:
-    """Return t, p and q at the start, and the solution from there: the same for all tables."""
+def _start_and_flow(system: SeparableSystem) -> tuple[Vector, Callable[[Any], Vector]]:
+    """Return t, p and q at the start, and the solution from there, a function of t."""
     t, p, q = mp.mpf(3) / 4, mp.mpf(1) / 3, mp.mpf(3) / 5
     return [t, p, q], mp.odefun(
         lambda s, z: [system.kick(s, *z), system.drift(s, *z)], t, [p, q], tol=mp.mpf(10) ** -45
     )
 
 
-def _order(powers: Sequence[float]) -> int | None:
-    """Return the order of two slopes that agree, at the smallest steps above the noise."""
-    if len(powers) < 2 or any(abs(x - round(powers[-1])) > _WITHIN for x in powers):
+def _estimate_order(powers: Sequence[float]) -> int | None:
+    """Return the order of the method if two slopes agree on a whole power; None otherwise."""
+    if len(powers) < 2 or any(abs(x - round(powers[-1])) > _ORDER_TOLERANCE for x in powers):
         return None
+    # The error of one step is O(h^(r+1)).
     return round(powers[-1]) - 1
 
 
@@ -153,10 +171,15 @@ def _order(powers: Sequence[float]) -> int | None:
 
 @singledispatch
 def _step(entry: TableEntry, embedded: bool) -> tuple[Step, Naming]:
+    """Return the step of a table, and the naming, which has all its printed numbers afterwards.
+
+    Raises TypeError for a kind of table whose steps are not implemented here.
+    """
     raise TypeError(f"{entry.name}: no step is made of a {entry.kind}")
 
 
-def _numbers(naming: Naming, texts: Sequence[str]) -> Vector:
+def _values(naming: Naming, texts: Sequence[str]) -> Vector:
+    """Return the values of formulas in the named numbers, each number as it is printed."""
     printed = naming.printed_numbers
     values = (printed.at_print(printed.entry(text)) for text in texts)
     return [mp.mpf(str(sympy.N(x, _DIGITS + 10))) for x in values]
@@ -166,15 +189,15 @@ def _numbers(naming: Naming, texts: Sequence[str]) -> Vector:
 def _(entry: AlternatingEntry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
     kinds, sizes, times = parts_of(entry, naming)
-    parts = _numbers(naming, sizes)
-    moments = _numbers(naming, [x or "0" for x in times or ["0"] * len(parts)])
+    coefficients = _values(naming, sizes)
+    abscissas = _values(naming, [x or "0" for x in times or ["0"] * len(coefficients)])
 
     def step(system: SeparableSystem, t: Any, p: Any, q: Any, h: Any) -> Vector:
-        for kind, size, moment in zip(kinds, parts, moments, strict=True):
+        for kind, size, abscissa in zip(kinds, coefficients, abscissas, strict=True):
             if kind == "kick":
-                p += size * h * system.kick(t + moment * h, p, q)
+                p += size * h * system.kick(t + abscissa * h, p, q)
             else:
-                q += size * h * system.drift(t + moment * h, p, q)
+                q += size * h * system.drift(t + abscissa * h, p, q)
         return [p, q]
 
     return step, naming
@@ -183,7 +206,7 @@ def _(entry: AlternatingEntry, embedded: bool) -> tuple[Step, Naming]:
 @_step.register
 def _(entry: composition.CompositionEntry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
-    weights = _numbers(naming, composition.weights_of(entry, naming))
+    weights = _values(naming, composition.weights_of(entry, naming))
 
     def step(system: SeparableSystem, t: Any, p: Any, q: Any, h: Any) -> Vector:
         for w in weights:
@@ -198,40 +221,45 @@ def _(entry: composition.CompositionEntry, embedded: bool) -> tuple[Step, Naming
 
 @_step.register
 def _(entry: BlocksEntry, embedded: bool) -> tuple[Step, Naming]:
-    """Step z' = f_1 + f_2 + …: of one part all of the field; of two the kicks and the drifts."""
+    """Return the step of one tableau for the whole field, or of one for p' and one for q'.
+
+    Of more tableaus, those between the first and the last would get a field of 0.
+    """
     naming, blocks = Naming(entry.numbers), []
     for number, block in enumerate(entry.blocks):
         named_block = block_of(block, naming, f"_{number}" if number else "", entry.folder)
-        rows = [_numbers(naming, row) for row in named_block.printed.matrix]
+        rows = [_values(naming, row) for row in named_block.printed.matrix]
         weights = (
             named_block.embedded
             if embedded and named_block.embedded
             else named_block.printed.weights
         )
         times = named_block.printed.times
-        nodes = [sum(row) for row in rows] if times is None else _numbers(naming, times)
-        blocks.append((rows, _numbers(naming, weights), nodes))
+        abscissas = [sum(row) for row in rows] if times is None else _values(naming, times)
+        blocks.append((rows, _values(naming, weights), abscissas))
     stages = range(len(blocks[0][1]))
 
     def step(system: SeparableSystem, t: Any, p: Any, q: Any, h: Any) -> Vector:
-        def fields(k: int, i: int, z: Vector) -> Vector:
-            moment = t + blocks[k][2][i] * h
-            kick = system.kick(moment, *z) if k == 0 else mp.mpf(0)
-            drift = system.drift(moment, *z) if k == len(blocks) - 1 else mp.mpf(0)
+        def stage_slope(k: int, i: int, z: Vector) -> Vector:
+            """Return the part of the field that tableau k has, at its stage i."""
+            stage_time = t + blocks[k][2][i] * h
+            kick = system.kick(stage_time, *z) if k == 0 else mp.mpf(0)
+            drift = system.drift(stage_time, *z) if k == len(blocks) - 1 else mp.mpf(0)
             return [kick, drift]
 
-        slopes = [[fields(k, i, [p, q]) for i in stages] for k in range(len(blocks))]
+        # slopes[k][i][n]: of tableau k at stage i, for p (n = 0) or q (n = 1).
+        slopes = [[stage_slope(k, i, [p, q]) for i in stages] for k in range(len(blocks))]
         # Explicit stages are exact after as many sweeps as there are stages; implicit ones are
         # iterated to a fixed point.
         explicit = all(row[j] == 0 for rows, _, _ in blocks
                        for i, row in enumerate(rows) for j in stages if j >= i)  # fmt: skip
-        for _ in range(len(stages) if explicit else _TURNS):
+        for _ in range(len(stages) if explicit else _SWEEPS_OF_IMPLICIT_STAGES):
             for i in stages:
                 z = [x + h * sum(rows[i][j] * slopes[k][j][n] for k, (rows, _, _) in
                                  enumerate(blocks) for j in stages)
                      for n, x in enumerate((p, q))]  # fmt: skip
                 for k in range(len(blocks)):
-                    slopes[k][i] = fields(k, i, z)
+                    slopes[k][i] = stage_slope(k, i, z)
         return [x + h * sum(b * slopes[k][j][n] for k, (_, bs, _) in enumerate(blocks)
                             for j, b in enumerate(bs))
                 for n, x in enumerate((p, q))]  # fmt: skip

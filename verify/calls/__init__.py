@@ -1,1 +1,1 @@
-"""The calls from Python; each takes a system and a scheme in any of their forms."""
+"""The functions that users call from Python; a system and a scheme may have any of their forms."""

@@ -1,6 +1,7 @@
-"""`verify.check`: verification of a user's step function, or of any scheme, against its claims.
+"""`verify.check` and `verify.check_map`: verification of a user's step function or map.
 
-`verify.check_map`: the same of any map of a user's own, without an H: is it symplectic?
+`check` also takes a scheme, which it proves; `check_map` decides whether a map is symplectic, and
+needs no H.
 """
 
 from __future__ import annotations
@@ -48,27 +49,27 @@ def check(
     within: Number | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding | Proof:
-    """Decide whether a step is a scheme for H and what it preserves: by proof, else by measuring.
+    """Decide whether a step is a scheme for H and what it preserves: by proof, or by measuring.
 
     Parameters
     ----------
     system, parameters: as in `verify.run`.
     step: a function step(p, q, h), or step(p, q, t, h) for an H in t, that returns p' and q'; it
-        is called. Or a scheme's name, 'p_next = …; q_next = …', a Scheme or a StepMap, which is
+        is called. Or a scheme's name, 'p_next = …; q_next = …', a Scheme or a StepMap; these are
         proved.
-    order: the least claimed order of convergence, 1 … 12; by default that which a scheme itself
-        claims.
-    area_preserving, symplectic: True if det J ≡ 1 is claimed of it, or JᵀΩJ ≡ Ω, which is the
-        same in one degree of freedom.
-    arguments: such as "q,p,h", where the function's arguments are not named so.
-    q, p: the first state to look at, numbers or, in n degrees of freedom, lists of n numbers.
-    step_size: the largest step size to look at.
+    order: the claimed order of convergence, which a higher one satisfies too, 1 … 12; by default
+        the order that a scheme itself claims.
+    area_preserving, symplectic: True claims det J ≡ 1, or JᵀΩJ ≡ Ω, which is the same in one degree
+        of freedom.
+    arguments: their order, such as "q,p,h", if the names of the function's arguments do not tell.
+    q, p: the first state to try, numbers or, in n degrees of freedom, lists of n numbers.
+    step_size: the largest step size to try.
     within: an allowed defect.
     time_limit: seconds for the whole check.
 
-    Returns a Finding of a function: its `verdict` with the `reason`, its `order` and
-    `convergence_order`, and a `counterexample` where it is refuted at a point. Returns a Proof of a
-    scheme, as `verify.prove` does. Raises InputError, one line.
+    For a function, returns a Finding: its `verdict` with the `reason`, its `order` and
+    `convergence_order`, and a `counterexample` if it is refuted at a point. For a scheme, returns a
+    Proof, as `verify.prove` does. Raises InputError, one line.
 
     >>> euler = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
     >>> str(euler.verdict), euler.area_preserving, euler.order
@@ -83,15 +84,15 @@ def check(
     if not callable(step) or isinstance(step, Scheme):
         scheme = scheme_from(step)
         step_map = step_map_from(scheme, hamiltonian)
-        keeps = symplectic or (area_preserving and hamiltonian.degrees == 1)
-        # det J ≡ 1 is weaker than JᵀΩJ ≡ Ω where n > 1, and a scheme's proof decides the latter.
-        if area_preserving and not keeps:
+        claims_symplectic = symplectic or (area_preserving and hamiltonian.degrees == 1)
+        # If n > 1, det J ≡ 1 is weaker than JᵀΩJ ≡ Ω, and a scheme's proof decides the latter.
+        if area_preserving and not claims_symplectic:
             problem = "of a scheme in several degrees of freedom symplectic=True is claimed"
             raise InputError("area_preserving", area_preserving, problem)
         # Without a claim of the caller the scheme's own claims are checked.
-        if isinstance(scheme, Scheme) and order is None and not keeps:
+        if isinstance(scheme, Scheme) and order is None and not claims_symplectic:
             return prove(step_map, scheme)
-        return prove(step_map, _with_claims(scheme, order, keeps))
+        return prove(step_map, _with_claims(scheme, order, claims_symplectic))
     callee = callee_from(
         step, hamiltonian.coordinates, arguments=arguments, parameters=dict(hamiltonian.values),
         time_limit=time_limit,
@@ -112,15 +113,16 @@ def check_map(
     within: Number | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding:
-    """Decide whether a map is symplectic, JᵀΩJ = Ω everywhere: by proof, else by measuring.
+    """Decide whether a map is symplectic, JᵀΩJ = Ω everywhere: by proof, or by measuring.
 
     Parameters
     ----------
-    function: map(p, q) → p', q', of numbers where `degrees` is 1 and of arrays of so many numbers
-        else; or map(z) → z' of one array of 2·degrees numbers. It is called.
-    arguments: where the coordinates stand in z, such as "q1,p1,q2,p2"; else p1, …, pn, q1, …, qn.
-    parameters: further arguments that it takes by name, exact.
-    point: the first point to look at, 2·degrees numbers p1, …, pn, q1, …, qn.
+    function: map(p, q) → p', q', of numbers if `degrees` is 1, otherwise of arrays of `degrees`
+        numbers; or map(z) → z' of one array of 2·degrees numbers. It is called.
+    arguments: the order of the coordinates in z, such as "q1,p1,q2,p2"; by default p1, …, pn, q1,
+        …, qn.
+    parameters: the exact values of further arguments, which the function takes by name.
+    point: the first point to try, 2·degrees numbers p1, …, pn, q1, …, qn.
     within: an allowed defect.
     time_limit: seconds for all calls.
 
@@ -140,7 +142,7 @@ def check_map(
     names = coordinates_in(degrees)
     values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
     callee = callee_from(
-        # Not `stepped`: the map has no step size h among its arguments.
+        # `stepped=False`: the map has no step size h among its arguments.
         function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
         time_limit=time_limit,
     )  # fmt: skip
@@ -160,16 +162,16 @@ def request_of(
     step_size: Number | None = None,
     within: Number | None = None,
 ) -> Request:
-    """Return the places to look at, read from a caller's arguments. Raises InputError."""
+    """Return the request for a first place to try, from a caller's arguments; or InputError."""
     if (p is None) != (q is None):
         raise InputError("p, q", p if p is not None else q, "give both or none")
     z: list[Fraction] = []
     for name, values in (("p", p), ("q", q)):
-        numbers: list[Any] = [] if values is None else _as_numbers(values)
-        if values is not None and len(numbers) != hamiltonian.degrees:
-            problem = f"has {len(numbers)} numbers; allowed: {hamiltonian.degrees}"
+        coordinates: list[Any] = [] if values is None else _as_list(values)
+        if values is not None and len(coordinates) != hamiltonian.degrees:
+            problem = f"has {len(coordinates)} numbers; allowed: {hamiltonian.degrees}"
             raise InputError(name, values, problem)
-        z += [rational(x, name) for x in numbers]
+        z += [rational(x, name) for x in coordinates]
     return Request(
         z=tuple(z) or None,
         step_size=None if step_size is None else positive(step_size, "step_size"),
@@ -177,14 +179,17 @@ def request_of(
     )
 
 
-def _as_numbers(value: Any) -> list[Any]:
+def _as_list(value: Any) -> list[Any]:
     # A text such as "1/3" is one number, though it has a length.
-    several = hasattr(value, "__len__") and not isinstance(value, str)
-    return list(value) if several else [value]
+    has_several = hasattr(value, "__len__") and not isinstance(value, str)
+    return list(value) if has_several else [value]
 
 
 def _with_claims(scheme: Any, order: int | None, area_preserving: bool) -> Scheme | None:
-    """Return the scheme with these claims alone; None for a step map without any."""
+    """Return the scheme with these claims in place of its own; None for a step map without any.
+
+    A scheme always claims an order, at least 1.
+    """
     if isinstance(scheme, Scheme):
         return replace(scheme, order=order or 1, area_preserving=area_preserving)
     if order is None and not area_preserving:

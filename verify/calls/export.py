@@ -32,9 +32,10 @@ def export(
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     language: c, python, julia or latex.
     parameters: exact values by name; one without a value becomes an argument of the functions.
-    name: of the function that makes a step; those of J and ΔJ are NAME_jacobian and NAME_delta_j.
+    name: that of the function that makes a step; the functions of J and ΔJ are called
+        NAME_jacobian and NAME_delta_j.
 
-    The functions take p, q and h, and where H depends on time p, q, t and h; J is taken at that t.
+    The functions take p, q and h, or p, q, t and h if H depends on time; J is taken at that t.
 
     Numbers in the code are the doubles nearest to the exact ones, which comments beside them give.
     Raises InputError, one line, for a bad argument, and for a map that is given by equations.
@@ -55,7 +56,10 @@ def build_program(
     parameters: ParametersLike = None,
     name: str = "step",
 ) -> Program:
-    """Return the map as assignments, with its constants, for a language; see `export`."""
+    """Return the map as assignments, with its constants, for a language.
+
+    The arguments are those of `export`.
+    """
     hamiltonian = hamiltonian_from(system, parameters)
     scheme_or_map = scheme_from(scheme)
     step_map = step_map_from(scheme_or_map, hamiltonian)

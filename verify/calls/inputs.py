@@ -1,9 +1,9 @@
 """Arguments of callers in their several forms: a system, a scheme, exact numbers, lists.
 
-A system is a `Hamiltonian`, a `System`, the name of one in any case, or a formula such as
+A system is a `Hamiltonian`, a `System`, the name of a system in any case, or a formula such as
 "p**2/2 - cos(q)". A scheme is a name or an alias, formulas 'p_next = …; q_next = …', a splitting
 'kick 1/2; drift 1; kick 1/2', a `Scheme`, or a `StepMap` of the same Hamiltonian. Numbers are read
-as `verify.arithmetic.exact` tells; numpy's are read like Python's.
+as `verify.arithmetic.exact` describes; those of numpy are read like those of Python.
 """
 
 import re
@@ -30,24 +30,25 @@ from verify.schemes.scheme import Scheme
 SystemLike = Hamiltonian | System | str
 SchemeLike = Scheme | StepMap | str
 SchemesLike = SchemeLike | Sequence[SchemeLike]
-# One number, or a list, a tuple, a range or an array with one axis of such.
+# One number, or a list, a tuple, a range or an array with one axis of numbers.
 NumbersLike = Number | Iterable[Number]
 # Values by the names of parameters; None leaves a parameter a symbol.
 ParametersLike = Mapping[str, Number | None] | None
 
-_NAME = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")  # no formula: a word, or words with dashes
-_SOURCE = "arguments"
-_LEAST = 3  # letters of what is taken for a name; `p` is a formula
-_SYSTEM = "is no system; allowed: a name such as duffing, a formula in p and q, a Hamiltonian"
-_SCHEME = (
+# A word, or words with dashes or blanks between them: rather a name than a formula.
+_NAME_PATTERN = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")
+_MIN_NAME_LETTERS = 3  # a shorter word, such as p, is a formula
+_SOURCE = "arguments"  # the file of the scene, in its errors
+_NO_SYSTEM = "is no system; allowed: a name such as duffing, a formula in p and q, a Hamiltonian"
+_NO_SCHEME = (
     "is no scheme; allowed: a name such as lie2, 'p_next = …; q_next = …', a Scheme, a StepMap"
 )
 
 
 def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> Hamiltonian:
-    """Return the Hamiltonian of a system, with these parameter values beside those that it has.
+    """Return the Hamiltonian of a system, with these values of parameters added to its own.
 
-    Raises InputError for what is no system, an unknown name, a bad formula or parameter.
+    Raises InputError for a value that is no system, an unknown name, a bad formula or parameter.
 
     >>> hamiltonian_from("Duffing", {"delta": 0.1}).texts
     {'hamiltonian': 'delta*q**4/4 + p**2/2 + q**2/2', 'parameters': {'delta': '0.1'}}
@@ -60,28 +61,28 @@ def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> H
     if isinstance(system, System):
         return system.hamiltonian(parameters)
     if not isinstance(system, str):
-        raise InputError("system", system, _SYSTEM)
+        raise InputError("system", system, _NO_SYSTEM)
     name = systems.canonical(system)
     if name in systems.names():
         return systems.get(name).hamiltonian(parameters)
-    # A longer word that is no name is a mistyped one; as a formula it would be one parameter.
-    if len(system.strip()) >= _LEAST and _NAME.fullmatch(system.strip()):
+    # A longer word that names no system is mistyped; as a formula it would be a single parameter.
+    if len(system.strip()) >= _MIN_NAME_LETTERS and _NAME_PATTERN.fullmatch(system.strip()):
         raise unknown_name("system", system, systems.names(), "; or a formula in p and q")
     return Hamiltonian.parse(system, parameters)
 
 
 def scheme_from(scheme: SchemeLike) -> Scheme | StepMap:
-    """Return the scheme, or the step map as it is; InputError for what is neither."""
+    """Return the scheme that the value names or is, or the step map. InputError otherwise."""
     if isinstance(scheme, Scheme | StepMap):
         return scheme
     if not isinstance(scheme, str):
-        more = "; verify.check takes a step function" if callable(scheme) else ""
-        raise InputError("scheme", scheme, _SCHEME + more)
+        hint = "; verify.check takes a step function" if callable(scheme) else ""
+        raise InputError("scheme", scheme, _NO_SCHEME + hint)
     return schemes.get(scheme)
 
 
 def scheme_name(scheme: SchemeLike, hamiltonian: Hamiltonian) -> str:
-    """Return a text by which `schemes.get` finds the scheme; that of a map has its formulas.
+    """Return a text by which `schemes.get` finds the scheme: its name, or the formulas of its map.
 
     Raises InputError for a step map of another H, or without a closed form.
     """
@@ -99,7 +100,7 @@ def scheme_name(scheme: SchemeLike, hamiltonian: Hamiltonian) -> str:
 
 
 def step_map_from(scheme: Scheme | StepMap, hamiltonian: Hamiltonian) -> StepMap:
-    """Return the scheme's map of H. Raises InputError for a step map of another H."""
+    """Return the scheme's map for H, or the step map itself. InputError if it is for another H."""
     if isinstance(scheme, Scheme):
         return scheme.step_map(hamiltonian)
     map_hamiltonian = scheme.hamiltonian
@@ -110,20 +111,20 @@ def step_map_from(scheme: Scheme | StepMap, hamiltonian: Hamiltonian) -> StepMap
 
 
 def schemes_from(values: object, hamiltonian: Hamiltonian) -> list[str]:
-    """Return the names of one scheme or of several."""
+    """Return the names of one scheme or of several, as `scheme_name` does."""
     return [scheme_name(each, hamiltonian) for each in as_list("scheme", values)]
 
 
 def is_list(value: object) -> bool:
-    """Return True if the value holds several: a list, a tuple, a range, an array."""
-    # By the name of its module: numpy is not imported for a caller who does not use it.
+    """Return True if the value is a list, a tuple, a range or an array with one axis."""
+    # An array is recognized by its module's name: numpy is not imported for callers without it.
     return (isinstance(value, Sequence | range) and not isinstance(value, str | bytes)) or (
         type(value).__module__ == "numpy" and getattr(value, "ndim", 0) == 1
     )
 
 
 def as_list(name: str, value: Any) -> list[Any]:
-    """Return several values as a list, and one as a list of one. InputError for an empty list."""
+    """Return the values as a list, and one value as a list of it. InputError for an empty list."""
     values = list(value) if is_list(value) else [value]
     if not values:
         raise InputError(name, "[]", "is empty; give one at least")
@@ -131,7 +132,7 @@ def as_list(name: str, value: Any) -> list[Any]:
 
 
 def plain_values(value: Any) -> Any:
-    """Return the value with Python's own numbers and lists, as a scene takes them."""
+    """Return the value with Python's own whole numbers and lists, as a scene needs them."""
     if isinstance(value, Mapping):
         return {key: plain_values(x) for key, x in value.items()}
     if is_list(value):
@@ -152,17 +153,16 @@ def scene_of(
 ) -> Scene:
     """Return a scene of the system and one scheme or several, with these sections and this name.
 
-    `t0`: when its runs start, which an H without t does not look at. `system_name`: the name of the
-    system, where it has one.
+    `t0`: the start time of its runs, which is ignored if H does not depend on t. `system_name`: the
+    name of the system, if it has one.
     """
     hamiltonian = hamiltonian_from(system, parameters)
-    # A family such as `fput` is one system for each n; a scene names its member by the parameter
-    # n.
-    of_family = system_name is not None and systems.get(system_name).family is not None
+    # A family such as `fput` has one system for each n, and a scene has n as a parameter.
+    is_of_family = system_name is not None and systems.get(system_name).family is not None
     data = {
         **({"system": system_name} if system_name else {"hamiltonian": hamiltonian.formula}),
         "parameters": dict[str, Fraction](hamiltonian.values)
-        | ({"n": Fraction(hamiltonian.degrees)} if of_family else {}),
+        | ({"n": Fraction(hamiltonian.degrees)} if is_of_family else {}),
         "schemes": schemes_from(scheme, hamiltonian),
         **({"t0": plain_values(t0)} if t0 is not None and hamiltonian.time_dependent else {}),
     }
@@ -170,12 +170,12 @@ def scene_of(
     try:
         return scene_from({**data, **sections}, _SOURCE, default_name=name)
     except InputError as error:
-        # The error names a key of the scene; the caller has passed an argument.
+        # The error names a key of the scene, but the caller knows only arguments.
         raise type(error)(_argument_name(error.name), error.value, error.problem) from None
 
 
 def _argument_name(key: str) -> str:
-    """Return the argument that a scene's key is made of.
+    """Return the argument whose value has become this key of the scene.
 
     >>> _argument_name("arguments: flow.0.step_size: step_size")
     'step_size'
@@ -183,18 +183,18 @@ def _argument_name(key: str) -> str:
     'scale'
     """
     path, _, field = key.removeprefix(f"{_SOURCE}: ").partition(": ")
-    last = [part for part in path.split(".") if not part.isdecimal()][-1]
-    return field if field and field != "number" else last
+    last_key = [part for part in path.split(".") if not part.isdecimal()][-1]
+    return field if field and field != "number" else last_key
 
 
 def _drop_none(value: Any) -> Any:
-    """Return the sections without their keys of the value None."""
+    """Return a section, or a list of sections, without the keys whose value is None."""
     if isinstance(value, Mapping):
         return {key: x for key, x in value.items() if x is not None}
     return [_drop_none(each) for each in value] if isinstance(value, list) else value
 
 
 def perform(scene: Scene, need: Need, workers: int) -> dict[str, Frozen]:
-    """Compute the scene's results by their keys, in so many processes; 1 is this one."""
+    """Compute the scene's results, by their keys, in `workers` processes; 1 means this process."""
     processes = Placement(whole("workers", workers, 1))
     return execute(plan_of([scene], need), Store(None), where=processes)

@@ -31,21 +31,21 @@ def prove(
     *,
     parameters: ParametersLike = None,
 ) -> Proof:
-    """Prove the order in h of ΔJ = det J − 1, that of the map, and what the scheme claims.
+    """Prove the order in h of ΔJ = det J − 1, the order of the map, and the claims of the scheme.
 
     For an H in p1 … pn and q1 … qn, the order of S = JᵀΩJ − Ω is proved in place of that of ΔJ.
 
     Parameters
     ----------
     system: a Hamiltonian, a system's name, a formula in p, q (or p1, p2, …) and t; or a StepMap,
-        which is then proved itself, with a `scheme` or without one whose claims it is held to.
+        the map to be proved. It is held to the claims of `scheme`, if there is one.
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
-    parameters: exact values by name; one without a value stays a symbol, and the proof holds for
-        all its values but those that `domain` names.
+    parameters: exact values by name; a parameter without a value stays a symbol, and the proof
+        holds for all its values but those that `domain` names.
 
     Returns a Proof: `verdict` with its `reason`; `order` of ΔJ or S and its `leading` coefficient,
-    an expression; `convergence_order` of the map; `area_preserving` and `symplectic`, None if
-    that is undecided. Raises InputError, one line, for a bad argument.
+    an expression; `convergence_order` of the map; `area_preserving` and `symplectic`, each None if
+    it is undecided. Raises InputError, one line, for a bad argument.
 
     >>> proof = prove("duffing", "lie2")
     >>> str(proof.verdict), proof.order, proof.leading
@@ -82,20 +82,21 @@ def modified_hamiltonian(
 ) -> ModifiedEquation:
     """Return the modified equation's terms and the modified Hamiltonian H̃ = H + h H_2 + h² H_3 + ….
 
-    The map of the scheme is the exact flow of the modified field, as a series in h; where its terms
-    are Hamiltonian, H̃ is the energy that the scheme keeps. The first term that is not has a
-    divergence, which is the leading coefficient of ΔJ.
+    The map of the scheme is the exact flow of the modified field, as a series in h. If all terms of
+    the field are Hamiltonian, H̃ is the energy that the scheme keeps. The divergence of the first
+    term that is not is the leading coefficient of ΔJ.
 
     Parameters
     ----------
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
-    system: a Hamiltonian, a system's name, a formula; without one, for every smooth H that the
-        scheme takes (`separable`: every H = T(p) + V(q)), or for that of the StepMap.
-    order: the highest power of h in f̃ and H̃, 1 … 10, for every H 1 … 8.
+    system: a Hamiltonian, a system's name, a formula. Without one: the Hamiltonian of the StepMap;
+        else every smooth H that the scheme takes, or every H = T(p) + V(q) if `separable`.
+    order: the highest power of h in the field and in H̃: 1 … 10, or 1 … 8 without a system.
     parameters: exact values by name; one without a value stays a symbol.
 
-    Returns a ModifiedEquation: its `terms` by powers of h, the `expression` of H̃ as far as they are
-    Hamiltonian, and a `verdict` with its `reason`. Raises InputError, one line, for a bad argument.
+    Returns a ModifiedEquation: its `terms` by powers of h, the `expression` of H̃ up to the last
+    term before one that is not Hamiltonian, and a `verdict` with its `reason`. Raises InputError,
+    one line, for a bad argument.
 
     >>> modified_hamiltonian("stormer-verlet", "p**2/2 + q**4/4", 2).expression
     h**2*q**2*(6*p**2 - q**4)/24 + p**2/2 + q**4/4
@@ -103,13 +104,13 @@ def modified_hamiltonian(
     >>> equation.reach, equation.first_not_hamiltonian.divergence
     (1, '3*delta*p*q')
     """
-    # Imported here, since `prove` needs none of it.
-    from verify.proof.plane.modified_for_every_h import MOST_ORDER as MOST_FOR_EVERY
+    # Imported here, as `prove` does not need these modules.
+    from verify.proof.plane.modified_for_every_h import MOST_ORDER as MOST_ORDER_FOR_EVERY
     from verify.proof.plane.modified_for_every_h import modified_for_every_h
     from verify.proof.plane.modified_for_one_h import MOST_ORDER, modified_for_one_h
 
     scheme_or_map = _resolve_scheme(scheme, system)
-    whole("order", order, 1, MOST_FOR_EVERY if system is None else MOST_ORDER)
+    whole("order", order, 1, MOST_ORDER_FOR_EVERY if system is None else MOST_ORDER)
     if system is None:
         if parameters:
             raise InputError("parameters", parameters, "goes with a system")
@@ -124,7 +125,7 @@ def modified_hamiltonian(
 
 
 def _resolve_scheme(scheme: SchemeLike, system: SystemLike | None) -> Scheme | StepMap:
-    """Return the scheme; InputError with the right call where a system stands in its place."""
+    """Return the scheme. If the name is that of a system, InputError gives the right call."""
     if isinstance(scheme, str) and systems.canonical(scheme) in systems.names():
         is_swapped = isinstance(system, str) and schemes.canonical(system) in schemes.names()
         example = system if is_swapped else "stormer-verlet"

@@ -1,4 +1,4 @@
-"""`verify.run` and `verify.sweep`: N steps, each number with its bound, and tables of runs."""
+"""`verify.run` and `verify.sweep`: a run of N steps, with a bound on each number; and many runs."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from verify.scenes.results.run import MOST_POINTS
 from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import AUTO, steps_from
 
-_DIGITS = 17
-_MOST_RUNS = 100_000  # of a sweep
+_DEFAULT_DIGITS = 17
+_MAX_RUNS = 100_000  # the limit for a sweep
 
 
 def run(
@@ -53,7 +53,7 @@ def run(
     points: int = 0,
     progress: Progress = None,
 ) -> RunResult:
-    """Run a scheme from (q, p), and give p, q and the observables, each with its error bound.
+    """Run a scheme from (q, p), and return p, q and the observables, each with its error bound.
 
     Parameters
     ----------
@@ -63,23 +63,24 @@ def run(
         degrees of freedom q and p are lists of n numbers. All numbers are without units.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
     t0: the time at the start, for an H that depends on t.
-    parameters: exact values by name, beside those that the Hamiltonian has.
+    parameters: exact values by name, in addition to those that the Hamiltonian has.
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
-        Left out: float64, or auto where `digits` is given.
+        By default float64, or auto if `digits` is given.
     digits: the requested significant digits; float64 gives those that it can certify.
-    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max, and energy_error_max, the
-        greatest |H − H₀|; in n degrees of freedom also symplectic_defect_max, the greatest |entry|
-        of any S = JᵀΩJ − Ω, and symplectic_defect, that of all steps together. Left out: those that
-        the command tells.
-    points: so many states, at most, in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
+    observables: names among delta_j_max, mse, lambda, lambda_plain, lambda_max and
+        energy_error_max, the greatest |H − H₀|; in n degrees of freedom also symplectic_defect_max,
+        the greatest |entry| of S = JᵀΩJ − Ω in any step, and symplectic_defect, that of W, the
+        defect of all steps together. By default delta_j_max, mse and lambda, and in n degrees
+        of freedom both symplectic defects too.
+    points: the limit on the states in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
     progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
         called with the number of steps done.
 
     Returns
     -------
     A RunResult: `values` by name, each a number with its `bound`; `orbit`, the states as arrays
-    `t`, `p`, `q`, `energy_error`, `delta_j`, `lambda_`, all without units, made when it is looked
-    at.
+    `t`, `p`, `q`, `energy_error`, `delta_j`, `lambda_`, all without units, computed at its first
+    use.
 
     Raises InputError, one line, for a bad argument: h ≤ 0, N < 1, a parameter without a value, ….
 
@@ -103,21 +104,21 @@ def run_in_turn(
     arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
     points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
-    """Return the run as a course, which can be stepped together with others."""
+    """Do `run` as a course, a generator that can be stepped together with others."""
     hamiltonian = hamiltonian_from(system, parameters)
     check_start(hamiltonian, q, p, t0)
     name = scheme_name(scheme, hamiltonian)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
     digits = None if digits is None else whole("digits", digits, 1)
-    # Requested digits need an arithmetic that can certify them; else float64 is the fastest.
+    # Requested digits need a number system that can certify them; without them float64 is fastest.
     arithmetic = arithmetic or (float64.NAME if digits is None else AUTO)
     if not isinstance(arithmetic, str):
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
     with progress_of(progress, f"{name[:30]}, steps", count) as report:
         request = RequestedRun(
             hamiltonian, name, q=q, p=p, step_size=step_size, steps=count, t0=t0,
-            arithmetic=arithmetic, digits=digits or _DIGITS,
+            arithmetic=arithmetic, digits=digits or _DEFAULT_DIGITS,
             observables=_observable_names(observables), points=int(points),
         )  # fmt: skip
         result = yield from request.result(report)
@@ -150,16 +151,17 @@ def sweep(
 
     Parameters
     ----------
-    scheme, step_size, q, p, each of the parameters: one, or a list, a range or an array with one
-        axis; all combinations of them are run, 100,000 at most.
-    steps, time: one of the two; `time` gives every step size its N = ⌊time / h⌋.
+    scheme, step_size, q, p, each of the parameters: one value, or a list, a range or an array with
+        one axis; all combinations of the values are run, 100,000 at most.
+    steps, time: one of the two; with `time` a step size h has N = ⌊time / h⌋ steps.
     observables: as in `verify.run`; by default delta_j_max, mse and lambda.
     progress: as in `verify.run`; it counts runs.
     options: `arithmetic`, `digits` and `t0` of `verify.run`.
 
-    Returns a Sweep with a row for each run, the last axis fastest: `rows` as exact texts, `column`
-    as an array of float64, `to_dataframe` and `to_xarray`. A run that left its range has empty
-    values, and its `status` says so. Raises InputError, one line, as `verify.run` does.
+    Returns a Sweep with a row for each run; from row to row the last axis varies fastest. It has
+    `rows` as exact texts, `column` as an array of float64, `to_dataframe` and `to_xarray`. A run
+    that left its range has empty values, and its `status` says so. Raises InputError, one line, as
+    `verify.run` does.
 
     >>> table = sweep("duffing", ["lie2", "rk4"], parameters={"delta": 1}, q=1.5, p=0,
     ...               step_size=[0.1, 0.05], time=1)
@@ -174,7 +176,7 @@ def sweep(
             name, options[name], f"unknown; allowed: {', '.join(sorted(option_names))}"
         )
     values = _list_parameters(parameters)
-    # One value of each parameter is enough to parse H once; each run puts in its own values.
+    # The first value of each parameter serves to parse H once; each run substitutes its own values.
     hamiltonian = hamiltonian_from(system, {name: x[0] for name, x in values.items()})
     axes: dict[str, list[Any]] = {
         "scheme": schemes_from(scheme, hamiltonian),
@@ -184,8 +186,8 @@ def sweep(
         **values,
     }
     combinations = list(product(*axes.values()))
-    if len(combinations) > _MOST_RUNS:
-        raise InputError("sweep", len(combinations), f"are more than {_MOST_RUNS} runs")
+    if len(combinations) > _MAX_RUNS:
+        raise InputError("sweep", len(combinations), f"are more than {_MAX_RUNS} runs")
 
     def start_run(point: Sequence[Any]) -> Course[RunResult]:
         arguments = dict(zip(axes, point, strict=True))
@@ -196,8 +198,8 @@ def sweep(
 
     runs: dict[int, RunResult] = {}
     with progress_of(progress, "runs", len(combinations)) as report:
-        # Runs of one kernel wait for each other and are stepped in the lanes of the vector unit;
-        # they end in any order, so the results are sorted by number below.
+        # Runs of one kernel are stepped together, in the lanes of the vector unit. They end in any
+        # order, so the results are sorted by their numbers below.
         for number, outcome in run_together(map(start_run, combinations), MOST_AT_ONCE):
             runs[number] = outcome.result()
             if report:

@@ -1,4 +1,4 @@
-"""Results of runs, and reports with such, which do a run again for more than its values."""
+"""Results of runs, and reports of them, that can repeat a run to compute more than its values."""
 
 from fractions import Fraction
 from functools import cached_property
@@ -11,7 +11,7 @@ from verify.scenes.results.run import EnergyDrift, OrbitTable
 
 
 class RunResult(run_models.RunResult):
-    """One run of N steps of a scheme, in one arithmetic, which can be done again.
+    """The result of a run of N steps of a scheme, in one number system, which can be repeated.
 
     `values` holds q, p and the requested observables, each with its bound; `status` says how the
     run ended, and `error_kind` whether every bound is rigorous.
@@ -20,12 +20,14 @@ class RunResult(run_models.RunResult):
 
     @classmethod
     def from_result(cls, result: run_models.RunResult) -> Self:
-        """Return the result as one that can do its run again."""
+        """Return the result as one that can repeat its run."""
         return cls.model_construct(result.model_fields_set, **dict(result))
 
     @cached_property
     def orbit(self) -> OrbitTable:
-        """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
+        """The states as arrays and exact texts: at every step, or at every k-th of a long run.
+
+        The limit is the `points` of the run, by default 10,000.
 
         Raises InputError if the run ended without values.
         """
@@ -34,7 +36,7 @@ class RunResult(run_models.RunResult):
         return orbit_of(self, self._points)
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
-        """Return (t, |z − φ_t(z₀)|) at so many states at most.
+        """Return (t, |z − φ_t(z₀)|) at `points` states at most; φ_t is the exact flow.
 
         Raises InputError if no exact solution is known.
         """
@@ -43,7 +45,9 @@ class RunResult(run_models.RunResult):
         return solution_errors(self, points)
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
-        """Return H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
+        """Return H̃ − H̃₀ at `points` states at most, for H and for H̃ with its terms up to h^order.
+
+        The terms are added one by one, each with a drift of its own.
 
         Raises InputError if the scheme has no H̃ but H.
         """
@@ -53,14 +57,14 @@ class RunResult(run_models.RunResult):
 
 
 class RepeatableScene(report_models.SceneResult):
-    """A scene's results, whose runs can be done again."""
+    """A scene's results, whose runs can be repeated."""
 
     runs: tuple[RunResult, ...]
     series: tuple[RunResult, ...]
 
 
 class Report(report_models.Report):
-    """A report and all its numbers, whose runs can be done again.
+    """A report and all its numbers, whose runs can be repeated.
 
     `verify.scenes.results.report.Report` describes all fields.
     """

@@ -1,6 +1,6 @@
 """`verify.separate` and `verify.separate_grid`: truncation and rounding of a float64 run.
 
-They are parts of Λ or, where H has more degrees of freedom, of W.
+Both are parts of the run's area error Λ or, in n degrees of freedom, of its symplectic defect W.
 """
 
 from __future__ import annotations
@@ -64,17 +64,17 @@ def separate(
 ) -> SeparationResult | SeparationInDegrees:
     """Split Λ of a float64 run from (q, p) into truncation and four kinds of rounding.
 
-    For an H in time there are five. In n degrees of freedom q and p are lists of n numbers, and
-    W = MᵀΩM − Ω, M the product of the steps' Jacobians, is split entry by entry.
+    An H that depends on time has five kinds. In n degrees of freedom q and p are lists of n
+    numbers, and each entry of W = MᵀΩM − Ω is split; M is the product of the steps' Jacobians.
 
     Parameters
     ----------
     system, scheme, q, p, step_size, steps, time, t0, parameters, progress: as in `verify.run`.
     digits: the requested significant digits of every part.
-    arithmetic: the number system that stands for exact arithmetic, which is not float64.
+    arithmetic: the number system that stands for exact arithmetic; not float64.
 
-    Returns a SeparationResult, or for lists q and p a SeparationInDegrees, with `plain` and
-    `closed_form`, two ways to evaluate Λ or W: the `parts` of each have bounds and add up to
+    Returns a SeparationResult, or for lists q and p a SeparationInDegrees. Its `plain` and
+    `closed_form` are two ways to evaluate Λ or W; the `parts` of each have bounds, and add up to
     float64's value. Both are None if the run left its range. Raises InputError, one line.
 
     >>> result = separate("pendulum", "lie2", q=1.5, p=0, step_size=0.1, steps=10)
@@ -124,11 +124,11 @@ def separate_grid(
 ) -> SeparationGrid | SeparationGridInDegrees:
     """Separate for several step sizes, and find the one below which rounding is the larger part.
 
-    The arguments are those of `verify.separate`, with a list of step sizes; N = `steps` steps, or
-    N = ⌊time / h⌋ of each h. Returns a SeparationGrid, or for lists q and p a
-    SeparationGridInDegrees: `points`, a separation for each step size in the order given, and
-    `plain` and `closed_form`, where the parts cross by either way. Raises InputError as `separate`
-    does, and if a step size is given twice.
+    The arguments are those of `verify.separate`, with a list of step sizes; each h has `steps` or
+    ⌊time / h⌋ steps. Returns a SeparationGrid, or for lists q and p a SeparationGridInDegrees:
+    `points` has a separation for each step size, in the order of the list; `plain` and
+    `closed_form` are the step sizes at which the parts cross, in these two evaluations. Raises
+    InputError as `separate` does, and for a repeated step size.
     """
     hamiltonian = hamiltonian_from(system, parameters)
     name, sizes = scheme_name(scheme, hamiltonian), as_list("step_sizes", step_sizes)

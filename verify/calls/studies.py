@@ -1,6 +1,6 @@
 """`verify.flow`, `verify.stability` and `verify.bench`: studies of several schemes side by side.
 
-Each is a section of a scene, which is read as if it stood in a file.
+The arguments of a call become a section of a scene, which is read as if from a file.
 """
 
 from __future__ import annotations
@@ -54,20 +54,21 @@ def flow(
     Parameters
     ----------
     system, scheme, step_size, parameters: as in `verify.run`; `scheme` may be a list.
-    steps, times: one of the two, a number or a list; of a time N = ⌊T/h⌋.
+    steps, times: one of the two, a number or a list; for a time T, N = ⌊T/h⌋.
     t0: the time at the start, for an H that depends on t.
     shape: a name, circle, square or cat; or `polygon`, its corners (q, p) in their order; or
-        `path`, as SVG has it, x being q and y being p. Without any of them a circle.
-    centre: (q, p) of its place; `scale`: the factor of its size. In n degrees of freedom q and p
-        are lists, and the region lies in (q_i, p_i), i = `plane`; measured is ∮ p·dq.
-    exact: also the exact flow, and the distance from it.
-    mean_lambda: the mean of Λ over the region, of schemes that change area.
-    digits: the significant digits of areas and distances that are requested.
-    workers: processes; 1 is this one, and others import the caller's script again, whose call then
-        stands under `__name__ == "__main__"`.
+        `path`, as in SVG, where x is q and y is p. Without any of them a circle.
+    centre: the (q, p) of the shape's centre; `scale`: the factor of its size. In n degrees of
+        freedom q and p are lists, the region lies in the plane (q_i, p_i) with i = `plane`, and
+        ∮ p·dq is measured.
+    exact: True carries the region by the exact flow too, and measures the distance from its image.
+    mean_lambda: True computes the mean of Λ over the region, for schemes that change area.
+    digits: the requested significant digits of areas and distances.
+    workers: the number of processes; 1 means this process. Further ones import the caller's script
+        again, so that the call must stand under `if __name__ == "__main__"`.
 
-    Returns a FlowResult: `before`, the outlines of the shape, and `images`, one a map and number of
-    steps, each with its `area_change`, `mean_lambda`, `distance` and their errors. Raises
+    Returns a FlowResult: `before`, the outlines of the shape, and `images`, one for each map and
+    number of steps, with `area_change`, `mean_lambda`, `distance` and their errors. Raises
     InputError, one line.
 
     >>> result = flow("harmonic", "stormer-verlet", parameters={"omega": 1}, step_size=0.1, steps=3)
@@ -82,8 +83,8 @@ def flow(
         "shape": shape,
         "polygon": polygon,
         "path": path,
-        # The default is left out: in n degrees of freedom two zeros are too few. A centre that the
-        # caller gives is checked, so the comparison is by identity.
+        # The default is left out, as in n degrees of freedom two zeros are too few. It is compared
+        # by identity, so that a (0, 0) from the caller is checked.
         **({} if centre is _ORIGIN else {"centre": {"q": centre[0], "p": centre[1]}}),
         "plane": plane,
         "scale": scale,
@@ -119,8 +120,8 @@ def stability(
     scheme, step_size: as in `verify.run`, one or a list of each.
     workers: processes, as in `verify.flow`.
 
-    Returns one StabilityResult a scheme and step size: its `kind`, its `verdict` in words, and
-    `detail`, what it is due to. Raises InputError, one line.
+    Returns a StabilityResult for each scheme and step size: its `kind`, its `verdict` in words, and
+    `detail`, the cause. Raises InputError, one line.
 
     >>> results = stability("harmonic", ["euler", "stormer-verlet"], parameters={"omega": 1},
     ...                     q=1, p=0, step_size=0.1, time=100)
@@ -157,15 +158,16 @@ def bench(
     ----------
     system, q, p, t0, parameters: as in `verify.run`.
     scheme: one, or a list.
-    step_sizes: two at least; N = ⌊time / h⌋ steps of each.
+    step_sizes: two at least; each h has N = ⌊time / h⌋ steps.
     time: the end T of the runs; errors are those at t = N·h.
-    repeats: the timings of each point, of which results have the least and the median.
-    peers: also solvers of other installed libraries.
+    repeats: the number of timings of each point; results have their least and their median.
+    peers: True measures solvers of other installed libraries too.
     progress: as in `verify.run`; it counts points.
 
-    Returns a WorkPrecisionResult: `lines`, one a scheme or peer, whose `points` have the `error` of
-    the solution, |z_N − z(N·h)| in (p, q), that of area, Λ, in n degrees of freedom max |W_N|, and
-    the run times; `verify.plot_work_precision` draws it. Raises InputError, one line.
+    Returns a WorkPrecisionResult: `lines`, one for each scheme or peer. Its `points` have the
+    `error` of the solution, |z_N − z(N·h)| in (p, q), the area error Λ, or max |W_N| in n degrees
+    of freedom, and the run times. `verify.plot_work_precision` draws it. Raises InputError, one
+    line.
     """
     sizes = as_list("step_sizes", step_sizes)
     if len(sizes) < 2:

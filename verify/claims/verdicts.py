@@ -17,7 +17,7 @@ from verify.claims.base_claim import Claim, Findings
 from verify.claims.claims_file import ClaimsFile
 from verify.errors import InputError, LimitError, find_nearest, format_suggestion
 from verify.execution.execute import OnResult, Store, execute
-from verify.execution.executors import ANYWHERE, Placement
+from verify.execution.executors import LOCAL_DEFAULT, Placement
 from verify.execution.plan import Plan
 from verify.execution.provenance import provenance
 from verify.hamiltonians import systems
@@ -59,7 +59,7 @@ def judge_claim(
     scenes: Mapping[str, Scene],
     results: Mapping[str, Frozen],
     store: Store,
-    where: Placement = ANYWHERE,
+    where: Placement = LOCAL_DEFAULT,
 ) -> ClaimResult:
     """Return the claim's verdict; UNDECIDED if it exceeds a limit of exact computation.
 
@@ -116,7 +116,7 @@ class ClaimsCheck:
     proved_results: dict[str, Frozen]
 
     def run(
-        self, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
+        self, store: Store, *, where: Placement = LOCAL_DEFAULT, done: OnResult | None = None
     ) -> list[ClaimResult]:
         """Return each claim's verdict in order. InputError names the claim and its line.
 
@@ -189,7 +189,7 @@ def make_report(
     preface: Sequence[str] = (),
     not_claimed: Sequence[tuple[str, str]] = (),
     plan: Plan | None = None,
-    where: Placement = ANYWHERE,
+    where: Placement = LOCAL_DEFAULT,
     done: OnResult | None = None,
 ) -> Report:
     """Compute what the scenes and claims need, and judge.

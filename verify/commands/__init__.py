@@ -1,4 +1,4 @@
-"""The command line, one command a file; `main` puts them together, and says errors in one line."""
+"""The command line: one command a file. `main` joins them, and prints an error in one line."""
 
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
@@ -14,7 +14,8 @@ _FILES = Catalogue(__name__, __path__)
 class Commands(Mapping[str, "click.Command"]):
     """The commands by their names, each called as its file.
 
-    Only the file of a requested command is imported, and it imports heavy libraries when it is run.
+    Only the file of a requested command is imported, and a command imports heavy libraries when it
+    is run.
     """
 
     def __init__(self) -> None:
@@ -27,7 +28,7 @@ class Commands(Mapping[str, "click.Command"]):
 
         if name not in self._loaded:
             command = getattr(_FILES.module(name), name.replace("-", "_"), None)
-            if not isinstance(command, Command):  # a file that commands share
+            if not isinstance(command, Command):  # a module without a command, as `hunt`
                 raise KeyError(name)
             self._loaded[name] = with_typed_names(command)
         return self._loaded[name]

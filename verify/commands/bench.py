@@ -1,4 +1,4 @@
-"""The command `verify bench`: error against run time of one scene."""
+"""The command `verify bench`: error against run time, for the schemes of a scene."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-# Columns of the table, by what a scheme is to keep: head and field of a point.
+# The columns of errors, by the structure that schemes should keep: the head of each column, and the
+# field of a `WorkPoint`. The last one is the defect of that structure.
 _ERRORS = {
     AREA: {"error": "error", "Λ": "lam"},
     SYMPLECTIC: {
@@ -35,19 +36,21 @@ _ERRORS = {
 
 @click.command()
 @with_one_line(
-    click.option("--time", metavar="T", help="N is T/H rounded down."),
-    click.option("--repeats", type=int, metavar="N", help="Timings of each.  [default: 5]"),
-    click.option("--peers", is_flag=True, help="Other libraries' solvers beside them."),
+    click.option("--time", metavar="T", help="The end time T; N is T/H rounded down."),
+    click.option("--repeats", type=int, metavar="N", help="Timings of each point.  [default: 5]"),
+    click.option("--peers", is_flag=True, help="Measure solvers of other libraries too."),
 )
 @start_options
-@click.option("-o", "--output", type=OUT_FILE, metavar="FILE.svg", help="Draw it there.")
+@click.option(
+    "-o", "--output", type=OUT_FILE, metavar="FILE.svg", help="Draw the figure into this file."
+)
 @cluster_option
 @answering
 @cache_option
 def bench(
     scene: str | None, output: Path | None, cluster: str | None, **options: Any
 ) -> CommandAnswer:
-    """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
+    """Measure error against run time in SCENE, a TOML file with a [work_precision].
 
     \b
     verify bench my.toml -o work-precision.svg
@@ -65,7 +68,7 @@ def bench(
     )
     if output is not None:
         for name, result in results:
-            # A single figure has the typed name; of several each has the name of its scene, too.
+            # A single figure has the typed name; to each of several its scene's name is added.
             several = len(results) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
     return CommandAnswer(lambda: _bench_json(results), lambda: _print(results))
@@ -97,7 +100,7 @@ def _measure_on_cluster(
     scenes: "list[Scene]", cluster: str
 ) -> "Iterator[tuple[str, WorkPrecisionResult]]":
     """Measure on the cluster, one scene after another; each result names its machine."""
-    # Two at a time would share processors and caches, and so measure each other.
+    # Two tasks at a time would share processors and caches, and slow each other down.
     from verify.execution.execute import compute_task
     from verify.execution.executors import FunctionCall, Placement, open_place, results_of
     from verify.studies.kinds.work_precision import work_precision_task
@@ -152,6 +155,7 @@ def _point_json(point: "WorkPoint") -> dict[str, Any]:
 
 
 def _other_keys(result: "WorkPrecisionResult") -> dict[str, Any]:
+    """Return all keys of a result but the points of its lines."""
     data = plain_json(result)
     lines = [{k: v for k, v in line.items() if k != "points"} for line in data.pop("lines")]
     return {**data, "lines": lines}
@@ -167,9 +171,9 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
 
     console = Console(highlight=False)
     console.print(_table(name, result))
-    *_, area = _ERRORS[result.structure]
+    *_, defect_name = _ERRORS[result.structure]
     for line in result.lines:
-        console.print(_describe_line(line, area))
+        console.print(_describe_line(line, defect_name))
     for system in result.systems:
         outcome = f"{system.certified} certified digits" if system.certified else system.reason
         arithmetic = f"{system.arithmetic}, {system.digits} digits"
@@ -200,8 +204,8 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
         collapse_padding=True,
     )
     for head in ("scheme", "h or tol.", "N", *errors, "seconds", "limited by"):
-        is_left = head in ("scheme", "limited by")
-        table.add_column(head, justify="left" if is_left else "right", no_wrap=not is_left)
+        is_text = head in ("scheme", "limited by")
+        table.add_column(head, justify="left" if is_text else "right", no_wrap=not is_text)
     for line in result.lines:
         for k, point in enumerate(line.points):
             table.add_row("" if k else line.name, *_build_row(point, errors.values()))
@@ -220,11 +224,11 @@ def _build_row(point: "WorkPoint", errors: "Iterable[str]") -> tuple[str, ...]:
     )
 
 
-def _describe_line(line: "WorkLine", area: str) -> str:
+def _describe_line(line: "WorkLine", defect_name: str) -> str:
     if line.peer:
         return f"{line.name}: made ready in {line.compile_seconds:.2g} s"
     slopes = []
-    for quantity, slope in (("error", line.error_slope), (area, line.lambda_slope)):
+    for quantity, slope in (("error", line.error_slope), (defect_name, line.lambda_slope)):
         slope_text = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
         reason_note = f" ({slope.reason})" if slope.reason else ""
         slopes.append(f"order of {quantity} {slope_text}{reason_note}")

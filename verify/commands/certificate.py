@@ -14,7 +14,7 @@ from verify.commands.shared.output import CommandAnswer, answering
 if TYPE_CHECKING:
     from verify.proof.certificates.established_statement import EstablishedStatement
 
-_LONGEST = 400  # characters of a formula on a terminal
+_MAX_CHARACTERS = 400  # the limit for a formula on a terminal
 
 
 @click.group(cls=CommandGroup)
@@ -26,7 +26,7 @@ def certificate() -> None:
 @click.argument("file", type=PATH, metavar="FILE")
 @answering
 def check(file: Path) -> CommandAnswer:
-    """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
+    """Check FILE by arithmetic with integers alone; exit status 1 if it proves nothing."""
     from verify.proof.certificates.certificate_file import check_file
 
     outcome = check_file(file)
@@ -39,7 +39,10 @@ def check(file: Path) -> CommandAnswer:
 
 
 def _check_opens(context: click.Context, parameter: click.Parameter, file: Path) -> Path:
-    """Return the file if it can be opened; click reports a missing option only after this."""
+    """Return the file if it can be opened.
+
+    As a callback this runs before click reports a missing --coq.
+    """
     from verify.files import open_regular_file
 
     with open_regular_file(file):
@@ -48,17 +51,19 @@ def _check_opens(context: click.Context, parameter: click.Parameter, file: Path)
 
 @certificate.command()
 @click.argument("file", type=PATH, metavar="FILE", callback=_check_opens)
-@click.option("--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write it there.")
+@click.option(
+    "--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write the proof to this file."
+)
 @click.option(
     "--beside-theory",
     is_flag=True,
-    help="Import the theory, which `verify certificate theory` installs, in place of holding it.",
+    help="Import the theory, which `verify certificate theory` installs, instead of including it.",
 )
 @answering
 def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:
-    """Write what FILE certifies as a proof for Rocq, which `coqc OUT.v` accepts.
+    """Write the statement that FILE certifies, with its proof, for Rocq: `coqc OUT.v` accepts it.
 
-    It stands alone: it begins with the theory that it needs.
+    OUT.v stands alone, and begins with the theory that it needs, unless --beside-theory is given.
 
     \b
     verify certificate export lie2.json --coq lie2.v
@@ -89,7 +94,7 @@ def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:
 @click.argument("folder", type=OUT_FOLDER, metavar="FOLDER")
 @answering
 def theory(folder: Path) -> CommandAnswer:
-    """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""
+    """Write the theory that exported certificates import to FOLDER, with a _CoqProject."""
     from verify.proof.assistant.shipped_theory import LOGICAL, install
 
     files = install(folder)
@@ -116,8 +121,8 @@ def _print(facts: "EstablishedStatement") -> None:
     rows = [*lines.items(), *(("with", number) for number in facts.numbers)]
     for name, text in rows:
         if text:
-            cut = f"{text[:_LONGEST]} … ({len(text):,} characters; all of it with --json)"
-            click.echo(f"  {name:<5}  {text if len(text) <= _LONGEST else cut}")
+            cut = f"{text[:_MAX_CHARACTERS]} … ({len(text):,} characters; all of it with --json)"
+            click.echo(f"  {name:<5}  {text if len(text) <= _MAX_CHARACTERS else cut}")
 
 
 def _number_formulas(letter: str, formulas: str | tuple[str, ...]) -> dict[str, str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.hunt import STEPS, hunt
+from verify.commands.hunt import DEFAULT_STEPS, hunt
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable_later
 from verify.commands.shared.execution_options import kept_tasks, with_tasks
 from verify.commands.shared.input import FILE, SCHEME
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from verify.exploration.exploring import Exploration
     from verify.scenes.results.exploration import ExploreReport
 
-_SEEDS = 2**32
+_SEED_COUNT = 2**32
 
 
 @click.command()
@@ -30,7 +30,7 @@ _SEEDS = 2**32
     metavar="NAME",
     help="Only this property; repeatable. A wrong name lists them.",
 )
-@click.option("--examples", type=int, default=1000, metavar="N", help="Scenes.")
+@click.option("--examples", type=int, default=1000, metavar="N", help="The number of drawn scenes.")
 @click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
 @click.option(
     "--scheme", "schemes", type=SCHEME, multiple=True, metavar="NAME", help="Only this; repeatable."
@@ -42,23 +42,28 @@ _SEEDS = 2**32
     metavar="KIND",
     help="polynomial, trigonometric, exponential or rational H only; repeatable.",
 )
-@click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most.")
+@click.option(
+    "--degree", type=int, default=6, metavar="D", help="The highest degree of polynomials."
+)
 @click.option(
     "--degrees",
     "degrees_of_freedom",
     type=int,
     default=1,
     metavar="N",
-    help="Of freedom, 1 … 8: H(p1 … pN, q1 … qN).",
+    help="Degrees of freedom, 1 … 8: H(p1 … pN, q1 … qN).",
 )
-@click.option("--time-dependent", is_flag=True, help="H(p, q, t), from a drawn t₀ on.")
+@click.option("--time-dependent", is_flag=True, help="Draw H(p, q, t) and a start time t₀.")
 @click.option(
     "--maximise",
     metavar="MEASURE",
     help="Hunt for the worst scenes instead: rounding-share, digits-lost, growth or defect.",
 )
 @click.option(
-    "--steps", type=int, metavar="N", help="Of each scene that is hunted.  [default: 100]"
+    "--steps",
+    type=int,
+    metavar="N",
+    help="The number of steps of each hunted scene.  [default: 100]",
 )
 @click.option(
     "-o",
@@ -66,7 +71,7 @@ _SEEDS = 2**32
     type=OUT_FOLDER,
     default=Path("explored"),
     metavar="DIR",
-    help="Where scenes that fail are written, and looked at again first.",
+    help="The folder for scenes that fail; those in it are checked again first.",
 )
 @with_tasks
 def explore(
@@ -88,18 +93,18 @@ def explore(
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
 
     A scene is a Hamiltonian, a scheme, a step size, an initial value and some steps. Scene K of
-    seed S is the same everywhere. Of each property that fails one scene is shrunk to the simplest,
-    and written as a file that `verify report` takes; exit status 1.
+    seed S is the same on every machine. For each property that fails, one scene is shrunk to the
+    simplest that still fails, and written as a file that `verify report` takes; exit status 1.
 
     \b
     verify explore --examples 100000 --workers 2 --seed 7
     verify explore --property order-by-jets --scheme lie2 --kind polynomial
     verify explore claims.toml --examples 500
 
-    With --maximise scenes are sought, of |q|, |p| up to 2 and step sizes 1/1000 … 1/10, in which
-    float64 or the scheme (lie2, or those of --scheme) does worst: rounding against truncation in Λ,
-    digits of p and q that float64 loses, |Λ|, |ΔJ| over its proved power of h (in n degrees of
-    freedom W and S). DIR/index.html shows them.
+    --maximise searches for the scenes in which float64 or the scheme (lie2, or those of --scheme)
+    does worst, with |q|, |p| up to 2 and step sizes 1/1000 … 1/10. The measures: rounding against
+    truncation in Λ, digits of p and q that float64 loses, |Λ|, |ΔJ| over its proved power of h (in
+    n degrees of freedom W and S take the place of Λ and ΔJ). DIR/index.html shows the scenes.
 
     \b
     verify explore --maximise rounding-share --examples 2000 --seed 7 -o worst
@@ -110,12 +115,12 @@ def explore(
     from verify.exploration.sample_space import SampleSpace
 
     # The seed is printed, so that a run without --seed can be repeated.
-    seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
-    looks, left_out = _select_checks(claims, names) if maximise is None else ({}, {})
+    seed = random.SystemRandom().randrange(_SEED_COUNT) if seed is None else seed
+    checks, left_out = _select_checks(claims, names) if maximise is None else ({}, {})
     sample_space = SampleSpace(
         kinds=kinds,
         degree=degree,
-        schemes=schemes or _schemes_of_claims(looks),
+        schemes=schemes or _schemes_of_claims(checks),
         time_dependent=time_dependent,
         degrees=degrees_of_freedom,
     )
@@ -124,11 +129,11 @@ def explore(
             raise InputError(
                 "--maximise", maximise, "takes no CLAIMS and no --property; leave them out"
             )
-        steps = STEPS if steps is None else steps
+        steps = DEFAULT_STEPS if steps is None else steps
         return hunt(maximise, seed, examples, steps, sample_space, output, keep, placement)
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
-    exploration = Exploration(seed=seed, examples=examples, **looks, drawn=sample_space)
+    exploration = Exploration(seed=seed, examples=examples, **checks, drawn=sample_space)
     return _explore(exploration, left_out, output, keep, placement)
 
 
@@ -149,12 +154,12 @@ def _explore(
     problem, paths = None, [""] * len(report.failures)
     try:
         paths = [str(path) for path in save_failures(report, output)]
-    except OSError as error:  # the findings are printed all the same, and the exit status says so
+    except OSError as error:  # printed and raised after the findings
         problem = InputError("--output", str(output), error.strerror or "cannot be written to")
     return CommandAnswer(
         lambda: _as_json(report, paths, left_out),
         lambda: _print(report, paths, left_out),
-        failed=bool(report.failures) or any(look.message for look in report.again),
+        failed=bool(report.failures) or any(old_failure.message for old_failure in report.again),
         problem=problem,
     )
 
@@ -162,9 +167,9 @@ def _explore(
 def _select_checks(
     claims: str | None, names: Sequence[str]
 ) -> tuple[dict[str, Any], dict[str, list[str]]]:
-    """Return the requested properties and claims: all properties if nothing is named.
+    """Return the requested properties and claims, or all properties if none is requested.
 
-    Also the claims that hold of one scene only and are left out, by the reason.
+    Also return the claims that are left out, as they speak of one scene only, by the reason.
     """
     from verify.claims.claims_file import load_claims
     from verify.exploration import properties
@@ -185,13 +190,13 @@ def _select_checks(
     )
 
 
-def _schemes_of_claims(looks: dict[str, Any]) -> tuple[str, ...]:
-    """Return the claims' schemes if no property is requested; else none, which means any."""
+def _schemes_of_claims(checks: dict[str, Any]) -> tuple[str, ...]:
+    """Return the claims' schemes; none, which means any scheme, if a property is requested."""
     from verify.exploration.claim_properties import scheme_of
 
-    if looks.get("properties") or not looks.get("claims"):
+    if checks.get("properties") or not checks.get("claims"):
         return ()
-    return tuple(dict.fromkeys(map(scheme_of, looks["claims"])))
+    return tuple(dict.fromkeys(map(scheme_of, checks["claims"])))
 
 
 def _as_json(
@@ -200,10 +205,10 @@ def _as_json(
     data = report.model_dump(mode="json")
     for failure, path in zip(data["failures"], paths, strict=True):
         failure["file"] = path
-    without = [
+    left_out_rows = [
         {"claim": name, "reason": reason} for reason, names in left_out.items() for name in names
     ]
-    return data | {"left_out": without}
+    return data | {"left_out": left_out_rows}
 
 
 def _print(

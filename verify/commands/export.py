@@ -26,15 +26,25 @@ if TYPE_CHECKING:
     help="c, python, julia or latex.",
 )
 @click.option(
-    "--name", default="step", show_default=True, metavar="NAME", help="What a step is called."
+    "--name",
+    default="step",
+    show_default=True,
+    metavar="NAME",
+    help="The name of the function that makes a step.",
 )
-@click.option("-o", "--output", type=OUT_FILE, metavar="FILE", help="Write it there instead.")
+@click.option(
+    "-o",
+    "--output",
+    type=OUT_FILE,
+    metavar="FILE",
+    help="Write to this file instead of standard output.",
+)
 def export(
     hamiltonian: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
 ) -> CommandAnswer:
     """Write a step map, its Jacobian and ΔJ as C, Python, Julia or LaTeX.
 
-    A parameter without a value becomes an argument, and so does t where H depends on it. Constants
+    A parameter without a value becomes an argument, and so does t if H depends on it. Constants
     are the doubles nearest to the exact numbers, which comments beside them give.
 
     \b

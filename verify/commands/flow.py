@@ -21,20 +21,29 @@ if TYPE_CHECKING:
 @click.command()
 @with_one_line(
     click.option(
-        "--steps", type=int, multiple=True, metavar="N", help="At least 1; repeatable; or:"
+        "--steps",
+        type=int,
+        multiple=True,
+        metavar="N",
+        help="At least 1; repeatable; or give --time.",
     ),
     click.option(
         "--time", "times", multiple=True, metavar="T", help="N is T/H rounded down; repeatable."
     ),
     click.option("--shape", metavar="NAME", help="circle, square or cat.  [default: circle]"),
     click.option(
-        "--q", metavar="Q", help="Where it is put; of q1, q2, … one each, as 0.1,0.2.  [default: 0]"
+        "--q",
+        metavar="Q",
+        help="The displacement of the shape's centre; for q1, q2, … as 0.1,0.2.  [default: 0]",
     ),
-    click.option("--p", metavar="P", help="As --q.  [default: 0]"),
+    click.option("--p", metavar="P", help="The momentum of the centre, as --q.  [default: 0]"),
     click.option(
-        "--plane", type=int, metavar="I", help="Of H(p1 … qn): it lies in (qI, pI).  [default: 1]"
+        "--plane",
+        type=int,
+        metavar="I",
+        help="In n degrees of freedom the shape lies in (qI, pI).  [default: 1]",
     ),
-    click.option("--scale", metavar="S", help="How many times as large.  [default: 1]"),
+    click.option("--scale", metavar="S", help="The factor of the shape's size.  [default: 1]"),
 )
 @with_tasks
 def flow(
@@ -42,8 +51,9 @@ def flow(
 ) -> CommandAnswer:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
-    SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
-    1 where a map's area could not be measured far more finely than it changes.
+    SCENE is a TOML file with [[flow]] sections, or `paper`; its other sections are ignored. Exit
+    status 1 if a map has no image of a region, or the area of an image cannot be measured far more
+    finely than it changes.
 
     \b
     verify flow --system pendulum --scheme lie2 --shape cat --q 1 --step-size 0.1 --time 1 --time 5
@@ -96,26 +106,26 @@ def _build_sections(
     **section_keys: Any,
 ) -> dict[str, Any]:
     """Return one [[flow]] section for each step size."""
-    if q or p:  # of one that is left out there are as many zeros as of the other
-        section_keys["centre"] = {"q": q or _zeros(p), "p": p or _zeros(q)}
+    if q or p:  # if one of them is left out, it is as many zeros as the other has numbers
+        section_keys["centre"] = {"q": q or _zeros_like(p), "p": p or _zeros_like(q)}
     section_keys["shape"] = shape
     return {"flow": [{"step_size": h, **section_keys} for h in step_sizes]}
 
 
-def _zeros(like: "str | list[str] | None") -> str | list[str]:
-    return ["0"] * len(like) if isinstance(like, list) else "0"
+def _zeros_like(coordinates: "str | list[str] | None") -> str | list[str]:
+    return ["0"] * len(coordinates) if isinstance(coordinates, list) else "0"
 
 
 def _print_flow(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
-    i = result.plane or ""
+    i = result.plane or ""  # the index of the plane (q_i, p_i), in n degrees of freedom
     region_text = (
         f"{result.shape} at (q{i}, p{i}) = ({q}, {p}), scale {short(Fraction(result.scale))}"
     )
     region_text += "".join(f", {n} = {x}" for n, x in result.point.items() if n[1:] != str(i))
-    begins = "" if result.t0 is None else f", from t0 = {result.t0}"
-    click.echo(f"{title}{region_text}, h = {result.step_size}{begins}")
+    start_note = "" if result.t0 is None else f", from t0 = {result.t0}"
+    click.echo(f"{title}{region_text}, h = {result.step_size}{start_note}")
     rows = [_HEAD_IN_DEGREES if i else _HEAD, *map(_format_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, image in zip(rows, (None, *result.images), strict=True):
@@ -135,7 +145,7 @@ def _format_row(image: "FlowImage") -> tuple[str, ...]:
         change = f"0, proved ({change})"
     mean = _format_with_error(image.mean_lambda, image.mean_lambda_error)
     mean = mean or _format_with_error(image.mean_defect, image.mean_defect_error)
-    # The change of ∮ p·dq and the mean of W over the region are one number, computed in two ways.
+    # The change of ∮ p·dq equals the mean of W over the region: one number, computed twice.
     mean += "" if image.agree is not False else "  NOT THE SAME"
     distance = _format_with_error(image.distance, image.distance_error)
     planes = image.outlines[0].projections if image.outlines else ()

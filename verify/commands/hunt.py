@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from verify.exploration.sample_space import SampleSpace
     from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult
 
-STEPS = 100  # of each scene, by default
+DEFAULT_STEPS = 100  # the steps of each hunted scene
 _OUR_FILES = re.compile(r"worst-([0-9]+)\.toml|[A-Za-z0-9_-]+\.[0-9a-f]{8}\.toml")
 
 
@@ -36,7 +36,7 @@ def hunt(
     keep: Path | None,
     placement: "Placement",
 ) -> CommandAnswer:
-    """Hunt, write the worst scenes and the page that shows them, and return the answer."""
+    """Hunt for the worst scenes, write them and the page that shows them, and return the answer."""
     from verify.claims.verdicts import gallery_report
     from verify.exploration.hunting import Hunt, gallery, hunt
     from verify.pages.page import write
@@ -66,7 +66,7 @@ def hunt(
 def _answer_in_degrees(
     request: "Hunt", result: "HuntResult", store: "Store", output: Path, placement: "Placement"
 ) -> CommandAnswer:
-    """Return the answer in n degrees of freedom, where the page is a report of the scenes."""
+    """Write the scenes and their report, and return the answer, in n degrees of freedom."""
     from verify.arithmetic.exact import text
     from verify.claims.verdicts import make_report
     from verify.exploration.island_search import scene_of
@@ -76,11 +76,11 @@ def _answer_in_degrees(
 
     sentence = MEASURES[request.measure].describe(request.drawn.degrees)
     scenes = [
-        scene_of(found_scene).model_copy(
-            # Measures are decimal logarithms, so that factors are compared.
-            update={"name": f"worst-{rank}", "title": f"10^{found_scene.value:.2f}, {sentence}"}
+        scene_of(sample).model_copy(
+            # The value of a measure is a decimal logarithm.
+            update={"name": f"worst-{rank}", "title": f"10^{sample.value:.2f}, {sentence}"}
         )
-        for rank, found_scene in enumerate(result.worst, start=1)
+        for rank, sample in enumerate(result.worst, start=1)
     ]
     texts = list(map(scene_text, scenes))
     _write_scenes(texts, output)
@@ -116,12 +116,12 @@ def _answer_in_degrees(
 
 
 def _format_command(request: "Hunt") -> str:
-    """Return the command that makes the same hunt again."""
+    """Return the command that repeats the hunt, without the options for its output."""
     options = [f"--maximise {request.measure} --examples {request.examples} --seed {request.seed}"]
-    options += [f"--steps {request.steps}"] if request.steps != STEPS else []
+    options += [f"--steps {request.steps}"] if request.steps != DEFAULT_STEPS else []
     options += [f"--scheme {shlex.quote(name)}" for name in request.drawn.schemes]
     options += [f"--kind {name}" for name in request.drawn.kinds]
-    # The default of the field, wherever it is set: an option with the default is left out.
+    # An option with the default value is left out; the field says what the default is.
     if request.drawn.degree != type(request.drawn)().degree:
         options.append(f"--degree {request.drawn.degree}")
     if request.drawn.degrees > 1:
@@ -159,7 +159,7 @@ def _print(gallery: "Gallery", output: Path, page: Path) -> None:
 
 
 def _describe_loss(scene: "GalleryScene") -> str:
-    separation, after = scene.separation, scene.meaningless_after
+    separation, last_meaningful = scene.separation, scene.meaningless_after
     longer = scene.longer
     longer_text = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
     if separation.plain is None:
@@ -168,7 +168,7 @@ def _describe_loss(scene: "GalleryScene") -> str:
         return (
             f"over {separation.steps:,} steps no digit of a part of Λ is known but 0{longer_text}"
         )
-    if after is None:
+    if last_meaningful is None:
         return f"over {separation.steps:,} steps truncation is the larger part of Λ{longer_text}"
     until = f" until {scene.meaningful_from:,}" if scene.meaningful_from else ""
-    return f"Λ of float64 is meaningless after {after:,} steps{until}{longer_text}"
+    return f"Λ of float64 is meaningless after {last_meaningful:,} steps{until}{longer_text}"

@@ -1,17 +1,23 @@
 """The command `verify`: its streams, its signals, its exit statuses.
 
-Heavy libraries are imported inside the command that needs them. Standard output and error carry
-only text that any terminal may get. Interruption and termination are never lost, and are raised as
-exceptions.
+Heavy libraries are imported inside the command that needs them. Standard output and standard error
+receive no control characters, and no character that their encoding lacks.
 
-Python raises what a signal's handler raises wherever the program happens to be. Where that is a
-callback of the garbage collector (hypothesis has one), a finaliser or a callback from C, Python
-prints it and goes on: the signal would be lost, and is sent again. Where it is the import of a
-library in C, that may become an ImportError, or nothing at all (gmpy2 runs some Python as it is
-imported, and clears what that raises): while something is imported the signal waits, though not
-for long, and whatever ends the command after a signal is that signal.
+SIGINT and SIGTERM become exceptions. Python raises them wherever the program happens to be, and at
+some points they would be lost:
+
+- In a callback of the garbage collector (hypothesis has one), in a finaliser and in a callback from
+  C, Python prints the exception and continues. The signal is then sent again, as often as it comes
+  while this is being done.
+- During an import a library in C may turn the exception into an ImportError, or clear it (gmpy2
+  runs some Python code during its import, and clears what that code raises). A signal that arrives
+  during an import is therefore sent again a little later, for about two seconds at most; after that
+  it is raised during the import.
+- If another exception ends the command after a signal, the signal's exception replaces it. The
+  signal is still lost if a library clears its exception after those two seconds.
 """
 
+import _thread
 import contextlib
 import errno
 import io
@@ -19,102 +25,115 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
-from typing import TextIO
+from typing import TextIO, cast
 
 import click
 
 from verify.arithmetic.compiled import paths
 from verify.commands import Commands
 from verify.commands.shared.command_group import CommandGroup
-from verify.errors import CONTROL, InputError, PlaceError
+from verify.errors import CONTROL_CHARACTERS, InputError, PlaceError
 
 TERMINATED = 143
-_AGAIN_AFTER = 0.01  # seconds: by then the callback is left
-_MOST_WAITS = 200  # of them: a user's module may do as it is imported what does not end
-_IMPORTING = "<frozen importlib._bootstrap>"  # the file of frames under which an import runs
+_RESEND_DELAY = 0.01  # seconds; by then a callback has usually returned
+# Two seconds of delays in all: the import of a user's module may never end.
+_MAX_RESENDS = 200
+_RESENDING = {"handle_unraisable", "_send_later"}  # functions whose exceptions Python only prints
+_IMPORT_FILENAME = "<frozen importlib._bootstrap>"  # each frame of an import has it above itself
 
 
 @contextlib.contextmanager
 def hear_signals() -> Iterator[None]:
-    """Raise SIGINT as KeyboardInterrupt and SIGTERM as SystemExit(143); neither is lost."""
-    heard: list[int] = []
+    """Raise SIGINT as KeyboardInterrupt and SIGTERM as SystemExit(143) within the context."""
+    received: list[int] = []  # the numbers of all signals, those sent again included
 
-    def hear(number: int, frame: FrameType | None) -> None:
-        heard.append(number)
-        # Raised within an import the exception might be lost, as described above: the signal is
-        # sent again a little later. After some seconds it is raised all the same.
-        if len(heard) <= _MOST_WAITS and _is_importing(frame):
-            _send_again(number)
+    def handle_signal(number: int, frame: FrameType | None) -> None:
+        received.append(number)
+        # An exception that is raised there might be lost (see above), so the signal is sent again.
+        if len(received) <= _MAX_RESENDS and _loses_exceptions(frame):
+            _send_later(number)
         elif number == signal.SIGINT:
             signal.default_int_handler(number, frame)
         else:
             sys.exit(TERMINATED)
 
     with (
-        _install_handlers(dict.fromkeys((signal.SIGINT, signal.SIGTERM), hear)),
+        _install_handlers(dict.fromkeys((signal.SIGINT, signal.SIGTERM), handle_signal)),
         _resend_lost_signals(),
     ):
         try:
             yield
         except Exception as error:
-            if not heard:
+            if not received:
                 raise
-            ending = KeyboardInterrupt() if heard[-1] == signal.SIGINT else SystemExit(TERMINATED)
-            raise ending from error
+            interrupted = received[-1] == signal.SIGINT
+            raise (KeyboardInterrupt() if interrupted else SystemExit(TERMINATED)) from error
 
 
 @contextlib.contextmanager
 def _install_handlers(handlers: Mapping[signal.Signals, Callable[..., None]]) -> Iterator[None]:
-    """Install the handlers for a while; none outside the main thread, where Python refuses it."""
+    """Install the handlers within the context; outside the main thread Python allows none."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
+    previous_handlers = {n: signal.signal(n, handler) for n, handler in handlers.items()}
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in previous_handlers.items():
             signal.signal(number, handler)
 
 
 @contextlib.contextmanager
 def _resend_lost_signals() -> Iterator[None]:
-    """Send a signal again whose exception Python prints and forgets."""
-    before = sys.unraisablehook
+    """Send a signal again if Python would print its exception and continue."""
+    previous_hook = sys.unraisablehook
 
-    def hear(ignored: "sys.UnraisableHookArgs") -> None:
-        number = _signal_of(ignored.exc_value)
+    def handle_unraisable(unraisable: "sys.UnraisableHookArgs") -> None:
+        number = _signal_of(unraisable.exc_value)
         if number is None:
-            before(ignored)
+            previous_hook(unraisable)
         else:
-            _send_again(number)
+            _send_later(number)
 
-    sys.unraisablehook = hear
+    sys.unraisablehook = handle_unraisable
     try:
         yield
     finally:
-        sys.unraisablehook = before
+        sys.unraisablehook = previous_hook
 
 
-def _send_again(number: int) -> None:
-    main = threading.main_thread().ident
+def _send_later(number: int) -> None:
     # Python runs signal handlers in the main thread only, so the signal goes there.
-    timer = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (main, number))
-    timer.daemon = True
-    timer.start()
+    main_thread_id = cast("int", threading.main_thread().ident)
+    # No `threading.Timer`: its `start` waits for the thread, longer than the delay on a busy
+    # machine, and holds a lock that a handler which comes meanwhile would wait for.
+    _thread.start_new_thread(_wait_and_send, (main_thread_id, number))
 
 
-def _is_importing(frame: FrameType | None) -> bool:
-    """Return True if the frame runs within an import."""
-    while frame is not None and frame.f_code.co_filename != _IMPORTING:
+def _wait_and_send(thread_id: int, number: int) -> None:
+    time.sleep(_RESEND_DELAY)
+    signal.pthread_kill(thread_id, number)
+
+
+def _loses_exceptions(frame: FrameType | None) -> bool:
+    """Return True if the frame runs within an import, or where a signal is being sent again."""
+    while frame is not None:
+        name = frame.f_code.co_name
+        if frame.f_code.co_filename == _IMPORT_FILENAME or (
+            frame.f_code.co_filename == __file__ and name in _RESENDING
+        ):
+            return True
         frame = frame.f_back
-    return frame is not None
+    return False
 
 
 def _signal_of(error: BaseException | None) -> signal.Signals | None:
+    """Return the signal whose handler raised the exception; None for any other exception."""
     if isinstance(error, KeyboardInterrupt):
         return signal.SIGINT
     if isinstance(error, SystemExit) and error.code == TERMINATED:
@@ -123,9 +142,10 @@ def _signal_of(error: BaseException | None) -> signal.Signals | None:
 
 
 class Printable(io.TextIOBase):
-    """A text stream without control characters, and without what its encoding does not have.
+    """A text stream that escapes control characters, and characters that its encoding lacks.
 
-    Each is written as its escape (`\\u001b`), which in JSON's strings means the same.
+    A control character becomes `\\u001b`, which JSON reads as that character; one that the encoding
+    lacks becomes `\\xe9`, `\\u0394` or `\\U0001d6ab`, of which JSON knows the second form alone.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -133,12 +153,11 @@ class Printable(io.TextIOBase):
         self._encoding = getattr(stream, "encoding", None) or "utf-8"
 
     def write(self, content: str | bytes) -> int:
-        # click writes b"" to find out whether this is a stream of bytes, and takes a TypeError for
-        # no. Yet it writes the completions of a shell as bytes.
+        # click tests by b"" if the stream takes bytes, yet writes completions of a shell as bytes.
         if isinstance(content, bytes) and not content:
             raise TypeError("a stream of texts")
         text = content if isinstance(content, str) else bytes(content).decode()
-        escaped = CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+        escaped = CONTROL_CHARACTERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
         raw = escaped.encode(self._encoding, "backslashreplace")
         self.stream.write(raw.decode(self._encoding))
         return len(content)
@@ -159,35 +178,36 @@ class Printable(io.TextIOBase):
 
 @contextmanager
 def printable_streams() -> Iterator[None]:
-    """Make both streams printable while the command runs; a closed output stays None.
+    """Make standard output and standard error `Printable` within the context.
 
-    If standard input or error is closed, nothing is read, and what is written is dropped.
+    The null device replaces a closed standard input or error; a closed output stays None.
     """
-    # Descriptors first, then the objects: either may be closed without the other.
-    before = sys.stdin, sys.stdout, sys.stderr
-    _take_closed_numbers()
-    with open(os.devnull, "r+") as nowhere:  # noqa: PTH123
-        sys.stdin, sys.stderr = sys.stdin or nowhere, Printable(sys.stderr or nowhere)
+    # A descriptor may be closed while its stream object is open, and the reverse: both are mended.
+    previous_streams = sys.stdin, sys.stdout, sys.stderr
+    _fill_closed_descriptors()
+    with open(os.devnull, "r+") as null_device:  # noqa: PTH123
+        sys.stdin, sys.stderr = sys.stdin or null_device, Printable(sys.stderr or null_device)
         sys.stdout = sys.stdout and Printable(sys.stdout)
         try:
             yield
         finally:
-            sys.stdin, sys.stdout, sys.stderr = before
+            sys.stdin, sys.stdout, sys.stderr = previous_streams
 
 
-def _take_closed_numbers() -> None:
-    """Open the null device at those of the descriptors 0, 1 and 2 that are closed, for good.
+def _fill_closed_descriptors() -> None:
+    """Open the null device at each closed descriptor of 0, 1 and 2, for the life of the process.
 
-    Else a file opened later would get that number, and with it the output of libraries in C and of
-    started processes.
+    Otherwise a file opened later would get one of these, and the output of libraries in C with it.
     """
-    while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
-        os.set_inheritable(handle, True)
-    os.close(handle)
+    # The system gives the lowest free descriptor: above 2 it is one that nobody needs.
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(descriptor, True)
+    os.close(descriptor)
 
 
-INTERRUPTED, UNREAD = 130, 141
-BAD_INPUT = 2
+# Exit statuses, as `main` describes them; 130 and 141 are 128 plus SIGINT and SIGPIPE.
+INTERRUPTED, OUTPUT_CLOSED = 130, 141
+NOT_DONE = 2
 
 
 @click.group(
@@ -216,28 +236,26 @@ def cli(context: click.Context) -> None:
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
     else:
-        paths.forced_path()  # a way that is none is refused by every command
+        paths.forced_path()  # for its InputError: every command refuses an unknown VERIFY_LANES
 
 
 cli.commands = Commands()  # type: ignore[assignment]  # a Mapping: no command is ever added
 
 
-# -- entry ----------------------------------------------------------------------------------------
-
-
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line and exit.
+    """Run the command line. Exit statuses:
 
-    0 done, 1 a check failed, 2 bad input, workers lost, or output that cannot be written,
-    130 interrupted, 141 nobody reads, 143 terminated.
+    0: done; the function returns. 1: a check failed, or an exception was raised that nothing here
+    expects, which Python prints with its traceback. 2: bad input, lost workers, too little memory,
+    or a file or stream that cannot be read or written. 130: interrupted. 141: the reader of the
+    output closed it. 143: terminated.
     """
     with printable_streams():
         try:
             if sys.stdout is None:
                 raise OSError(errno.EBADF, "is closed")
             with hear_signals():
-                # click's standalone mode would print its errors in several lines and exit by
-                # itself.
+                # In its standalone mode click would print an error in several lines and exit.
                 cli.main(args=arguments, prog_name="verify", standalone_mode=False)
             sys.stdout.flush()
         except (InputError, PlaceError) as error:
@@ -249,34 +267,34 @@ def main(arguments: list[str] | None = None) -> None:
         except (KeyboardInterrupt, click.Abort):
             sys.exit(INTERRUPTED)
         except BrokenPipeError:
-            _exit_unread()
+            _exit_output_closed()
         except SystemExit:
-            if not isinstance(sys.stdout, Printable):  # click has seen it, and put its own there
-                _exit_unread()
+            if not isinstance(sys.stdout, Printable):  # click met a broken pipe, and replaced it
+                _exit_output_closed()
             raise
         except MemoryError:
             _fail("there is not enough memory for this")
         except OSError as error:
-            # An error without the name of a file is one of standard output, and flushing it at the
-            # end of the process would print a second one.
+            # An error that names no file is taken for one of standard output. Flushing that stream
+            # at the end of the process would report it a second time.
             if error.filename is None:
-                _write_nowhere()
+                _discard_output()
             _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
 
 
-def _exit_unread() -> None:
-    """Exit after the reader of the output, such as head, has closed it."""
-    _write_nowhere()
-    sys.exit(UNREAD)
+def _exit_output_closed() -> None:
+    """Exit with the status for an output that its reader, such as head, has closed."""
+    _discard_output()
+    sys.exit(OUTPUT_CLOSED)
 
 
-def _write_nowhere() -> None:
-    """Drop all further output: flushing it at the end of the process would fail again."""
+def _discard_output() -> None:
+    """Lead standard output to the null device, so that the flush at the end cannot fail again."""
     with contextlib.suppress(OSError, AttributeError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _fail(message: str) -> None:
-    # One line, whatever line feeds the message quotes.
+    # A message may quote a text with line feeds, and is printed as one line.
     click.echo(f"verify: {' '.join(message.split())}", err=True)
-    sys.exit(BAD_INPUT)
+    sys.exit(NOT_DONE)

@@ -36,8 +36,8 @@ def modified(
 ) -> CommandAnswer:
     """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
 
-    The map is the exact flow of a modified field, as a series in h. Where a term is Hamiltonian it
-    is a term of H̃; the first that is not is told, with its divergence.
+    The map is the exact flow of a modified field, as a series in h. A term of the field that is
+    Hamiltonian gives a term of H̃; the first that is not is printed with its divergence.
 
     \b
     verify modified --system pendulum --scheme stormer-verlet
@@ -57,13 +57,13 @@ def modified(
 
 
 def _json(equation: "ModifiedEquation", seconds: str) -> dict[str, Any]:
-    first = equation.first_not_hamiltonian
+    non_hamiltonian = equation.first_not_hamiltonian
     return {
         **pick(equation, "verdict", "reason", "hamiltonian", "scheme", "order"),
         "terms": [_term_json(term) for term in equation.terms],
         "modified_hamiltonian": equation.text,
         "known_to": equation.reach,
-        "first_not_hamiltonian": first.power if first else None,
+        "first_not_hamiltonian": non_hamiltonian.power if non_hamiltonian else None,
         "divergence_is_leading_delta_j": equation.area,
         "domain": equation.domain.texts,
         "seconds": seconds,
@@ -87,15 +87,17 @@ def _print(equation: "ModifiedEquation") -> None:
         _print_term(term, f"h^{term.power}")
         if term.is_hamiltonian is False:
             break
-    first = equation.first_not_hamiltonian
-    if first is not None and equation.area:
-        power = first.power + 1
+    non_hamiltonian = equation.first_not_hamiltonian
+    if non_hamiltonian is not None and equation.area:
+        power = non_hamiltonian.power + 1
         click.echo(f"  checked  the leading term of ΔJ is h^{power} times that divergence")
     if equation.reach >= 0:
-        further = (
-            f" + O(h^{equation.reach + 1})" if first is None else f", to h^{equation.reach} only"
+        remainder = (
+            f" + O(h^{equation.reach + 1})"
+            if non_hamiltonian is None
+            else f", to h^{equation.reach} only"
         )
-        click.echo(f"  H̃        {cut(equation.text)}{further}")
+        click.echo(f"  H̃        {cut(equation.text)}{remainder}")
     if equation.domain:
         click.echo(f"  where    {equation.domain.prose}")
 

@@ -42,14 +42,14 @@ if TYPE_CHECKING:
     "--degrees",
     type=int,
     metavar="N",
-    help="With --every-hamiltonian: in N degrees of freedom. Those of one H follow from its names.",
+    help="With --every-hamiltonian: in N degrees of freedom; without it the names in H decide.",
 )
 @click.option(
     "--certificate",
     type=OUT_FILE,
     metavar="FILE",
-    help="Write the identities there, for `verify certificate check`; where H has functions other "
-    "than sin, cos, exp and quotients, those of the proof for every H.",
+    help="Write the identities of the proof, for `verify certificate check`; if H has functions "
+    "other than sin, cos, exp and quotients, those of the proof for every H.",
 )
 def prove(
     scheme: str,
@@ -63,8 +63,8 @@ def prove(
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
     A parameter without a value stays a symbol, and the proof holds for all its values but those
-    that it names: ΔJ may be smaller where one is 0. Of an H in p1 … pn and q1 … qn the order of
-    S = JᵀΩJ − Ω is proved, which is 0 for a symplectic map, and that of det J − 1 beside.
+    that it names: ΔJ may be smaller if a parameter is 0. For an H in p1 … pn and q1 … qn the orders
+    of S = JᵀΩJ − Ω, which is 0 for a symplectic map, and of det J − 1 are proved.
 
     \b
     verify prove --system duffing --scheme lie2
@@ -98,8 +98,9 @@ def _prove_every(
     if certificate is not None:
         from verify.proof.certificates.certification import certify_for_every_h
 
-        _write(certify_for_every_h(proof), certificate)
+        _write_certificate(certify_for_every_h(proof), certificate)
     texts = {"hamiltonian": proof.quantifier}
+    # Scripts read the lines of a proof in the plane, so their older form stays.
     print_in_degrees = partial(show.print_symplectic, texts, proof.scheme)
     return CommandAnswer(
         lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
@@ -118,11 +119,12 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
     start_time = time.perf_counter()
     integrator = get(scheme)
     proof = prove_order(integrator.step_map(hamiltonian), integrator)
+    # In n degrees of freedom the proof itself says whether its leading coefficient telescopes.
     potential = potential_of(proof, integrator) if proof.planar else None
     special = () if potential is None else special_values(proof, integrator)
     seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
-        _write(
+        _write_certificate(
             _build_certificate(
                 partial(certify_for_one_h, proof, potential), proof, hamiltonian, integrator
             ),
@@ -137,7 +139,7 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
                 "witness": show.point_json(proof.witness)}  # fmt: skip
 
     def show_proof() -> None:
-        if potential is None:  # of p1 … pn and q1 … qn: S in place of ΔJ
+        if potential is None:  # in n degrees of freedom: S in place of ΔJ
             show.print_symplectic(hamiltonian.texts, integrator.name, proof)
         else:
             show.print_proof(hamiltonian, integrator.name, proof, potential, special)
@@ -159,38 +161,39 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
 
 
 def _build_certificate(
-    make: "Callable[[], dict[str, Any]]",
+    build: "Callable[[], dict[str, Any]]",
     proof: "Proof",
     hamiltonian: "Hamiltonian",
     scheme: "Scheme",
 ) -> dict[str, Any]:
-    """Return the certificate of this proof; or of that for every H.
+    """Return the certificate of this proof, which `build` makes, or that of the proof for every H.
 
-    The latter if the checker does not know H's functions.
+    The latter if `build` raises InputError, as it does for a function of H that the checker does
+    not know, and if this proof is PROVED.
     """
     from verify.proof.certificates.certification import certify_for_every_h
     from verify.proof.order_for_every_h import prove_for_every_h
 
     try:
-        return make()
+        return build()
     except InputError as error:
         if scheme.every_h is None or proof.verdict != "PROVED":
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
-        # The proof for every H must be of the same class as this H, or it would not speak of it.
+        # Time and the degrees of freedom must be those of this H: the proof must apply to it.
         timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
         return certify_for_every_h(prove_for_every_h(scheme.name, timed=timed, degrees=degrees))
 
 
-def _write(data: dict[str, Any], path: Path) -> None:
+def _write_certificate(data: dict[str, Any], path: Path) -> None:
     import json
 
     from verify.files import write_atomically
     from verify.proof.certificates.checker import check
 
     try:
-        # The checker of users, which shares no code with the prover: a certificate that it would
-        # refuse is never written.
+        # This is the checker that users run, which shares no code with the prover. A certificate
+        # that it refuses is not written.
         check(data)
     except ValueError as reason:
         raise InputError("certificate", str(path), f"would be refused: {reason}") from None

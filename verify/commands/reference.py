@@ -1,5 +1,6 @@
-"""The commands `verify reference make` and `check`: numbers for others to test against; `compare`
-is in `verify.commands.reference_compare`.
+"""The commands `verify reference make` and `check`: numbers for others to test against.
+
+`verify reference compare` is in `verify.commands.reference_compare`.
 """
 
 from pathlib import Path
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.reference.check.folder_check import CheckResult
 
-_SHARE = 0.05
-_MOST_STEPS = 10**6  # a minute or two
+_DEFAULT_SHARE = 0.05  # the part of the data that `check` recomputes
+_DEFAULT_STEP_LIMIT = 10**6  # a minute or two
 
 
 @click.group(cls=CommandGroup)
@@ -43,9 +44,11 @@ reference.add_command(compare)
     "--output",
     type=OUT_FOLDER,
     metavar="DIR",
-    help="Write them there.  [default: SCENE-reference, or reference-data]",
+    help="The folder to write into.  [default: SCENE-reference, or reference-data]",
 )
-@click.option("--parquet", is_flag=True, help="The tables as Parquet, too; wants pyarrow.")
+@click.option(
+    "--parquet", is_flag=True, help="Write the tables as Parquet too, which needs pyarrow."
+)
 @with_tasks
 def make(
     scenes: tuple[str, ...],
@@ -57,7 +60,7 @@ def make(
     """Make the reference data that SCENE asks for, in DIR; without SCENE, the committed set.
 
     SCENE is a TOML file with [[reference]] sections. The same scene gives the same bytes, however
-    many workers there are. With --keep an interrupted command goes on from what is finished.
+    many workers there are. With --keep an interrupted command continues from the finished tasks.
 
     \b
     [[reference]]
@@ -93,17 +96,25 @@ def make(
 
 @reference.command()
 @click.argument("folder", required=False, type=PATH, metavar="[DIR]")
-@click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed.")
+@click.option(
+    "--share",
+    default=_DEFAULT_SHARE,
+    metavar="X",
+    help="The part of the data that is recomputed, 0 … 1.",
+)
 @click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
 @click.option(
     "--most-steps",
     type=click.IntRange(1),
     metavar="N",
-    help="Of all runs recomputed; the others are named.  "
-    f"[default: {_MOST_STEPS:,}; none with --all]",
+    help="The limit on the steps of all recomputed runs; the others are named.  "
+    f"[default: {_DEFAULT_STEP_LIMIT:,}; none with --all]",
 )
 @click.option(
-    "--seed", type=click.IntRange(0), metavar="S", help="Of the random sample; without it, any."
+    "--seed",
+    type=click.IntRange(0),
+    metavar="S",
+    help="The seed of the random sample; by default a random one.",
 )
 @with_placement
 @answering
@@ -117,9 +128,9 @@ def check(
 ) -> CommandAnswer:
     """Check the reference data in DIR; without it, the committed set.
 
-    Hashes, sizes, schemas, each form against the other, how every number is printed, and a random
-    sample computed again in ball arithmetic from the textbook's formulas. Exit status 1 where
-    anything differs, with the first difference.
+    Checked are hashes, sizes, schemas, the forms of a table against each other and how every number
+    is printed; and a random sample is computed again in ball arithmetic, from the textbook's
+    formulas. Exit status 1 if anything differs; the first difference is printed.
     """
     from random import SystemRandom
 
@@ -128,12 +139,12 @@ def check(
 
     if not 0 <= share <= 1:
         raise InputError("--share", share, "must be 0 … 1")
-    if everything and share != _SHARE:
+    if everything and share != _DEFAULT_SHARE:
         raise InputError("--all", NOT_GIVEN, "goes without --share")
     if most_steps is None and not everything:
-        most_steps = _MOST_STEPS
+        most_steps = _DEFAULT_STEP_LIMIT
     seed = SystemRandom().randrange(10**6) if seed is None else seed
-    # In thousandths: the check reports a count and its total, which it finds out itself.
+    # The bar counts thousandths, as only the check knows the total, and reports it with each count.
     with counting_bar("recomputed", 1000, unit="") as advance:
         report = checking.check(
             folder or PUBLISHED,

@@ -23,24 +23,27 @@ if TYPE_CHECKING:
     )
     from verify.reference.compare.submitted_table import SubmittedTable
 
-_MOST_SHOWN = 5
-_MOST_NAMED = 4  # mistakes of which one fits
-_SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
-_SAYS = (
+_MAX_LINES = 5  # the limit on lines of one kind, each for one run
+_MAX_MISTAKES = 4  # the limit on named mistakes if several fit
+_SYMBOLS = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
+# The verdicts on a column, the mildest first; `Column.verdict` is an index into both tuples.
+_VERDICT_KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
+_VERDICT_SENTENCES = (
     "agrees in all digits that are printed",
     "says nothing: rounding may have taken every digit",
     "differs by what float64 rounding explains",
     "differs by more than rounding usually does, and no more than it may do",
     "DIFFERS by more than rounding",
 )
-_NONE_LEFT = {
+# The sentences of verdicts whose columns agree in no digit.
+_NO_DIGIT_SENTENCES = {
     "rounding": "differs by what float64 rounding explains, which leaves no digit",
     "perhaps rounding": "may differ by no more than rounding, which leaves no digit",
 }
-_LONG = re.compile(r"[0-9]+/[0-9]{20,}|[0-9]{25,}(?:/[0-9]+)?")
-_MOST_DIGITS, _DIGITS_SHOWN = 400, 36
-_ANY = 0.5  # digits: with fewer, none agrees
-_KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
+_LONG_NUMBER = re.compile(r"[0-9]+/[0-9]{20,}|[0-9]{25,}(?:/[0-9]+)?")
+_MAX_DIGITS = 400  # the limit for the decimal of a long quotient
+_MAX_SHOWN_DIGITS = 36  # a longer number is shown without its middle
+_LEAST_DIGITS = 0.5  # if fewer digits agree, the text says that none does
 
 
 @click.command()
@@ -52,9 +55,9 @@ _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 @click.option("--step-size", metavar="H", help="Their step size.")
 @click.option("--q", "q0", metavar="X", help="Their initial q.")
 @click.option("--p", "p0", metavar="X", help="Their initial p.")
-@click.option("--t0", metavar="T", help="Their time at the start, where H depends on t.")
+@click.option("--t0", metavar="T0", help="Their start time, if H depends on t.")
 @click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
-              help="What the table calls a column, such as q=position; repeatable.")  # fmt: skip
+              help="The table's name of a column, such as q=position; repeatable.")  # fmt: skip
 @answering
 def compare(
     theirs: Path,
@@ -65,17 +68,18 @@ def compare(
 ) -> CommandAnswer:
     """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
 
-    THEIRS.csv has a header line; columns step (or time), some of p, q, delta_j, mse and lambda, and
-    scene, scheme, step_size, q0 and p0 where the options do not say them. All rows that the
-    reference data have, too, are compared: digits that agree, where they part, and whether float64
-    rounding explains it. Where it does not, known mistakes are tried: the double 0.001 for h =
-    1/1000, p and q swapped, a step index off by one, another scheme or η, … Exit status 1 where
-    more than rounding differs.
+    THEIRS.csv has a header line, a column step (or time), some of p, q, delta_j, mse and lambda,
+    and scene, scheme, step_size, q0 and p0, unless options give them. All rows that the reference
+    data have too are compared: how many digits agree, where the numbers part, and whether float64
+    rounding explains it. If it does not, known mistakes are tried: the double 0.001 for h = 1/1000,
+    p and q swapped, a step index off by one, another scheme or η, … Exit status 1 if a difference
+    is larger than rounding.
 
     verify reference compare mine.csv --scene duffing --scheme lie2
 
-    A table of p1 … pn, q1 … qn, energy, symplectic_defect_max, symplectic_defect and lambda is held
-    against data in n degrees of freedom, with q0_1 … q0_n, p0_1 … p0_n, or --q 0.3,0.1 --p 0,0.2.
+    A table of p1 … pn, q1 … qn, energy, symplectic_defect_max, symplectic_defect and lambda is
+    compared with data in n degrees of freedom; its initial values are q0_1 … q0_n and p0_1 … p0_n,
+    or --q 0.3,0.1 --p 0,0.2.
     """
     from verify.reference.compare.comparison import compare as compare_tables
     from verify.reference.compare.published_data import load
@@ -84,7 +88,7 @@ def compare(
 
     labels = {name: x for name, x in {"scene": scene, **options}.items() if x is not None}
     names, folder = _parse_names(columns), data or PUBLISHED
-    # The header of their table tells which of the reference data to read.
+    # The header of their table tells whether to read the data of the plane or of n degrees.
     ours = load(folder, scene, planar=not has_degrees(theirs, names))
     table = read(theirs, ours, labels, names)
     with progress_bar("compared", len(table.runs), unit="run") as advance:
@@ -121,7 +125,7 @@ def _as_json(table: "SubmittedTable", comparison: "TableComparison") -> dict[str
         "columns": [
             {
                 "column": x.name,
-                "verdict": _KEYS[x.verdict],
+                "verdict": _VERDICT_KEYS[x.verdict],
                 "rows": x.rows,
                 # Infinite if every printed digit agrees; JSON has no infinity.
                 "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
@@ -147,8 +151,11 @@ def _as_json(table: "SubmittedTable", comparison: "TableComparison") -> dict[str
 def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
     from verify.arithmetic.exact import decimal
 
-    ways = {"plain": x.result.plain, "closed_form": x.result.closed_form}
-    parts = {n: way.parts.model_dump(mode="json") if way else None for n, way in ways.items()}
+    evaluations = {"plain": x.result.plain, "closed_form": x.result.closed_form}
+    parts = {
+        name: evaluation.parts.model_dump(mode="json") if evaluation else None
+        for name, evaluation in evaluations.items()
+    }
     return {"run": x.run, "step": x.step, "difference": decimal(x.apart, 3), **parts}
 
 
@@ -164,9 +171,9 @@ def _print(table: "SubmittedTable", comparison: "TableComparison") -> None:
         count = _format_count(table.other_steps, "row")
         click.echo(f"of steps that the reference data do not have: {count}")
     if table.outside:
-        first = table.first_outside
+        first_run = table.first_outside
         count = _format_count(table.outside, "row")
-        click.echo(f"of runs that they do not have: {count}, the first {first}")
+        click.echo(f"of runs that they do not have: {count}, the first {first_run}")
     if table.ignored:
         click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
     for name, (theirs, ours) in table.read_as.items():
@@ -193,32 +200,36 @@ def _format_count(number: int, noun: str) -> str:
 
 def _shorten_label(label: str) -> str:
     """Return a run's label, with its long numbers shortened."""
-    return _LONG.sub(lambda match: _shorten_number(match[0]), label)
+    return _LONG_NUMBER.sub(lambda match: _shorten_number(match[0]), label)
 
 
 def _shorten_number(text: str) -> str:
-    """Return a long decimal or quotient as a decimal with an exponent, its middle left out."""
+    """Return a long decimal or quotient as a decimal, without the middle of its digits."""
     from verify.arithmetic.exact import decimal, rational
 
-    decimal_text = decimal(rational(text), _MOST_DIGITS)
+    decimal_text = decimal(rational(text), _MAX_DIGITS)
     # `decimal` writes all digits, then e and a signed exponent.
     digits, _, exponent = decimal_text.partition("e")
     short = digits.rstrip("0").rstrip(".") if "." in digits else digits
-    if len(short) > _DIGITS_SHOWN:
-        short = f"{short[: _DIGITS_SHOWN // 2]}…{short[-_DIGITS_SHOWN // 2 :]}"
+    if len(short) > _MAX_SHOWN_DIGITS:
+        short = f"{short[: _MAX_SHOWN_DIGITS // 2]}…{short[-_MAX_SHOWN_DIGITS // 2 :]}"
     return f"{short}e{exponent}" if exponent.strip("+0") else short
 
 
 def _describe_column(x: "Column") -> str:
-    name, verdict = _SHOWN.get(x.name, x.name), _KEYS[x.verdict]
+    name, verdict = _SYMBOLS.get(x.name, x.name), _VERDICT_KEYS[x.verdict]
     if verdict == "lost":
-        return f"{name:>3}  {_SAYS[x.verdict]}"
-    digits_text = "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _ANY else "no"
-    line = f"{name:>3}  {digits_text:>5} digits  {_SAYS[x.verdict]}"
+        return f"{name:>3}  {_VERDICT_SENTENCES[x.verdict]}"
+    digits_text = (
+        "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _LEAST_DIGITS else "no"
+    )
+    line = f"{name:>3}  {digits_text:>5} digits  {_VERDICT_SENTENCES[x.verdict]}"
     if x.parts_run is not None:
         return f"{line}, first at step {x.parts_at} ({_shorten_label(x.parts_run)})"
     if digits_text == "no":
-        return f"{name:>3}  {_NONE_LEFT[verdict]} at step {x.step} ({_shorten_label(x.run)})"
+        return (
+            f"{name:>3}  {_NO_DIGIT_SENTENCES[verdict]} at step {x.step} ({_shorten_label(x.run)})"
+        )
     return (
         line
         if verdict == "agrees"
@@ -234,18 +245,18 @@ def _print_steps(steps: "Mapping[str, int]", template: str) -> None:
 
 
 def _print_few(lines: "Sequence[str]", ending: str) -> None:
-    """Print the first of the runs' lines, and the number of the others."""
-    for line in lines[:_MOST_SHOWN]:
+    """Print the first lines, each for one run, and the number of the other runs."""
+    for line in lines[:_MAX_LINES]:
         click.echo(line)
-    if len(lines) > _MOST_SHOWN:
-        click.echo(f"… and {_format_count(len(lines) - _MOST_SHOWN, 'more run')}{ending}")
+    if len(lines) > _MAX_LINES:
+        click.echo(f"… and {_format_count(len(lines) - _MAX_LINES, 'more run')}{ending}")
 
 
 def _describe_separation(x: "WorstSeparation") -> str:
     from verify.arithmetic.exact import decimal
 
     plain = x.result.plain
-    assert plain is not None  # noqa: S101 - it is not shown without
+    assert plain is not None  # noqa: S101 - without it this is not called
     parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in plain.parts.rounding)
     return (
         f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_shorten_label(x.run)}); "
@@ -259,8 +270,11 @@ def _describe_diagnosis(x: "Explanation") -> str:
     sentences = [sentences for _, sentences in x.mistakes]
     if len(sentences) == 1:
         return f"in {many}: {sentences[0]}"
-    if len(sentences) > _MOST_NAMED:
-        sentences = [*sentences[: _MOST_NAMED - 1], f"{len(sentences) - _MOST_NAMED + 1} others"]
+    if len(sentences) > _MAX_MISTAKES:
+        sentences = [
+            *sentences[: _MAX_MISTAKES - 1],
+            f"{len(sentences) - _MAX_MISTAKES + 1} others",
+        ]
     return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(
         sentences
     )

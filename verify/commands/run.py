@@ -35,42 +35,49 @@ if TYPE_CHECKING:
 @scheme_option
 @answering
 @cache_option
-@click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
-@click.option("--steps", type=int, metavar="N", help="At least 1; or:")
+@click.option("--step-size", required=True, metavar="H", help="The step size, greater than 0.")
+@click.option(
+    "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
+)
 @click.option("--time", metavar="T", help="N is T/H rounded down.")
-@click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
+@click.option(
+    "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
+)
 @start_options
-@click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
+@click.option(
+    "--digits", type=int, metavar="D", help="The number of significant digits that are requested."
+)
 @click.option(
     "--arithmetic",
     help=f"{', '.join(number_systems.names())}; or auto, the fastest that certifies the digits. "
-    "Without it: float64, or auto where --digits is given.",
+    "By default float64, or auto if --digits is given.",
 )
 @click.option(
     "--csv",
     "table",
     type=OUT_FILE,
     metavar="FILE",
-    help="Write the states there, t, p, q, H − H₀, ΔJ and Λ; - for standard output, and nothing "
-    "else on it.",
+    help="Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
+    "then gets nothing else.",
 )
 @click.option(
     "--points",
     type=int,
     metavar="N",
-    help="So many states in the file after the initial one, at most.  [default: 10000]",
+    help="The largest number of states in the file after the initial one.  [default: 10000]",
 )
 @click.option(
     "--keep",
     type=OUT_FOLDER,
     metavar="DIR",
-    help="Keep checkpoints there; the same command goes on from them.",
+    help="Keep checkpoints in this folder; the same command continues from them.",
 )
 def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswer:
     """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
 
     With --keep, an interruption costs at most some seconds of work. The file of --csv begins with
-    the initial state and has every step up to 10,000; of more, every second, third, …
+    the initial state, and has every step of a run of up to 10,000; of a longer run it has every
+    second, third, … step.
 
     \b
     verify run --system pendulum --scheme lie2 --step-size 0.01 --time 20 --q 1 --p 0 \\
@@ -79,30 +86,30 @@ def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswe
     from verify.arithmetic.exact import whole
     from verify.scenes.results.run import MOST_POINTS
 
-    table, points = options.pop("table"), options.pop("points")
-    if table == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
+    csv_path, points = options.pop("table"), options.pop("points")
+    if csv_path == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
         raise InputError("--csv", "-", "does not go with --json: both are for standard output")
-    if points is not None and table is None:
+    if points is not None and csv_path is None:
         raise InputError("--points", points, "goes with --csv")
     if points is not None:
         whole("points", points, 1, MOST_POINTS)
     result, note = _run_scheme(hamiltonian, scheme, **options)
-    if table is not None:
-        _write_orbit(result, table, MOST_POINTS if points is None else points)
+    if csv_path is not None:
+        _write_orbit(result, csv_path, MOST_POINTS if points is None else points)
 
     def show_run() -> None:
         show.print_run(result)
         if note:
             click.echo(note)
 
-    # With `--csv -` the table alone is on standard output; remarks go to standard error.
+    # With `--csv -` standard output gets the table alone, and remarks go to standard error.
     def show_status() -> None:
         for line in filter(None, (show.explain_unfinished(result), note)):
             click.echo(line, err=True)
 
     return CommandAnswer(
         lambda: show.run_json(result),
-        show_status if table == STANDARD_OUTPUT else show_run,
+        show_status if csv_path == STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
     )
 
@@ -121,7 +128,7 @@ def _run_scheme(
     p: str,
     t0: str,
 ) -> "tuple[RunResult, str]":
-    """Return the run, and a note on a time that is no multiple of the step size."""
+    """Return the run, and a note if --time is no multiple of the step size; else an empty text."""
     from verify.arithmetic.exact import positive
     from verify.execution.keeper import Keeper, name_of
     from verify.hamiltonians.run_domain import check_start
@@ -139,8 +146,8 @@ def _run_scheme(
     count = steps_from(steps, time, step_size)
     if keep is not None:
         ensure_keepable(keep)
-    # The name of the checkpoints: a command with any other argument must not go on from them.
-    identity = (
+    # It names the checkpoints: a command with any other argument must not continue from them.
+    run_identity = (
         hamiltonian.formula,
         hamiltonian.values,
         scheme,
@@ -150,8 +157,8 @@ def _run_scheme(
         digits,
         arithmetic,
     )
-    keeper, reported = (
-        Keeper(keep, name_of(identity)),
+    keeper, has_all_reported = (
+        Keeper(keep, name_of(run_identity)),
         all(carries(hamiltonian, n) for n in REPORTED),
     )
     with counting_bar("stepping", count) as advance:
@@ -162,22 +169,22 @@ def _run_scheme(
             steps=count,
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
-            # Λ of the plain evaluation shows the effect of rounding in float64; at many digits
-            # there is none to be seen.
-            observables=REPORTED if arithmetic == "float64" and reported else None,
+            # In float64 the plain evaluation of Λ shows the effect of rounding, so it is reported
+            # too; at many digits the effect cannot be seen.
+            observables=REPORTED if arithmetic == "float64" and has_all_reported else None,
             progress=advance,
             keeper=keeper,
             **start,
         )
     keeper.clear()
-    until = None if time is None else positive(time, "time")
-    return result, describe_rounding(until, [positive(step_size, "step_size")])
+    end_time = None if time is None else positive(time, "time")
+    return result, describe_rounding(end_time, [positive(step_size, "step_size")])
 
 
 def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
-    """Write so many states after the initial one at most; `path`: see `OUT_FILE`.
+    """Write the initial state and at most `points` states after it; `path`: see `OUT_FILE`.
 
-    InputError if the file cannot be written, and if no digits of the states are known.
+    Raises InputError if the file cannot be written, or no digits of the states are known.
     """
     from verify.files import write_atomically
     from verify.runs.orbit_table import orbit_of
@@ -191,7 +198,7 @@ def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
 
 
 def _format_csv(table: "OrbitTable") -> str:
-    """Return the rows under a header, with line feeds; a value undefined at a state is empty."""
+    """Return the rows below a header, lines end with a line feed; an undefined value is empty."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(table.columns)

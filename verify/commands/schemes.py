@@ -1,4 +1,4 @@
-"""The command `verify schemes`: what there is, with claims and cost."""
+"""The command `verify schemes`: a list of the schemes with their claims and costs."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 @click.command()
 @answering
 def schemes() -> CommandAnswer:
-    """List the schemes: order, whether symplectic, for which H, what a step costs.
+    """List the schemes: the order, whether symplectic, for which H, the cost of a step.
 
-    What is listed are claims, which `verify prove` proves. lie1, lie2, … go on to lie100.
+    These are claims, which `verify prove` proves. lie1, lie2, … continue up to lie100.
 
     \b
     verify schemes
@@ -23,11 +23,11 @@ def schemes() -> CommandAnswer:
     """
     from verify.schemes import aliases, get, names
 
-    entries = [get(name) for name in names()]
+    listed_schemes = [get(name) for name in names()]
     aliases_of: dict[str, list[str]] = {}
     for alias, name in aliases().items():
         aliases_of.setdefault(name, []).append(alias)
-    rows = [_row_json(scheme, aliases_of.get(scheme.name, [])) for scheme in entries]
+    rows = [_row_json(scheme, aliases_of.get(scheme.name, [])) for scheme in listed_schemes]
     return CommandAnswer(lambda: {"schemes": rows}, lambda: _print(rows))
 
 

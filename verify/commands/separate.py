@@ -1,6 +1,15 @@
-"""The command `verify separate`: truncation and four kinds of rounding in Λ.
+"""The command `verify separate`: truncation and rounding in Λ of a float64 run, or in W.
 
-In n degrees of freedom they are parts of W.
+Λ = Π det J − 1, over all steps, is the cumulative area error. In n degrees of freedom each entry of
+W = MᵀΩM − Ω is split in its stead, M the product of the Jacobians of all steps.
+
+The parts are truncation, which exact arithmetic has too, and four kinds of rounding: input,
+trajectory, determinant (in n degrees of freedom: derivatives) and product. If H depends on time,
+clock is a fifth kind. `verify.studies.separation.truncation_and_rounding` defines them.
+
+Λ or W is evaluated in two ways: plain, as most programs do, and in closed form, where nothing
+cancels. Each has its own rounding, and its own crossover: the step size below which rounding is
+larger than truncation.
 """
 
 import textwrap
@@ -22,114 +31,126 @@ if TYPE_CHECKING:
     from verify.scenes.results.separation import AnyGrid, CrossoverResult, Separation
     from verify.scenes.results.separation_parts import AnyEvaluation, PartsOfRun
 
-_WIDTH = 88  # of a line of prose
-_LABELS = {"plain": "plain", "closed_form": "closed form"}
+_LINE_WIDTH = 88  # characters, of prose
+_EVALUATION_LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
-def separation_json(grid: "AnyGrid") -> dict[str, Any]:
-    """Return the first step size's parts, and those of all as `grid`; of W each is a matrix."""
-    points = [_point_json(point) for point in grid.points]
-    crossover = {way: getattr(grid, way).model_dump(mode="json") for way in _LABELS}
-    seconds = f"{sum(point.seconds for point in grid.points):.6f}"
-    return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
+def grid_json(grid: "AnyGrid") -> dict[str, Any]:
+    """Return the separation at the first step size, and under `grid` those at all step sizes.
+
+    Each part is a number if Λ is split, and a matrix if W is.
+    """
+    separations = [_separation_json(separation) for separation in grid.points]
+    crossovers = {key: getattr(grid, key).model_dump(mode="json") for key in _EVALUATION_LABELS}
+    seconds = f"{sum(separation.seconds for separation in grid.points):.6f}"
+    return {**separations[0], "crossover": crossovers, "grid": separations, "seconds": seconds}
 
 
-def _point_json(point: "Separation") -> dict[str, Any]:
-    form = {n: x for n, x in plain_json(point).items() if n in ("coordinates", "tangent")}
+def _separation_json(separation: "Separation") -> dict[str, Any]:
+    # The result of a separation of W alone has these two.
+    form_keys = {k: x for k, x in plain_json(separation).items() if k in ("coordinates", "tangent")}
     return {
-        **form,
-        **_way_json(point.plain, point.split_into),
-        "closed_form": _way_json(point.closed_form, point.split_into),
-        **pick(point, "step_size", "steps", "digits"),
+        **form_keys,
+        **_evaluation_json(separation.plain, separation.split_into),
+        "closed_form": _evaluation_json(separation.closed_form, separation.split_into),
+        **pick(separation, "step_size", "steps", "digits"),
         "working_arithmetic": "float64",
-        **pick(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
-        "seconds": f"{point.seconds:.6f}",
+        **pick(separation, "arithmetic", "error_method", "status", "failed_step", "reason"),
+        "seconds": f"{separation.seconds:.6f}",
     }
 
 
-def _way_json(way: "AnyEvaluation | None", without: "type[PartsOfRun]") -> dict[str, Any]:
-    """Return the parts of one evaluation; without one, those of the model `without`, all null."""
-    working, *names = (type(way.parts) if way else without).model_fields
-    values = {n: getattr(way.parts, n) for n in (working, *names)} if way else {}
-    texts = {n: values[n].value if way else None for n in (working, *names)}
-    law = getattr(way, "law", None)  # of W alone
+def _evaluation_json(
+    evaluation: "AnyEvaluation | None", default_model: "type[PartsOfRun]"
+) -> dict[str, Any]:
+    """Return the parts of an evaluation; without one, the fields of `default_model`, all null."""
+    names = list((type(evaluation.parts) if evaluation else default_model).model_fields)
+    working_name = names[0]  # the first field of such a model is float64's value, the sum of parts
+    values = {n: getattr(evaluation.parts, n) for n in names} if evaluation else {}
+    texts = {n: values[n].value if evaluation else None for n in names}
+    law = getattr(evaluation, "law", None)  # that of the entries of W; Λ has none
     return {
-        working: texts.pop(working),
+        working_name: texts.pop(working_name),
         "truncation": texts.pop("truncation"),
         "rounding": texts,
         "error_bound": {n: value.bound for n, value in values.items()},
-        "error_kind": way.error_kind if way else None,
-        "largest": way.largest if way else None,
-        "growth": {n: plain_json(g) for n, g in way.growth.items()} if way else None,
-        **({"law": law and plain_json(law)} if working == "w_working" else {}),
-        "series": [point.model_dump(mode="json") for point in way.series] if way else [],
+        "error_kind": evaluation.error_kind if evaluation else None,
+        "largest": evaluation.largest if evaluation else None,
+        "growth": {n: plain_json(x) for n, x in evaluation.growth.items()} if evaluation else None,
+        **({"law": law and plain_json(law)} if working_name == "w_working" else {}),
+        "series": [x.model_dump(mode="json") for x in evaluation.series] if evaluation else [],
     }
 
 
-def print_separation(grid: "AnyGrid") -> None:
-    """Print the parts at each step size, and where rounding overtakes truncation."""
-    for point in grid.points:
-        click.echo(f"h = {point.step_size}, {point.steps} steps")
-        if point.status != "finished":
-            step_note = f" at step {point.failed_step}" if point.failed_step else ""
-            click.echo(f"  {point.status}{step_note}: {point.reason}")
+def print_grid(grid: "AnyGrid") -> None:
+    """Print the parts at each step size, and for several the step size of each crossover."""
+    for separation in grid.points:
+        click.echo(f"h = {separation.step_size}, {separation.steps} steps")
+        if separation.status != "finished":
+            step_note = f" at step {separation.failed_step}" if separation.failed_step else ""
+            click.echo(f"  {separation.status}{step_note}: {separation.reason}")
         else:
-            _print_parts(point)
+            _print_parts(separation)
     if len(grid.points) > 1:
-        for way, label in _LABELS.items():
-            click.echo(
-                f"rounding overtakes truncation, {label}: {_describe_crossover(getattr(grid, way))}"
-            )
+        for key, label in _EVALUATION_LABELS.items():
+            crossover_text = _describe_crossover(getattr(grid, key))
+            click.echo(f"rounding overtakes truncation, {label}: {crossover_text}")
 
 
-def _print_parts(point: "Separation") -> None:
-    ways = {_LABELS[key]: way for key, way in point.ways.items()}
-    parts, kinds = ways["plain"].parts, [way.error_kind for way in ways.values()]
-    head, width, reported_kinds = (
-        ("greatest entry", 38, kinds) if point.greatest else ("", 26, kinds[:1])
+def _print_parts(separation: "Separation") -> None:
+    evaluations = {_EVALUATION_LABELS[key]: x for key, x in separation.ways.items()}
+    parts, kinds = evaluations["plain"].parts, [x.error_kind for x in evaluations.values()]
+    # For Λ the line at the foot has the kind of the plain evaluation's bounds alone.
+    head, width, bound_kinds = (
+        ("greatest entry", 38, kinds) if separation.greatest else ("", 26, kinds[:1])
     )
-    click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(ways) > 1 else ''}")
+    click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(evaluations) > 1 else ''}")
+    # The labels of the kinds of rounding are indented by two blanks.
     for name, label in parts.labels("  ").items():
-        cells = (_format_cell(point, getattr(way.parts, name)) for way in ways.values())
+        cells = (_format_cell(separation, getattr(x.parts, name)) for x in evaluations.values())
         click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
-    for label, way in ways.items():
-        click.echo(f"  {_describe_growth(way, label)}")
-    if len(ways) < 2:
+    for label, evaluation in evaluations.items():
+        click.echo(f"  {_describe_growth(evaluation, label)}")
+    if len(evaluations) < 2:
         click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
-    if tangent := getattr(point, "tangent", None):
+    if tangent := getattr(separation, "tangent", None):
         click.echo(
             f"  tangent map: ‖M‖² = {float(tangent.norm_squared):.3g}, "
             f"‖∧²M‖ = {float(tangent.areas):.3g}, finite-time Lyapunov exponent "
             f"{tangent.finite_time_lyapunov} over T = {tangent.time}"
         )
-        meaning = textwrap.fill(str(tangent.meaning), _WIDTH, subsequent_indent="  ")
+        meaning = textwrap.fill(str(tangent.meaning), _LINE_WIDTH, subsequent_indent="  ")
         click.echo(f"  {meaning}")
     click.echo(
-        f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
-        f"bounds {', '.join(dict.fromkeys(reported_kinds))} ({point.error_method})"
+        f"  {separation.arithmetic} as exact arithmetic, {separation.seconds:.3g} s; "
+        f"bounds {', '.join(dict.fromkeys(bound_kinds))} ({separation.error_method})"
     )
 
 
-def _format_cell(point: Any, value: Any) -> str:
-    """Return a number as text; of a matrix the greatest entry and its name."""
+def _format_cell(separation: Any, value: Any) -> str:
+    """Return a number as text, and a matrix as its greatest entry in absolute value, with its name.
+
+    If that entry is 0 to all known digits, it has no name.
+    """
     if not hasattr(value, "largest"):
         return str(value.value)
-    entry_name = point.name_of(value.place) if value.largest.exact else ""
+    entry_name = separation.name_of(value.place) if value.largest.exact else ""
     return f"{value.largest.value:24} {entry_name}"
 
 
-def _describe_growth(way: "AnyEvaluation", label: str) -> str:
-    """Return a line on the growth of rounding with N; in n degrees of freedom, on that of W."""
-    law, growth = getattr(way, "law", None), way.growth["total"]
+def _describe_growth(evaluation: "AnyEvaluation", label: str) -> str:
+    """Describe how rounding in Λ grows with N; in n degrees of freedom, how max |W| does."""
+    law, growth = getattr(evaluation, "law", None), evaluation.growth["total"]
     if law is None:
         return f"rounding with N, {label}: {growth.name} ({growth.reason})"
     return f"max |W| with N, {label}: {law.name} ({law.reason}; measured, not proved)"
 
 
-def _describe_crossover(way: "CrossoverResult") -> str:
-    if way.bracket is None:
-        return way.reason
-    return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
+def _describe_crossover(crossover: "CrossoverResult") -> str:
+    if crossover.bracket is None:
+        return crossover.reason
+    lower, upper = crossover.bracket
+    return f"h* = {crossover.step_size or '?'}, {lower} … {upper} ({crossover.reason})"
 
 
 @click.command()
@@ -143,44 +164,57 @@ def _describe_crossover(way: "CrossoverResult") -> str:
     required=True,
     multiple=True,
     metavar="H",
-    help="Greater than 0; repeatable, for a grid of them.",
+    help="The step size, greater than 0; repeatable, for a grid of step sizes.",
 )
-@click.option("--steps", type=int, metavar="N", help="At least 1; or:")
-@click.option("--time", metavar="T", help="N is T/H rounded down, for each H.")
-@click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
-@start_options
-@click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
 @click.option(
-    "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
+    "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
+)
+@click.option("--time", metavar="T", help="For each step size H, N is T/H rounded down.")
+@click.option(
+    "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
+)
+@start_options
+@click.option(
+    "--digits", type=int, default=17, metavar="D", help="Significant digits of every part."
+)
+@click.option(
+    "--arithmetic",
+    default="auto",
+    help="The number system that stands for exact arithmetic, as for `verify run`; not float64.",
 )
 def separate(
     hamiltonian: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
 ) -> CommandAnswer:
     """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
 
-    Of an H(p, q, t) float64's clock, t + h + h + …, is a kind of its own.
+    Λ = Π det J − 1 over all steps is the area error of the run, and truncation is what exact
+    arithmetic would make of it. Rounding is split by its place: input (the step size, parameters
+    and initial value), trajectory (the states), determinant (each det J), product. If the
+    Hamiltonian depends on t, float64's clock, t + h + h + …, adds a fifth kind.
 
-    Of p1 … qn, W = MᵀΩM − Ω is split so, entry by entry, M the product of all steps' Jacobians.
+    For coordinates p1 … pn and q1 … qn, each entry of W = MᵀΩM − Ω is split, where M is the product
+    of the Jacobians of all steps; derivatives, the entries of these Jacobians, take the place of
+    determinant.
 
-    With several step sizes also the one below which rounding is the larger part.
+    With several step sizes, the one below which rounding is larger than truncation is given too.
     """
     from verify.arithmetic.exact import positive
     from verify.hamiltonians.run_domain import check_start
     from verify.scenes.values import describe_rounding
     from verify.studies.separation.truncation_and_rounding import RUNS, count_steps, separate_grid
 
-    # q and p are checked before the runs, so that a missing number is refused at once.
+    # q and p are checked before the runs, which may be long.
     options |= {name: parse_coordinates(options[name], hamiltonian) for name in ("q", "p")}
     check_start(hamiltonian, options["q"], options["p"], options["t0"])
-    counts = count_steps(step_sizes, options["steps"], options["time"])
-    with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
+    step_counts = count_steps(step_sizes, options["steps"], options["time"])  # pairs of h and N
+    with progress_bar("stepping", RUNS * sum(n for _, n in step_counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
-        result = separate_grid(hamiltonian, scheme, **options)
+        grid = separate_grid(hamiltonian, scheme, **options)
     time = options["time"]
-    note = describe_rounding(time and positive(time, "time"), [h for h, _ in counts])
+    note = describe_rounding(time and positive(time, "time"), [h for h, _ in step_counts])
 
     def show() -> None:
-        print_separation(result)
+        print_grid(grid)
         print_once([note])
 
-    return CommandAnswer(lambda: separation_json(result), show)
+    return CommandAnswer(lambda: grid_json(grid), show)

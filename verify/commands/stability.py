@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from verify.studies.stability.equilibrium import LinearAtEquilibrium
     from verify.studies.stability.linear_stability import LinearStability
 
-_OF_H = ("system", "hamiltonian", "params", "q", "p", "step_sizes")
-_SHOWN = 12  # digits on a terminal
-_MOST_SHOWN = 12  # frequencies there
+_EQUILIBRIUM_OPTIONS = ("system", "hamiltonian", "params", "q", "p", "step_sizes")
+_SHOWN_DIGITS = 12  # on a terminal
+_MAX_FREQUENCIES = 12  # on a terminal
 _BOUNDED_TEXT = {
     True: "bounded",
     False: "unbounded",
@@ -31,21 +31,25 @@ _BOUNDED_TEXT = {
 
 
 def linear_answer(scene: str | None, options: Mapping[str, Any]) -> CommandAnswer:
-    """Return the answer of linear theory; InputError for options that do not go with it."""
+    """Return the answer of linear theory. Raises InputError for options that do not go with it."""
     if scene is not None:
         raise InputError("SCENE", scene, "does not go with --linear; leave it out")
-    of_h = options["system"] is not None or options["hamiltonian"] is not None
+    has_hamiltonian = options["system"] is not None or options["hamiltonian"] is not None
     for name, x in options.items():
-        # Without an H the scheme alone matters: the oscillator's hω is the only variable.
-        takes = name == "schemes" or (of_h and name in _OF_H)
-        if not takes and x not in (None, ()):
+        # Without an H the scheme is the only option: hω is the only variable of the oscillator.
+        is_allowed = name == "schemes" or (has_hamiltonian and name in _EQUILIBRIUM_OPTIONS)
+        if not is_allowed and x not in (None, ()):
             value_text = x[0] if isinstance(x, tuple) else x
             raise InputError(name, value_text, "does not go with --linear; leave it out")
     if len(options["schemes"]) != 1:
         value_text = ", ".join(options["schemes"]) or NOT_GIVEN
         raise InputError("schemes", value_text, "give one with --linear")
     scheme = str(options["schemes"][0])
-    return _answer_at_equilibrium(scheme, options) if of_h else _answer_for_oscillator(scheme)
+    return (
+        _answer_at_equilibrium(scheme, options)
+        if has_hamiltonian
+        else _answer_for_oscillator(scheme)
+    )
 
 
 def _answer_for_oscillator(scheme: str) -> CommandAnswer:
@@ -64,10 +68,10 @@ def _answer_for_oscillator(scheme: str) -> CommandAnswer:
 
 
 def _print_oscillator(theory: "LinearStability", delta_j: str) -> None:
-    ends = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
-    range_text = ends.get(theory.exact, f"for 0 < hω < {theory.decimal(_SHOWN)}")
+    special_ranges = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
+    range_text = special_ranges.get(theory.exact, f"for 0 < hω < {theory.decimal(_SHOWN_DIGITS)}")
     click.echo(f"{theory.scheme} on the harmonic oscillator is stable {range_text}")
-    if theory.exact and theory.exact not in ends and not theory.exact.isdecimal():
+    if theory.exact and theory.exact not in special_ranges and not theory.exact.isdecimal():
         click.echo(f"  exactly  {theory.exact}")
     if theory.note:
         click.echo(f"  note     {theory.note}")
@@ -123,13 +127,13 @@ def _print_equilibrium(theory: "LinearAtEquilibrium") -> None:
     click.echo(f"  ω          {_format_frequencies(theory)}")
     if theory.interval is not None:
         limit = theory.step_size
-        ends = {"infinite": "every h > 0", "0": "no h > 0"}
-        if limit in ends:
-            click.echo(f"  bounded    for {ends[limit]}")
+        special_ranges = {"infinite": "every h > 0", "0": "no h > 0"}
+        if limit in special_ranges:
+            click.echo(f"  bounded    for {special_ranges[limit]}")
         else:
-            reach = f"hω = {theory.interval.decimal(_SHOWN)} with the greatest ω"
-            least = plain(rational(limit or 0), _SHOWN)
-            click.echo(f"  bounded    for 0 < h < {least}, until {reach}")
+            reach = f"hω = {theory.interval.decimal(_SHOWN_DIGITS)} with the greatest ω"
+            limit_text = plain(rational(limit or 0), _SHOWN_DIGITS)
+            click.echo(f"  bounded    for 0 < h < {limit_text}, until {reach}")
         if theory.step_size_exact:
             click.echo(f"  exactly    {theory.step_size_exact}")
         if theory.interval.note:
@@ -140,11 +144,11 @@ def _print_equilibrium(theory: "LinearAtEquilibrium") -> None:
 
 def _format_frequencies(theory: "LinearAtEquilibrium") -> str:
     values = [
-        f.decimal(_SHOWN) + f" ({f.multiplicity} times)" * (f.multiplicity > 1)
+        f.decimal(_SHOWN_DIGITS) + f" ({f.multiplicity} times)" * (f.multiplicity > 1)
         for f in theory.frequencies
     ]
-    # The lowest and the highest frequencies tell most: the highest limits the step size.
-    if len(values) > _MOST_SHOWN:
+    # The highest frequency limits the step size.
+    if len(values) > _MAX_FREQUENCIES:
         values = [values[0], values[1], "…", *values[-2:]]
     remark = "" if theory.oscillates else "none for the other degrees of freedom"
     return ", ".join(filter(None, (*values, remark)))
@@ -154,20 +158,22 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.studies.kinds.stability import StabilityFindings
 
-_PLAIN = ("stable", "drifts")  # verdicts that say all there is
-_WIDTH, _IN = 100, " " * 6
+_KINDS_WITHOUT_DETAIL = ("stable", "drifts")  # nothing is to blame
+_LINE_WIDTH, _INDENT = 100, " " * 6
 
 
 @click.command()
 @with_one_line(
-    click.option("--steps", type=int, metavar="N", help="At least 1; or:"),
+    click.option(
+        "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
+    ),
     click.option("--time", metavar="T", help="N is T/H rounded down."),
 )
 @start_options
 @click.option(
     "--linear",
     is_flag=True,
-    help="One scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
+    help="Judge one scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
 )
 @with_tasks
 def stability(
@@ -175,10 +181,10 @@ def stability(
 ) -> CommandAnswer:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
 
-    stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow;
-    in n degrees of freedom sensitive, where the exact motion parts from its neighbours itself.
-    Nothing of the scene is done but its [[stability]], [[largest_step]], [[stability_map]] and
-    [[orbit_map]].
+    The verdicts: stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step
+    k, underflow; and in n degrees of freedom sensitive, if neighbours of the exact motion part from
+    it. Only the [[stability]], [[largest_step]], [[stability_map]] and [[orbit_map]] of the scene
+    are computed.
 
     \b
     verify stability stiff
@@ -219,24 +225,29 @@ def _print(findings: "StabilityFindings") -> None:
     width = max((len(run.verdict) for run in findings.stability), default=0)
     for run in findings.stability:
         click.echo(f"{run.verdict:{width}}  {run.id}")
-        if run.kind not in _PLAIN:
-            detail = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
+        if run.kind not in _KINDS_WITHOUT_DETAIL:
+            detail = textwrap.fill(
+                run.detail, _LINE_WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT
+            )
             click.echo(detail)
-    for step in findings.largest_steps:
-        range_text, detail = f"bounded up to h = {step.bounded}", str(step.detail)
-        if step.bounded is None:
+    for result in findings.largest_steps:
+        range_text, detail = f"bounded up to h = {result.bounded}", str(result.detail)
+        if result.bounded is None:
             range_text = "never bounded"
-        elif step.unbounded is None:
-            range_text, detail = f"{detail}, the largest h = {step.bounded},", ""
-        linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"
-        limits = [f"energy error ≤ {step.energy_error}"] * bool(step.energy_error)
-        limits += [f"|W| ≤ {step.symplectic_defect}"] * bool(step.symplectic_defect)
+        elif result.unbounded is None:
+            # No step size that was tried is unbounded: the detail begins the sentence.
+            range_text, detail = f"{detail}, the largest h = {result.bounded},", ""
+        linear = (
+            f"linear theory {result.linear}" if result.linear else "linear theory sets no limit"
+        )
+        limits = [f"energy error ≤ {result.energy_error}"] * bool(result.energy_error)
+        limits += [f"|W| ≤ {result.symplectic_defect}"] * bool(result.symplectic_defect)
         condition = f" with {' and '.join(limits)}" if limits else ""
-        sentence = f"{range_text}{condition} until t = {step.time}; {linear}  {detail}"
-        click.echo(f"{step.scheme}: {sentence}")
-    for over in findings.stability_maps:
-        counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
-        click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
-    for starts in findings.orbit_maps:
-        counted = ", ".join(f"{n} {kind}" for kind, n in starts.counted().items())
-        click.echo(f"{starts.scheme}: orbits over {' and '.join(starts.axes)}: {counted}")
+        sentence = f"{range_text}{condition} until t = {result.time}; {linear}  {detail}"
+        click.echo(f"{result.scheme}: {sentence}")
+    for stability_map in findings.stability_maps:
+        counts = ", ".join(f"{n} {kind}" for kind, n in stability_map.counted().items())
+        click.echo(f"{stability_map.scheme}: {stability_map.parameter} and step size: {counts}")
+    for orbit_map in findings.orbit_maps:
+        counts = ", ".join(f"{n} {kind}" for kind, n in orbit_map.counted().items())
+        click.echo(f"{orbit_map.scheme}: orbits over {' and '.join(orbit_map.axes)}: {counts}")

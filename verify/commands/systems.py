@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @click.command()
 @answering
 def systems() -> CommandAnswer:
-    """List the named systems: H, its parameters, regimes, whether the exact flow is known.
+    """List the named systems: H, its parameters, its regimes, the form of its exact flow.
 
     \b
     verify systems

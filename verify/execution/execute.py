@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from verify.errors import InputError
 from verify.execution.executors import (
-    ANYWHERE,
+    LOCAL_DEFAULT,
     THIS_PROCESS,
     FunctionCall,
     Place,
@@ -38,9 +38,9 @@ from verify.files import check_replaceable, clear_unfinished, write_atomically
 from verify.lockstep import Course, run_together
 from verify.scenes.frozen import Frozen
 
-OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
+OnResult = Callable[[str, Frozen], None]  # it is called with the key of a task and its result
 
-_WORTH_A_POOL = 250_000_000  # float64 steps below which starting workers costs more than it gains
+_MIN_COST_FOR_POOL = 250_000_000  # float64 steps; with fewer, starting workers does not pay
 
 
 class Store:
@@ -51,29 +51,29 @@ class Store:
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
-        self.taken = 0  # results that were found here
+        self.taken = 0  # the number of results that were read from here
         self._keepers: dict[str, Keeper] = {}
 
     @cached_property
     def _tasks_with_checkpoints(self) -> frozenset[str]:
-        """The tasks that another process has left checkpoints of; searched once, not for each."""
+        """The tasks of which another process has left checkpoints; searched once for all tasks."""
         return tasks_with_checkpoints(self.folder) if self.folder else frozenset()
 
     def path(self, name: str) -> Path | None:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
 
     def get(self, name: str, task: Task) -> Frozen | None:
-        """Return the kept result of the task; None where there is none, or a damaged one.
+        """Return the kept result of the task; None if there is none, or if it is damaged.
 
-        Raises InputError where the path is occupied by something that could not be replaced once
-        the task is done.
+        Raises InputError if something occupies the path that could not be replaced once the task is
+        done.
         """
         path = self.path(name)
         if path is None:
             return None
         content = read_kept_text(KEPT, path)
         result = None
-        with suppress(ValidationError):  # sealed, and yet none: do it again
+        with suppress(ValidationError):  # a sealed file that is no such result: do the task again
             result = task.result.model_validate_json(content) if content else None
         if result is None:
             check_replaceable(path)
@@ -81,7 +81,7 @@ class Store:
         return result
 
     def put(self, name: str, result: Frozen) -> None:
-        """Keep the result; the checkpoints of its runs are removed."""
+        """Keep the result, and remove the checkpoints of its runs."""
         path = self.path(name)
         if path is not None:
             write_atomically(path, seal(KEPT, path.stem, result.model_dump_json(indent=1)))
@@ -101,20 +101,23 @@ class Store:
 
 
 def execute(
-    plan: Plan, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
+    plan: Plan, store: Store, *, where: Placement = LOCAL_DEFAULT, done: OnResult | None = None
 ) -> dict[str, Frozen]:
-    """Return all results of the plan by task key; those in the store are read from there.
+    """Return all results of the plan by the keys of the tasks; those in the store are read.
 
-    On an interruption every finished result is in the store already. A task on a cluster keeps no
-    checkpoints, since its machine need not have the store's folder. Times are measured when no
-    other task is under way: in this process, or on a cluster by the worker that has the task. What
-    such a task prepares is computed before, beside the others, where there are workers here. Raises
-    PlaceError where the workers fail a task again and again.
+    - Every finished result is in the store at once, so that an interruption does not lose it.
+    - A task on a cluster keeps no checkpoints, since its machine need not have the store's folder.
+    - A task that measures times (`alone`) runs while no other is under way: in this process, or in
+      a worker of a cluster. If there are workers on this machine, they prepare it before, beside
+      the others.
+
+    Raises PlaceError if a task loses its worker in every attempt.
     """
     results: dict[str, Frozen] = {}
 
     def finish(name: str, result: Frozen) -> None:
-        is_reported = name in results or name not in plan.tasks  # what is given may be kept already
+        # A result that comes with another task's may be in `results` already.
+        is_reported = name in results or name not in plan.tasks
         results.setdefault(name, result)
         if done and not is_reported:
             done(name, result)
@@ -132,7 +135,7 @@ def execute(
     together = {name: task for name, task in waiting.items() if not task.alone}
     alone = {name: task for name, task in waiting.items() if task.alone}
 
-    def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
+    def compute_tasks(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
         parts = groups(tasks, place.room)
         if place.room == 0:
             for part in parts:
@@ -162,23 +165,23 @@ def execute(
         _choose_placement(together, count, where), _modules(waiting), store.tidy
     ) as place:
         prepared_beside = alone if place.local and place.room and count > 1 else {}
-        take(place, {**together, **prepared_beside})
-        take(place, {name: task for name, task in supplied.items() if name not in results})
+        compute_tasks(place, {**together, **prepared_beside})
+        compute_tasks(place, {name: task for name, task in supplied.items() if name not in results})
         if not place.local:
-            take(place, alone, one_by_one=True)
+            compute_tasks(place, alone, one_by_one=True)
     if place.local:
         with open_place(THIS_PROCESS) as place:
-            take(place, alone)
+            compute_tasks(place, alone)
     return results
 
 
 def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
-    """Do one task, in whatever process."""
+    """Compute one task, in this process."""
     return task.compute(keeper)
 
 
 def prepare_task(task: Task) -> object:
-    """Prepare a task; None where its input is bad, so that `compute` reports it in its turn."""
+    """Prepare a task; return None if its input is bad, so that `compute` reports it in its turn."""
     try:
         return task.prepare()
     except InputError:
@@ -186,33 +189,34 @@ def prepare_task(task: Task) -> object:
 
 
 def compute_all(task: Task, keeper: Keeper) -> Course[dict[str, Frozen]]:
-    """Compute one task: its result and those that it gives, by the keys of their tasks."""
+    """Compute one task; the course ends with its result and those of `gives`, by their keys."""
     return task.compute_in_turn(keeper)
 
 
 def _modules(tasks: Mapping[str, Task]) -> list[str]:
-    """Return the modules that workers import before their first call, so that it is done once
-    for all."""
+    """Return the modules that workers import before their first call, once for all of them."""
     kinds = {type(task) for task in tasks.values()}
     modules = {name for kind in kinds for name in (kind.__module__, *kind.imports)}
-    return sorted({*modules, "sympy"})  # with which each reads its H, and which is imported late
+    return sorted({*modules, "sympy"})  # every task parses its H by sympy, which is imported late
 
 
 def _choose_placement(tasks: Mapping[str, Task], calls: int, requested: Placement) -> Placement:
-    """Choose as many processes as are worth their start, where the caller leaves it open.
+    """Return the requested placement; for the default, as many processes as are worth their start.
 
-    What is prepared beside the tasks is not worth a process by itself.
+    `tasks`: those that are computed together. Preparations alone are worth no process.
     """
-    if requested != ANYWHERE:
+    if requested != LOCAL_DEFAULT:
         return requested
-    if sum(task.cost for task in tasks.values()) < _WORTH_A_POOL:
+    if sum(task.cost for task in tasks.values()) < _MIN_COST_FOR_POOL:
         return THIS_PROCESS
     return Placement(workers=max(1, min(os.cpu_count() or 1, calls)))
 
 
 def _compute_together(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
-    """Yield the results of tasks that are computed together, and those that they give, in this
-    process. Exceptions of a task are raised."""
+    """Compute a group of tasks in this process; yield their results, and those of their `gives`.
+
+    Exceptions of a task are raised.
+    """
     courses = (compute_all(task, store.keeper(name)) for name, task in part.items())
     for _, course in run_together(courses, MOST_AT_ONCE):
         yield from course.result().items()
@@ -231,7 +235,7 @@ def _calls(parts: Sequence[Group], store: Store, place: Place) -> Iterator[Funct
     # Longest first, so that no worker is left with a long one at the end.
     for part in parts:
         name, task = next(iter(part.items()))
-        if place.local and task.alone:  # it is computed in this process
+        if place.local and task.alone:  # a worker prepares it; it is computed in this process
             yield FunctionCall(name, prepare_task, (task,), task.description)
             continue
         worker_store = store if place.local else Store(None)

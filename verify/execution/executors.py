@@ -1,8 +1,9 @@
-"""Places where functions are called: this process, processes beside it, or a Dask cluster.
+"""Places where functions are called: this process, other processes here, or a Dask cluster.
 
-Wherever that is, each result is yielded once and as it comes, and no more calls are under way than
-the place has room for: memory does not grow with their number. A call whose worker is lost is sent
-again. What another process gives is that of this same code, or an error.
+In each of them, a result is yielded once, as soon as it is finished. No more calls are under way
+than the place has room for, so that memory does not grow with the number of calls. A call whose
+worker is lost is sent again, a limited number of times. A worker whose code or libraries differ
+from those of this process raises an error in place of a result.
 """
 
 import contextlib
@@ -21,15 +22,16 @@ from verify.execution.keeper import fingerprint
 from verify.execution.processes import Processes
 
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
-_LOOK = 5.0  # seconds after which the place is looked at, though nothing is finished
+_CHECK_SECONDS = 5.0  # the place is checked after this time, even if no call has finished
 
 
 @dataclass(frozen=True)
 class Placement:
-    """The place where tasks run: so many processes here, or the Dask cluster at that address.
+    """The place where tasks run: processes on this machine, or the Dask cluster at an address.
 
-    `workers`: 1 stays in this process, None goes by the work there is. InputError where both are
-    given, where `workers` < 1, and where `cluster` is not tcp://HOST:PORT or tls://HOST:PORT.
+    `workers`: their number; 1 means this process itself, and None as many processes as the calls
+    need, up to one for each CPU. Raises InputError if both fields are set, if `workers` < 1, or if
+    `cluster` is not tcp://HOST:PORT or tls://HOST:PORT.
     """
 
     workers: int | None = None
@@ -47,13 +49,15 @@ class Placement:
             raise InputError("cluster", self.cluster, problem)
 
 
-ANYWHERE = Placement()
+LOCAL_DEFAULT = Placement()
 THIS_PROCESS = Placement(workers=1)
 
 
 class FunctionCall(NamedTuple):
-    """A call `function(*arguments)`, identified by its name; `description` is its name in an
-    error."""
+    """A call `function(*arguments)`, identified by its name.
+
+    `description`: its name in an error message; if it is empty, `name` stands there.
+    """
 
     name: str
     function: Callable[..., Any]
@@ -62,10 +66,12 @@ class FunctionCall(NamedTuple):
 
 
 class Place(Protocol):
-    """A place for calls. `local`: they have this machine's files and clock.
+    """A place for calls.
 
-    `attempts`: so often may a call lose its worker. `names_lost_call`: a lost worker tells which
-    call lost it; where it does not, that call and others are tried again one at a time.
+    `local`: True if the calls run on this machine, with its files and its clock. `attempts`: how
+    often a call is tried before the loss of its worker is an error. `names_lost_call`: True if the
+    loss of a worker fails only the call that ran there; otherwise it fails others too, and all of
+    them are tried again one at a time.
     """
 
     local: bool
@@ -74,21 +80,26 @@ class Place(Protocol):
 
     @property
     def room(self) -> int:
-        """The number of calls that may be under way; 0: a function is called where its result is
-        requested."""
+        """The number of calls that may be under way.
+
+        If it is 0, nothing is submitted: each function is called in this process when its result
+        is requested.
+        """
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """Submit a call, as an executor does."""
 
     def release(self, future: "Future[Any]") -> None:
-        """Release a future that is finished; called for each before the next call is submitted."""
+        """Release a finished future; called for each, before the next call is submitted."""
 
-    def lost(self, error: BaseException) -> bool:
-        """Return True if that error of a call says that its worker was lost."""
+    def is_worker_loss(self, error: BaseException) -> bool:
+        """Return True if the error of a call means that its worker was lost."""
 
     def check(self) -> None:
-        """Check the place every few seconds. Raises PlaceError where nothing can be finished any
-        more."""
+        """Check the place once; called every few seconds while calls are under way.
+
+        Raises PlaceError if no call can finish any more.
+        """
 
 
 @contextlib.contextmanager
@@ -97,13 +108,14 @@ def open_place(
     modules: Sequence[str] = (),
     after_end: Callable[[Sequence[int]], None] = lambda _: None,
 ) -> Iterator[Place]:
-    """Open the place where functions are called; on an exception, end all calls under way at once.
+    """Open the place where functions are called; on an exception, end the calls under way at once.
 
-    `modules`: what processes have imported before their first call; of several places, the first
-    decides for all. `after_end` is called with the numbers of processes here that were ended.
+    `modules`: the modules that processes import before their first call; if several places are
+    opened in turn, those of the first one apply to all. `after_end` is called after an exception,
+    with the process ids of the processes here that were ended.
 
-    Processes are started as they are needed. Raises InputError where the cluster does not answer,
-    has no workers, or has other code than this.
+    Processes are started as they are needed. Raises InputError if the cluster does not answer, has
+    no workers, or has other code than this process.
     """
     if placement.cluster is not None:
         from verify.execution.cluster import connect
@@ -125,11 +137,12 @@ def open_place(
 def results_of(
     place: Place, calls: Iterable[FunctionCall], *, one_by_one: bool = False
 ) -> Iterator[tuple[str, Any]]:
-    """Yield (name, result) of each call as it is finished; `one_by_one`: with no other under way.
+    """Yield (name, result) of each call as soon as it is finished.
 
-    The calls are taken from their iterator as there is room. What a call raises is raised here,
-    and so is PlaceError where a call loses its worker again and again; but first, as after an
-    interruption, what else has been finished is yielded.
+    `one_by_one`: no call is sent while another is under way. The calls are taken from their
+    iterator when there is room. An exception of a call is raised here, and PlaceError if a call has
+    lost its worker in every attempt. Before any exception leaves this function, an interruption
+    too, the other results that are finished are yielded.
     """
     if place.room == 0:
         for call in calls:
@@ -138,7 +151,7 @@ def results_of(
     queue = _CallQueue(place, calls, one_by_one)
     try:
         while queue.send():
-            queue.take()
+            queue.collect()
             while queue.ready:
                 name, future = queue.ready.popleft()
                 yield name, future.result()
@@ -161,7 +174,7 @@ class _CallQueue:
         self.losses: Counter[str] = Counter()
 
     def send(self) -> bool:
-        """Send as many as there is room for; return True if any is under way."""
+        """Send as many calls as there is room for; return True if any is under way."""
         while len(self.under_way) < self._room():
             call = self.requeued.popleft() if self.requeued else next(self.calls, None)
             if call is None:
@@ -171,23 +184,30 @@ class _CallQueue:
         return bool(self.under_way)
 
     def _room(self) -> int:
-        # Where a place does not tell which call killed its worker, the suspects go one at a time:
-        # so the guilty one is found, and no innocent one reaches the limit of attempts.
+        # If the place does not name the call that killed a worker, all calls that have lost one are
+        # sent one at a time. This finds the call that kills its worker, and no other call reaches
+        # the limit of attempts.
         names = (call.name for call in self.under_way.values())
-        suspects = bool(self.requeued) or any(name in self.losses for name in names)
-        alone = self.one_by_one or (suspects and not self.place.names_lost_call)
-        return 1 if alone else self.place.room
+        has_suspects = bool(self.requeued) or any(name in self.losses for name in names)
+        sends_singly = self.one_by_one or (has_suspects and not self.place.names_lost_call)
+        return 1 if sends_singly else self.place.room
 
-    def take(self) -> None:
-        """Wait until some are finished, and requeue those that lost their worker."""
-        done, _ = wait(self.under_way, timeout=_LOOK, return_when=FIRST_COMPLETED)
+    def collect(self) -> None:
+        """Move finished calls to `ready`, and requeue those that lost their worker.
+
+        Waits until a call is finished, but no longer than `_CHECK_SECONDS`; then the place is
+        checked.
+        """
+        done, _ = wait(self.under_way, timeout=_CHECK_SECONDS, return_when=FIRST_COMPLETED)
         for future in done:
             call = self.under_way.pop(future)
             self.place.release(future)
+            # `exception` would raise CancelledError here, but `results_of` raises it, when it reads
+            # the result of a cancelled call.
             error = None if future.cancelled() else future.exception()
             # An ordinary exception of the call is a result like others: it is raised where the
             # caller reads it.
-            if error is None or not self.place.lost(error):
+            if error is None or not self.place.is_worker_loss(error):
                 self.ready.append((call.name, future))
                 continue
             self.losses[call.name] += 1
@@ -198,8 +218,7 @@ class _CallQueue:
         self.place.check()
 
     def finished_results(self) -> Iterator[tuple[str, Any]]:
-        """Yield the results that are finished and were not yet yielded; errors among them are
-        left out."""
+        """Yield the finished results that were not yielded yet, without those that are errors."""
         finished = [(call.name, future) for future, call in self.under_way.items() if future.done()]
         for name, future in (*self.ready, *finished):
             if not future.cancelled() and future.exception() is None:
@@ -208,18 +227,22 @@ class _CallQueue:
 
 # -- in the worker --------------------------------------------------------------------------------
 
-_ONE_AT_A_TIME = (
-    threading.Lock()
-)  # libraries below have settings that all threads of a process share
+# Libraries have settings, such as a precision, that all threads of a process share.
+_CALL_LOCK = threading.Lock()
 
 
-def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """Call the function in the worker, one at a time, and only where its code is that of the
-    caller."""
-    if fingerprint() != source:  # it may have joined the others, or been started again, since
+def call_in_worker(
+    expected_fingerprint: str, function: Callable[..., Any], arguments: tuple[Any, ...]
+) -> Any:
+    """Call the function in the worker, while no other call runs in its process.
+
+    Raises PlaceError if the worker's code or libraries are not those of the caller.
+    """
+    # The worker may have joined the cluster, or been restarted, since the cluster was checked.
+    if fingerprint() != expected_fingerprint:
         worker = f"{socket.gethostname()}, process {os.getpid()}"
         raise PlaceError(f"worker {worker}: its areaproof or a library is not the one used here")
-    with _ONE_AT_A_TIME:
+    with _CALL_LOCK:
         return function(*arguments)
 
 
@@ -227,16 +250,17 @@ def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[A
 
 
 class _ThisProcess:
-    """This process: a function is called when its result is asked for."""
+    """This process: it has room for no call, so that a function is called when its result is
+    requested."""
 
     local, attempts, names_lost_call, room = True, 1, True, 0
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        raise NotImplementedError  # there is no room for any
+        raise NotImplementedError  # `results_of` submits nothing to a place without room
 
     def release(self, future: "Future[Any]") -> None: ...
 
-    def lost(self, error: BaseException) -> bool:
+    def is_worker_loss(self, error: BaseException) -> bool:
         return False
 
     def check(self) -> None: ...

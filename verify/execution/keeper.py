@@ -1,5 +1,7 @@
-"""Files that keep results on disk, so that an interruption loses little: atomically, one file
-for each."""
+"""Files that keep results and checkpoints on disk, so that an interruption loses little.
+
+Each is one file, which is written atomically.
+"""
 
 import contextlib
 import hashlib
@@ -16,21 +18,24 @@ from verify.errors import InputError
 from verify.execution.provenance import versions
 from verify.files import check_replaceable, read_text, write_atomically
 
-_DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
-KEPT, CHECKPOINT = "areaproof kept result 2", "areaproof checkpoint 2"  # formats
-_SECONDS = 5.0  # between two checkpoints of a run
+# The scenes that a seed draws depend on these libraries; no digit of a result does.
+_DRAWING_LIBRARIES = ("hypothesis",)
+KEPT, CHECKPOINT = "areaproof kept result 2", "areaproof checkpoint 2"  # the names of the formats
+_CHECKPOINT_SECONDS = 5.0  # the interval between two checkpoints of a run
 
 
 @cache
 def fingerprint() -> str:
-    """Return a name for this package, its content and its libraries: no result of others is
-    reused."""
-    drawing = {name: version(name) for name in _DRAWING}
+    """Return a hash of this package's files and of the versions of its libraries.
+
+    Only results with the same fingerprint are reused.
+    """
+    drawing = {name: version(name) for name in _DRAWING_LIBRARIES}
     return digest_of(shipped_files(), json.dumps(versions() | drawing))[:12]
 
 
 def name_of(request: object) -> str:
-    """Return a file's name for a request."""
+    """Return the name of a file for a request."""
     return hashlib.sha256(repr(request).encode()).hexdigest()[:24]
 
 
@@ -40,7 +45,7 @@ def fraction_text(x: Fraction) -> str:
 
 
 def fraction_of(x: str) -> Fraction:
-    """Read what `fraction_text` has written."""
+    """Parse the text that `fraction_text` returns."""
     numerator, denominator = (int(part, 16) for part in x.split("/"))
     return Fraction(numerator, denominator)
 
@@ -67,9 +72,9 @@ def unseal(form: str, name: str, text: str) -> str | None:
 
 
 def read_kept_text(form: str, path: Path) -> str | None:
-    """Return the content sealed under the file's own name; None for a damaged file or that of
-    another."""
-    if not path.exists():  # most often, and to say what is there instead would take long
+    """Return the content sealed under the file's own name; None for a damaged or renamed file, or
+    for none."""
+    if not path.exists():  # the most frequent case, which `read_text` would report slowly
         return None
     try:
         return unseal(form, path.stem, read_text(path, most=None))
@@ -85,15 +90,15 @@ def tasks_with_checkpoints(folder: Path) -> frozenset[str]:
 class Keeper:
     """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
 
-    A checkpoint is written every few seconds and where the run is interrupted, and is of use to the
-    same task and the same code only. `prepared`: what the task's `prepare` has found in a worker of
-    this process; it is in memory alone.
+    A checkpoint is written every few seconds and when the run is interrupted. Only the same task
+    and the same code can use it. `prepared`: the result of the task's `prepare` in a worker of this
+    process; it is kept in memory alone.
     """
 
     def __init__(self, folder: Path | None, name: str) -> None:
         self._folder, self._name = folder, name
         self._last_write: dict[str, float] = {}
-        self.saved = False  # whether it has kept a checkpoint
+        self.saved = False  # True once it has written a checkpoint
         self.prepared: Any = None
 
     def _path(self, label: str) -> Path | None:
@@ -103,10 +108,10 @@ class Keeper:
         return self._folder / f"{self._name}-{fingerprint()}-{short}.checkpoint"
 
     def load(self, label: str) -> dict[str, Any] | None:
-        """Return the data kept under the label; None where there are none, or damaged ones, or of
-        another format.
+        """Return the data kept under the label; None if there are none, or if they are damaged or
+        of another format.
 
-        Raises InputError where the path is occupied by something that could not be replaced.
+        Raises InputError if something occupies the path that could not be replaced.
         """
         path = self._path(label)
         if path is None:
@@ -123,7 +128,7 @@ class Keeper:
         if self._folder is None:
             return False
         last = self._last_write.setdefault(label, time.monotonic())
-        return time.monotonic() - last >= _SECONDS
+        return time.monotonic() - last >= _CHECKPOINT_SECONDS
 
     def save(self, label: str, data: dict[str, Any]) -> None:
         """Keep the run under the label, in place of the previous checkpoint."""

@@ -1,12 +1,13 @@
-"""Plans of tasks, and the studies that scenes ask for: what a study needs, it adds to a plan.
+"""Plans of tasks, and the studies that scenes request: each study adds the tasks that it needs.
 
-A plan has each task once, with its reasons, and what is left out and why. A study is one question
-that a scene may ask, what it needs, and what becomes of the results.
+A plan has each task once, with its reasons, and the parts that are left out, each with its reason.
+A study answers one question that a scene may ask: it has the tasks and the use of their results.
 
-Tasks that name the same `ensemble` take the same steps from other initial values, or with other
-step sizes and parameters. They go to a worker in groups, longest first, and in a group each has its
-`turn`. They are computed in lockstep: where their runs meet in a kernel, the lanes of the vector
-unit have one run each. The results are what each task gives by itself.
+Tasks with the same `ensemble` take the same steps from other initial values, or with other step
+sizes and parameters. They go to a worker in groups, the costliest group first, and within a group
+in the order of `turn`. They are computed in lockstep: when their runs are in a kernel at the same
+time, each takes one lane of the vector unit. The results are the same as those of each task by
+itself.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -19,17 +20,20 @@ from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
 
-_STEP_SECONDS = 4e-9
-MOST_AT_ONCE = 24  # tasks under way: three sets of lanes, full even where runs have ended
-_LEAST_IN_GROUP = 16  # two sets, so that lanes are full
-_MOST_IN_GROUP = 64  # so that results come in, and every worker has some
+_STEP_SECONDS = 4e-9  # of one float64 step
+# Tasks of a group that are under way together: three sets of lanes, so that the lanes are full even
+# when some runs have ended.
+MOST_AT_ONCE = 24
+# Groups have two sets of lanes at least. Larger ones than the second number would delay results,
+# and leave workers without a group.
+_MIN_GROUP_SIZE, _MAX_GROUP_SIZE = 16, 64
 Results = Mapping[str, Frozen]  # by the keys of tasks
 Result = TypeVar("Result", bound=Frozen)
 Group = dict[str, Task]
 
 
 def keys_supplied_by(tasks: Iterable[Task]) -> set[str]:
-    """Return the keys of the tasks whose results come with these."""
+    """Return the keys of the tasks whose results come with those of these tasks."""
     return {supplied.key for task in tasks for supplied in task.gives}
 
 
@@ -56,10 +60,10 @@ class Plan:
 
     @property
     def seconds(self) -> float:
-        """The approximate processor time of the tasks: by their costs, within a factor of four
-        or so, on a machine on which a float64 step takes 4 ns."""
+        """The approximate processor time of the tasks, on a machine on which a float64 step takes
+        4 ns; it is right within a factor of about four."""
         supplied = keys_supplied_by(self.tasks.values())
-        # Tasks whose results come with others' are not counted twice.
+        # Tasks whose results come with others cost nothing more.
         remaining = (task for name, task in self.tasks.items() if name not in supplied)
         costs = (task.cost for task in remaining if task.result_by_proof() is None)
         return _STEP_SECONDS * sum(costs)
@@ -77,14 +81,14 @@ class Plan:
 
 # -- studies -------------------------------------------------------------------------------------
 
-Need = Callable[[Plan, Scene], None]  # adds to the plan what the scene asks for
+Need = Callable[[Plan, Scene], None]  # adds the tasks that the scene requests to the plan
 
 
 @dataclass(frozen=True)
 class SceneQuestion:
-    """A question that a scene may ask of a study; where it does not, a plan says so.
+    """A question that a scene may ask of a study; a plan has a line for one that it does not ask.
 
-    `place`: of that line among those of all studies.
+    `place`: the position of this line among those of all studies.
     """
 
     place: int
@@ -101,12 +105,12 @@ def toml_section(place: int, what: str, header: str) -> SceneQuestion:
 
 @dataclass(frozen=True)
 class Study:
-    """The description of a study, a part of it at a time.
+    """The description of a study by the functions that make its parts.
 
-    `order`: among the studies, for their tasks. `need_of_scheme(plan, scene, scheme, preserves)`
-    adds to the plan what one of the scene's schemes needs, where `preserves` says whether ΔJ ≡ 0 is
-    proved; `need(plan, scene)` what the whole scene does. `results_for_scene(scene, results)` is
-    the study's part of a `SceneResult`, by its keys.
+    `order`: its position among the studies, for their tasks. `need_of_scheme(plan, scene, scheme,
+    preserves)`: adds the tasks for one scheme of the scene; `preserves` is True if ΔJ ≡ 0 is
+    proved. `need(plan, scene)`: adds the tasks for the whole scene. `results_for_scene(scene,
+    results)`: returns the study's part of a `SceneResult`, by its keys.
     """
 
     order: int
@@ -122,7 +126,7 @@ def scene_name(scene: Scene) -> str:
 
 
 def plan_of(scenes: Iterable[Scene], need: Need) -> Plan:
-    """Plan the requests of the scenes that `need` covers; a task of several is done once."""
+    """Return the plan of the tasks that `need` adds for each scene; equal tasks stand once."""
     plan = Plan()
     for scene in scenes:
         need(plan, scene)
@@ -130,12 +134,12 @@ def plan_of(scenes: Iterable[Scene], need: Need) -> Plan:
 
 
 def results_of_tasks(model: type[Result], tasks: Iterable[Task], results: Results) -> list[Result]:
-    """Return the results of these tasks, in their order; a task that was not done is left out."""
+    """Return the results of these tasks, in their order, without those that are missing."""
     available = (results.get(task.key) for task in tasks)
     return [result for result in available if isinstance(result, model)]
 
 
-# -- what is computed together --------------------------------------------------------------------
+# -- groups of tasks that are computed together --------------------------------------------------
 
 
 def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
@@ -145,10 +149,8 @@ def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
         by_ensemble.setdefault(tasks[name].ensemble or name, {})[name] = tasks[name]
     parts: list[Group] = []
     for group in by_ensemble.values():
-        # Every worker gets a part, but no part is so small that lanes stay empty, and none so large
-        # that results come in late.
         share = -(-len(group) // max(workers, 1))
-        size = min(max(share, _LEAST_IN_GROUP), _MOST_IN_GROUP)
+        size = min(max(share, _MIN_GROUP_SIZE), _MAX_GROUP_SIZE)
         names = iter(group)
         while part := sorted(islice(names, size), key=lambda name: tasks[name].turn):
             parts.append({name: tasks[name] for name in part})

@@ -1,8 +1,8 @@
 """Processes on this machine, as a place where functions are called.
 
-Each is a pool of one of `concurrent.futures`. Pebble's pool names a lost call too, but begins its
-workers in a thread of its own: neither signals can be held meanwhile nor the path be made safe, and
-its workers go on after a parent that is killed (both tried with pebble 5.2.3).
+Each process is a `concurrent.futures` pool with one worker. Pebble's pool names a lost call too,
+but starts its workers in a thread of its own, where we can neither hold signals nor set a safe
+path; and its workers go on after their parent is killed (both tried with pebble 5.2.3).
 """
 
 import gc
@@ -19,36 +19,37 @@ from functools import cached_property
 from multiprocessing import connection, forkserver, resource_tracker
 from typing import Any
 
-_TO_END = 5.0  # seconds in which a process that is ended is no more
+_MAX_SECONDS_TO_END = 5.0  # the wait for processes that were terminated
 _SAFE_PATH = "PYTHONSAFEPATH"  # Python's own variable, read as it starts
 
 
 class Processes:
-    """See `verify.execution.executors.Place`. Each process is a pool of one, which has one call at
-    a time.
+    """Processes as a `verify.execution.executors.Place`; each is a pool with one worker.
 
-    A pool of several is broken as a whole when one of its workers is killed, and does not tell
-    which call that was; of a pool of one nothing else is lost, and there is nothing to guess.
+    If a pool has several workers and one is killed, the whole pool is broken, and it does not tell
+    which call killed it. In a pool with one worker that call is the only one.
     """
 
     local, attempts, names_lost_call = True, 3, True
 
     def __init__(self, workers: int, modules: Sequence[str] = ()) -> None:
-        """`modules`: what the processes have imported before their first call."""
+        """Prepare for `workers` processes, which import `modules` before their first call."""
         self.room, self._modules = workers, modules
         self._idle: list[ProcessPoolExecutor] = []
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """Begin the call in an idle process, or in a new one."""
-        context = self._context  # made before both are held, which workers would inherit
-        # What is half begun could not be ended.
+        # The context is created first: the fork server would pass on the held signals to workers.
+        context = self._context
+        # An interruption between the start of a process and its entry in `_busy` would leave the
+        # process behind: signals are held until then.
         with safe_path(), _hold_signals(signal.SIGINT, signal.SIGTERM):
-            pool = self._idle.pop() if self._idle else _process(context)
+            pool = self._idle.pop() if self._idle else _start_pool(context)
             try:
                 future = pool.submit(function, *arguments)
-            except BrokenExecutor:  # lost while it was idle
-                pool = _process(context)
+            except BrokenExecutor:  # the process was lost while it was idle
+                pool = _start_pool(context)
                 future = pool.submit(function, *arguments)
             self._busy[future] = pool
         return future
@@ -58,22 +59,22 @@ class Processes:
         return _fork_server(self._modules)
 
     def release(self, future: "Future[Any]") -> None:
-        """Release the process of a call that has ended: it is idle, or lost."""
+        """Make the process of a finished call idle, or forget it if it was lost."""
         pool = self._busy.pop(future)
         if isinstance(future.exception(), BrokenExecutor):
             pool.shutdown(wait=False)
         else:
             self._idle.append(pool)
 
-    def lost(self, error: BaseException) -> bool:
+    def is_worker_loss(self, error: BaseException) -> bool:
         return isinstance(error, BrokenExecutor)
 
     def check(self) -> None: ...
 
     def end(self) -> list[int]:
-        """End the processes at once, whatever they are doing; return their numbers.
+        """End the processes at once, whatever they are doing; return their process ids.
 
-        When it returns they write nothing any more.
+        After the return they write nothing any more, unless one survives `_MAX_SECONDS_TO_END`.
         """
         sentinels, pools = {}, [*self._idle, *self._busy.values()]
         for pool in pools:
@@ -84,41 +85,45 @@ class Processes:
         # A terminated process may still be writing; the store's unfinished files can be removed
         # only once it is gone.
         alive = list(sentinels.values())
-        until = time.monotonic() + _TO_END
+        until = time.monotonic() + _MAX_SECONDS_TO_END
         while alive and time.monotonic() < until:
             done = connection.wait(alive, until - time.monotonic())
             alive = [sentinel for sentinel in alive if sentinel not in done]
-        for pool in pools:  # whose thread, not waited for, may close what Python's exit writes to
+        # A pool's thread that is not waited for may close a pipe to which Python's exit writes.
+        for pool in pools:
             pool.shutdown(wait=not alive, cancel_futures=True)
         return [pid for pid in sentinels if pid is not None]
 
     def close(self) -> None:
-        """End the processes, which are idle, together."""
+        """End the processes, all of which have to be idle, in parallel."""
         if self._idle:
             with ThreadPoolExecutor(len(self._idle)) as threads:
                 list(threads.map(ProcessPoolExecutor.shutdown, self._idle))
 
 
-def _process(context: Any) -> ProcessPoolExecutor:
+def _start_pool(context: Any) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(
-        1, mp_context=context, initializer=_begin, initargs=gc.get_threshold()
+        1, mp_context=context, initializer=_initialize_worker, initargs=gc.get_threshold()
     )
 
 
 def _fork_server(modules: Sequence[str]) -> Any:
-    """Return the way in which processes start: forked, but not from this one.
+    """Return the multiprocessing context: a fork server, or "spawn" if the system has none.
 
-    This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
-    once what every worker needs, and ends with this one. Where there is none, each is spawned.
+    Workers are not forked from this process, since it may have threads (the progress bar's, a
+    kernel's). The fork server has none, has imported the modules once for all workers, and ends
+    with this process.
     """
     methods = multiprocessing.get_all_start_methods()
-    if sys.platform == "darwin" or "forkserver" not in methods:  # macOS's libraries start threads
+    # The libraries of macOS start threads, so that forking is unsafe even in the fork server.
+    if sys.platform == "darwin" or "forkserver" not in methods:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     # A forked worker shares the imported modules' memory with the server, and starts in
     # milliseconds.
     context.set_forkserver_preload(list(modules))
-    with safe_path(), _hold_signals(signal.SIGINT):  # which it and the workers then never get
+    # The server and its workers inherit the blocked SIGINT: Ctrl-C is for this process alone.
+    with safe_path(), _hold_signals(signal.SIGINT):
         forkserver.ensure_running()
     return context
 
@@ -128,7 +133,7 @@ class _SafePathState:
 
     def __init__(self) -> None:
         self.lock, self.users = threading.Lock(), 0
-        self.before: str | None = None
+        self.previous_value: str | None = None
 
 
 _SAFE = _SafePathState()
@@ -136,17 +141,17 @@ _SAFE = _SafePathState()
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Make processes that are started meanwhile import nothing from the current folder.
+    """Make processes that are started in the block import nothing from the current folder.
 
-    Python puts it first on the path of `python -c`, which is how `multiprocessing` starts the fork
-    server, the resource tracker and spawned workers: a `random.py` that lies there would be run.
-    Once a worker is there, its path is this process's own. Of several threads that start some, the
-    first sets what the last restores. Where Python was told to ignore the environment (`-E`), so
-    are they, and this does nothing.
+    `multiprocessing` starts the fork server, the resource tracker and spawned workers by
+    `python -c`, for which Python puts the current folder first on the path: a `random.py` in it
+    would be run. A worker that has started takes over the path of this process. If several threads
+    are in such a block, the first sets the variable, and the last restores it. If this Python
+    ignores the environment (`-E`), the processes do so too, and the variable has no effect.
     """
     with _SAFE.lock:
         if not _SAFE.users:
-            _SAFE.before = os.environ.get(_SAFE_PATH)
+            _SAFE.previous_value = os.environ.get(_SAFE_PATH)
         _SAFE.users += 1
         os.environ[_SAFE_PATH] = "1"
     try:
@@ -156,35 +161,35 @@ def safe_path() -> Iterator[None]:
             _SAFE.users -= 1
             if not _SAFE.users:
                 del os.environ[_SAFE_PATH]
-                if _SAFE.before is not None:
-                    os.environ[_SAFE_PATH] = _SAFE.before
+                if _SAFE.previous_value is not None:
+                    os.environ[_SAFE_PATH] = _SAFE.previous_value
 
 
 @contextmanager
 def _hold_signals(*signals: signal.Signals) -> Iterator[None]:
-    """Hold these signals until the block ends; a process that is started meanwhile does not get
-    them."""
-    resource_tracker.ensure_running()  # begun later, it would let them through
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    """Hold these signals until the block ends; a process that is started in it blocks them."""
+    # If the tracker were started in the block, it would unblock the signals afterwards.
+    resource_tracker.ensure_running()
+    previous_mask = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
 
 
-def _begin(*between_collections: int) -> None:
-    """Begin a new process, in which cycles are collected as seldom as in this one."""
+def _initialize_worker(*between_collections: int) -> None:
+    """Initialize a new worker, with this process's thresholds of garbage collection."""
     gc.set_threshold(*between_collections)
-    gc.freeze()  # what was imported stays
+    gc.freeze()  # the imported modules stay: collections need not look at them
     # Ctrl-C reaches the whole process group; the parent alone answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # held where it was spawned
+    # A spawned worker has inherited the block of `submit`.
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _end_with_parent() -> None:
-    """End this worker with its parent: one that is killed can end no worker, and none would
-    notice."""
+    """End this worker when its parent ends: a parent that is killed ends no worker itself."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

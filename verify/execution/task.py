@@ -18,9 +18,9 @@ from verify.scenes.values import Coordinates, ExactNumber
 class Task(Frozen):
     """A computation to be done; two tasks of equal content are one.
 
-    `alone`: it measures run times, so that nothing else may run beside it; `prepare` has what may.
-    `result`: the model of what `compute` returns. `imports`: the modules that `compute` imports, or
-    `prepare`, which workers then have from the start.
+    `alone`: True if it measures run times, so that nothing else may run beside it; the part that
+    may is in `prepare`. `result`: the model of the result of `compute`. `imports`: the modules that
+    `compute` or `prepare` imports, which workers import before their first call.
     """
 
     alone: ClassVar[bool] = False
@@ -40,13 +40,14 @@ class Task(Frozen):
 
     @property
     def turn(self) -> float:
-        """The place among those of its ensemble: what costs most is first."""
+        """The sorting key within its ensemble: the costliest task is first."""
         return -self.cost
 
     def prepare(self) -> object:
-        """Compute the part of a task that is `alone` which may be done beside others, by a worker.
+        """Compute the part of a task that may run beside others although the task is `alone`.
 
-        `compute` reads it from the keeper, and computes it itself where that has None.
+        A worker does this. `compute` reads the part from the keeper, and computes it itself if the
+        keeper has None.
         """
         return None
 
@@ -56,34 +57,33 @@ class Task(Frozen):
 
     @property
     def gives(self) -> "tuple[Task, ...]":
-        """The tasks whose results come with its own, if its computation has got so far: they
-        need not be computed beside it."""
+        """The tasks whose results come with its own, unless its computation ends early; they need
+        not be computed beside it."""
         return ()
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         """Return the result of `compute`, and those of `gives` that have come with it, by keys.
 
-        One of an ensemble waits here for what its runs ask for (`verify.lockstep`).
+        A task of an ensemble pauses here when its runs wait for others (`verify.lockstep`).
         """
-        # A generator without a pause: `compute_in_turn` of tasks that never wait for others.
+        # A generator without a pause, for tasks that never wait for others.
         yield from ()
         return {self.key: self.compute(keeper)}
 
     def result_by_proof(self) -> Frozen | None:
-        """Return its result where a proof gives it at once, and nothing is to be computed."""
+        """Return the result if a proof gives it at once, without a computation; None otherwise."""
         return None
 
     @property
     def key(self) -> str:
         """A name for the task by its content."""
-        # The key must not depend on the process: sorted JSON does not, and Python's hash of a text
-        # does.
+        # The key must not depend on the process, as Python's hash of a text does.
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:24]
 
     @property
     def description(self) -> str:
-        """The task in some words, for an error."""
+        """A few words on the task, for an error message."""
         content = self.model_dump(mode="json", exclude={"kind"})
         words = [f"{k}={v}" for k, v in content.items() if isinstance(v, str | int)]
         return f"{self.kind} of {', '.join(words)}"

@@ -15,7 +15,7 @@ from pathlib import Path
 from verify.claims.claim_scenes import slug
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.execute import OnResult, Store, execute
-from verify.execution.executors import ANYWHERE, Placement
+from verify.execution.executors import LOCAL_DEFAULT, Placement
 from verify.execution.keeper import name_of
 from verify.execution.plan import Plan
 from verify.exploration.claim_properties import claim_property
@@ -36,8 +36,8 @@ from verify.scenes.results.exploration import (
 from verify.scenes.scene import Scene, load_scene
 
 MOST_EXAMPLES = 10**12
-_STRETCH = 50  # scenes of a task, at least
-_MOST_TASKS = 1000  # so that a plan stays small however many scenes are drawn
+_MIN_SCENES_OF_TASK = 50
+_MAX_TASKS = 1000  # the plan stays small, whatever the number of scenes is
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Exploration:
 
     def __post_init__(self) -> None:
         check_scenes(self.seed, self.examples, MOST_EXAMPLES)
-        names = [look.name for look in self.looks]
+        names = [look.name for look in self.all_properties]
         if not names:
             raise InputError("properties", NOT_GIVEN, "give one at least")
         for name, count in Counter(names).items():
@@ -66,7 +66,7 @@ class Exploration:
         scenes_of(self.drawn)
 
     @property
-    def looks(self) -> tuple[Property, ...]:
+    def all_properties(self) -> tuple[Property, ...]:
         """The properties and the claims, as properties."""
         return properties_of(self.properties, self.claims)
 
@@ -74,8 +74,7 @@ class Exploration:
     def plan(self) -> Plan:
         """The tasks, each for a range of consecutive scenes."""
         plan = Plan()
-        # A plan has at most 1000 tasks, whatever the number of examples is.
-        size = max(_STRETCH, -(-self.examples // _MOST_TASKS))
+        size = max(_MIN_SCENES_OF_TASK, -(-self.examples // _MAX_TASKS))
         for first in range(0, self.examples, size):
             count = min(size, self.examples - first)
             task = ExploreTask(
@@ -93,7 +92,7 @@ class Exploration:
         """Return the plan of the tasks that shrink these failures."""
         plan = Plan()
         for failure in failures:
-            # A claim's property is found by its name, as failures carry names alone.
+            # A failure has the name of its property alone, by which the claim is found.
             claims = tuple(c for c in self.claims if claim_property(c).name == failure.property)
             task = ShrinkTask(
                 drawn=self.drawn,
@@ -106,14 +105,14 @@ class Exploration:
         return plan
 
 
-# -- the whole ------------------------------------------------------------------------------------
+# -- the exploration ------------------------------------------------------------------------------
 
 
 def explore(
     exploration: Exploration,
     store: Store,
     *,
-    where: Placement = ANYWHERE,
+    where: Placement = LOCAL_DEFAULT,
     done: OnResult | None = None,
     earlier: Sequence[tuple[str, Scene]] = (),
 ) -> ExploreReport:
@@ -126,10 +125,10 @@ def explore(
     earlier_failures = tuple(_check_earlier(exploration, earlier))
     plan = exploration.plan
     results = execute(plan, store, where=where, done=done)
-    # Results come in any order; the plan's order makes the first failure the one with least number.
-    results_found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
+    # In the order of the plan, the first failure of a property is that with the least number.
+    explore_results = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
     first: dict[str, Failure] = {}
-    for result in results_found:
+    for result in explore_results:
         for failure in result.first:
             first.setdefault(failure.property, failure)
     shrinking = exploration.shrinking(list(first.values()))
@@ -141,10 +140,10 @@ def explore(
             PropertySummary(
                 name=each.name,
                 sentence=each.sentence,
-                looked_at=sum(r.looked_at[each.name] for r in results_found),
-                failures=sum(r.failed[each.name] for r in results_found),
+                looked_at=sum(r.looked_at[each.name] for r in explore_results),
+                failures=sum(r.failed[each.name] for r in explore_results),
             )
-            for each in exploration.looks
+            for each in exploration.all_properties
         ),
         failures=tuple(r for r in map(shrunk.get, shrinking.tasks) if isinstance(r, ShrunkResult)),
         again=earlier_failures,
@@ -155,24 +154,22 @@ def _check_earlier(
     exploration: Exploration, earlier: Sequence[tuple[str, Scene]]
 ) -> Iterator[EarlierFailure]:
     for name, scene in earlier:
-        for look in exploration.looks:
+        for look in exploration.all_properties:
             if slug(look.name) == name:
                 message = check_sample(look, Sample.from_scene(scene)).message
                 yield EarlierFailure(file=f"{scene.name}.toml", property=look.name, message=message)
 
 
-# -- the scenes that were found -------------------------------------------------------------------
+# -- the scenes of failures -------------------------------------------------------------------
 
 
-_FAILURE_FILE = re.compile(
-    r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml"
-)  # what is written, and no other file
+_FAILURE_FILE = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # a file of `save_failures`
 
 
 def save_failures(report: ExploreReport, folder: Path) -> list[Path]:
     """Write each shrunk scene into the folder, as PROPERTY.XXXXXXXX.toml; return the paths.
 
-    The X are digits of a hash of the scene's text, so that equal scenes share one file.
+    XXXXXXXX is the beginning of a hash of the scene's text, so that equal scenes share one file.
     """
     paths = []
     for failure in report.failures:

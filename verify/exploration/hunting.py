@@ -1,8 +1,9 @@
 """The hunt for the worst scenes for a measure, and their gallery for a report.
 
-Islands with seeds of their own are searched independently. The worst scenes of all islands are
-merged, with one for each shape of H, so that they are not variants of a single scene. The gallery
-shows each with its orbit, and with Λ split into its parts.
+The scenes are divided into islands, each with its own seed, that are searched independently. The
+worst scenes of all islands are merged, one for each shape of H, so that they are not variants of a
+single scene. The gallery shows each with its orbit, and with the parts of Λ, the cumulative area
+error: truncation, which exact arithmetic has too, and rounding.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,7 +14,7 @@ from functools import cached_property
 from verify.arithmetic.exact import decimal, text
 from verify.errors import InputError, unknown_name
 from verify.execution.execute import OnResult, Store, execute
-from verify.execution.executors import ANYWHERE, Placement
+from verify.execution.executors import LOCAL_DEFAULT, Placement
 from verify.execution.plan import Plan
 from verify.exploration.island_search import (
     COEFFICIENTS,
@@ -37,12 +38,12 @@ from verify.scenes.results.separation_parts import PartsAt
 from verify.scenes.scene import scene_text
 from verify.studies.kinds.separation import SeparationTask
 
-_MOST_STEPS = 10**6
-_ISLAND = 200  # scenes that one task looks at
-# Of the gallery: the run that is shown, in runs of the hunt, and its most steps.
-_LONGER, _MOST_SHOWN_STEPS = 100, 10_000
-_SHOWN_DIGITS = 6  # digits of a point
-_DIGITS = 8  # of Λ's parts
+_MAX_STEPS = 10**6
+_SCENES_OF_ISLAND = 200  # at most; an island is one task
+# A run of the gallery is longer than that of the hunt by this factor, up to this number of steps.
+_LONGER_FACTOR, _MAX_GALLERY_STEPS = 100, 10_000
+_POINT_DIGITS = 6  # of a point of an orbit
+_PARTS_DIGITS = 8  # of the parts of Λ
 
 
 @dataclass(frozen=True)
@@ -67,22 +68,22 @@ class Hunt:
             problem = f"is of one degree of freedom; allowed in more: {names}"
             raise InputError("maximise", self.measure, problem)
         check_scenes(self.seed, self.examples, MOST_EXAMPLES)
-        if not 2 <= self.steps <= _MOST_STEPS:
-            raise InputError("steps", self.steps, f"must be 2 … {_MOST_STEPS}")
-        # Built here for its errors alone: a request that cannot be drawn must not be planned.
+        if not 2 <= self.steps <= _MAX_STEPS:
+            raise InputError("steps", self.steps, f"must be 2 … {_MAX_STEPS}")
+        # This raises the errors of a space from which nothing can be drawn, before any plan.
         hunted_scenes(self.drawn, self.steps)
 
     @cached_property
     def plan(self) -> Plan:
         """The tasks, each for an island of at most 200 scenes."""
         plan = Plan()
-        for island, first in enumerate(range(0, self.examples, _ISLAND)):
+        for island, first in enumerate(range(0, self.examples, _SCENES_OF_ISLAND)):
             task = HuntTask(
                 drawn=self.drawn,
                 seed=self.seed,
                 measure=self.measure,
                 island=island,
-                count=min(_ISLAND, self.examples - first),
+                count=min(_SCENES_OF_ISLAND, self.examples - first),
                 steps=self.steps,
             )
             plan.need(task, f"an island of the hunt for {self.measure}")
@@ -90,7 +91,7 @@ class Hunt:
 
 
 def hunt(
-    request: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
+    request: Hunt, store: Store, *, where: Placement = LOCAL_DEFAULT, done: OnResult | None = None
 ) -> HuntResult:
     """Search all islands and return at most six worst scenes that differ from each other.
 
@@ -117,14 +118,14 @@ def gallery(
     hunted: HuntResult,
     store: Store,
     *,
-    where: Placement = ANYWHERE,
+    where: Placement = LOCAL_DEFAULT,
     done: OnResult | None = None,
 ) -> Gallery:
     """Build the gallery of the worst scenes, with runs longer than those of the hunt.
 
     If such a run does not finish, the run of the hunt is shown instead.
     """
-    longer = min(request.steps * _LONGER, max(request.steps, _MOST_SHOWN_STEPS))
+    longer = min(request.steps * _LONGER_FACTOR, max(request.steps, _MAX_GALLERY_STEPS))
 
     def separate_all(scenes: Sequence[Worst], steps: int) -> list[SeparationResult]:
         plan, tasks = Plan(), [_task(scene, steps) for scene in scenes]
@@ -160,7 +161,7 @@ def _task(worst: Worst, steps: int) -> SeparationTask:
         **sample.scene.hamiltonian_fields(),
         scheme=sample.scheme.name,
         **sample.run_arguments | {"steps": steps},
-        digits=_DIGITS,
+        digits=_PARTS_DIGITS,
     )
 
 
@@ -169,8 +170,8 @@ def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult
     lost = find_meaningless_span(run.plain.series if run.plain else ())
     return GalleryScene(
         value=worst.value,
-        scene=_separating(worst),
-        orbit=tuple((decimal(q, _SHOWN_DIGITS), decimal(p, _SHOWN_DIGITS)) for q, p in points),
+        scene=_text_with_separation(worst),
+        orbit=tuple((decimal(q, _POINT_DIGITS), decimal(p, _POINT_DIGITS)) for q, p in points),
         separation=run,
         longer=longer if longer is not run else None,
         meaningless_after=lost.first,
@@ -178,8 +179,8 @@ def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult
     )
 
 
-def _separating(worst: Worst) -> str:
-    """Return the scene's text, with the request to separate Λ as the gallery does."""
+def _text_with_separation(worst: Worst) -> str:
+    """Return the text of the scene, with the request to separate Λ, as in the gallery."""
     scene = scene_of(worst)
     assert scene.grid is not None  # noqa: S101 - as drawn
     grid = scene.grid.model_copy(update={"separate": True})
@@ -188,7 +189,7 @@ def _separating(worst: Worst) -> str:
 
 @dataclass(frozen=True)
 class MeaninglessSpan:
-    """The steps between which Λ is meaningless; None where there is no such checkpoint.
+    """The steps between which Λ is meaningless; None if there is no such checkpoint.
 
     `first`: the first checkpoint, in steps, at which no digit of Λ is right. `over`: the checkpoint
     from which on some digits are right again up to the end of the run.
@@ -199,17 +200,15 @@ class MeaninglessSpan:
 
 
 def find_meaningless_span(series: Sequence[PartsAt]) -> MeaninglessSpan:
-    """Find the checkpoints at which max |rounding| so far is not below max |truncation| so far.
+    """Return the span of checkpoints at which max |rounding| so far ≥ max |truncation| so far.
 
-    `series`: Λ's parts at checkpoints of one run, in the order of steps.
-
-    The greatest parts so far are compared, as Λ itself may pass through 0. A part that is exactly
-    0, or has no known digit, is "0": a part with known digits is then the greater one, and two such
-    parts are not compared.
+    `series`: the parts of Λ at checkpoints of one run, in the order of steps. The maxima up to each
+    checkpoint are compared, since Λ itself may pass through 0. A part that is exactly 0, or has no
+    known digit, is "0"; if the rounding part is "0" so far, the checkpoint does not count.
     """
     lost = [
         checkpoint.steps
-        for checkpoint, is_below in zip(series, _below(series), strict=True)
+        for checkpoint, is_below in zip(series, _rounding_is_smaller(series), strict=True)
         if not is_below
     ]
     if not lost:
@@ -218,7 +217,7 @@ def find_meaningless_span(series: Sequence[PartsAt]) -> MeaninglessSpan:
     return MeaninglessSpan(lost[0], next(later, None))
 
 
-def _below(series: Sequence[PartsAt]) -> Iterator[bool]:
+def _rounding_is_smaller(series: Sequence[PartsAt]) -> Iterator[bool]:
     rounding = truncation = Fraction(0)
     for checkpoint in series:
         rounding = max(rounding, abs(Fraction(checkpoint.total)))

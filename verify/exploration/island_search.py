@@ -1,8 +1,9 @@
-"""The search on one island of a hunt: by hypothesis's `target`, then refined by single numbers.
+"""The search on one island of a hunt, an independent part of it with its own seed.
 
-A local search moves to neighbours, scenes that differ slightly in a single number. Scenes of one
-shape of H count as one, so that what comes out is no repetition of what is out already. Each scene
-of the result was measured twice, the second time with twice the digits.
+First hypothesis draws scenes, with the measure as its `target`. Then a local search moves from the
+worst ones to neighbours, scenes that differ slightly in a single number. The result has one scene
+for each shape of H, the form of its terms without their numbers, so that it has no variants of one
+scene. Each of them is measured again, with twice the digits.
 """
 
 import re
@@ -32,21 +33,22 @@ from verify.strategies.exact_numbers import starts
 
 _FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
 _MOVES = tuple(sign * Fraction(1, 10**k) for k in (1, 2) for sign in (1, -1))
-_PLACES = 3  # decimals of a coefficient or a step size
+_DECIMAL_PLACES = 3  # of a coefficient or a step size
+# The limits of a neighbour's |coordinates| at the start, step sizes and |coefficients|.
 REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
-_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)  # of drawn step sizes
-SIZE = 7  # of the coefficients' numerators and denominators: the greatest that is drawn
-COEFFICIENTS = Fraction(1, SIZE), Fraction(SIZE)
-MOST_EXAMPLES = 10**7  # of a hunt, so that no two islands of two seeds draw the same
-SCENES_IN_RESULT = 6  # of a hunt, at most
-_DIRECTED = Fraction(3, 5)  # of the scenes, by hypothesis; the others are neighbours of the worst
-_TENTHS = 20
-_AGREEMENT = 0.01  # of lg of a measure, with twice the digits
-_NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
-_NEAR_VALUES = 0.1  # of lg of a measure: a quarter more, or less
+_STEP_SIZES_IN_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)
+MAX_INTEGER = 7  # the greatest numerator, or denominator, of a drawn coefficient
+COEFFICIENTS = Fraction(1, MAX_INTEGER), Fraction(MAX_INTEGER)
+MOST_EXAMPLES = 10**7  # in a hunt, so that no two islands of two seeds draw the same scenes
+SCENES_IN_RESULT = 6  # at most, of a hunt
+_DIRECTED_SHARE = Fraction(3, 5)  # of the scenes, drawn by hypothesis; the others are neighbours
+_MAX_START_IN_TENTHS = 20
+_CONFIRMATION_TOLERANCE = 0.01  # the change of lg of a measure with twice the digits
+_NUMBERS_BUT_EXPONENTS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")
+_EQUAL_VALUE_TOLERANCE = 0.1  # in lg of a measure: a factor of about 5/4
 
 
-# -- scenes that are alike ------------------------------------------------------------------------
+# -- similar scenes ------------------------------------------------------------------------
 
 
 def scene_of(worst: Worst) -> Scene:
@@ -63,26 +65,25 @@ def select_by_shape(scenes: Iterable[Worst]) -> list[Worst]:
 
 
 def shape_of(worst: Worst) -> str:
-    """Return H's terms without coefficients, and with all numbers but exponents replaced by n."""
+    """Return the terms of H without coefficients, and with all numbers but exponents as n."""
     return " + ".join(sorted(_terms(worst)))
 
 
 def select_different(scenes: Iterable[Worst]) -> list[Worst]:
-    """Return the scenes in the given order, without near repetitions of an earlier one.
+    """Return the scenes in the given order, without those that are similar to an earlier one.
 
-    Two scenes are alike if they are about as bad, have the same scheme, and have the same start or
-    an H whose terms include those of the other.
+    Two scenes are similar if their values are about equal, they have the same scheme, and they have
+    the same start, or the terms of one H include those of the other.
     """
     selected: list[Worst] = []
     for worst in scenes:
-        if not any(_are_alike(worst, other) for other in selected):
+        if not any(_are_similar(worst, other) for other in selected):
             selected.append(worst)
     return selected
 
 
-def _are_alike(a: Worst, b: Worst) -> bool:
-    # By logarithms, as values are: equal badness is a matter of a factor.
-    if abs(a.value - b.value) > _NEAR_VALUES:
+def _are_similar(a: Worst, b: Worst) -> bool:
+    if abs(a.value - b.value) > _EQUAL_VALUE_TOLERANCE:
         return False
     one, other = (Sample.from_scene(scene_of(each)) for each in (a, b))
     if one.scheme.name != other.scheme.name:
@@ -96,7 +97,7 @@ def _terms(worst: Worst) -> set[str]:
     terms = sympy.Add.make_args(scene_of(worst).exact_hamiltonian().exact)
     # The content of a term is its rational factor; what remains is the term's shape.
     primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
-    return {_NUMBERS.sub("n", str(term)) for term in primitive}
+    return {_NUMBERS_BUT_EXPONENTS.sub("n", str(term)) for term in primitive}
 
 
 # -- neighbours -----------------------------------------------------------------------------------
@@ -109,10 +110,10 @@ def neighbours(
     steps: tuple[Fraction, Fraction],
     coefficients: tuple[Fraction, Fraction],
 ) -> Iterator[Scene]:
-    """Yield each neighbour once: with another initial value, step size or coefficient of H.
+    """Yield each scene once that differs in an initial value, the step size or a coefficient of H.
 
     Initial values stay within `reach`, step sizes within `steps`, and the |coefficients| of H
-    within `coefficients`; without that last bound a search would only make H ever larger.
+    within `coefficients`; without this last limit a search would only make H ever larger.
     """
     sample = Sample.from_scene(scene)
     formula, place, h, n = (
@@ -130,17 +131,17 @@ def neighbours(
     candidates = chain(
         ((formula, place, size) for size in sizes),
         ((formula, moved, h) for moved in moved_places if max(map(abs, moved)) <= reach),
-        ((changed, place, h) for changed in _formulas(sample.hamiltonian, coefficients)),
+        ((changed, place, h) for changed in _changed_formulas(sample.hamiltonian, coefficients)),
     )
     yielded = {(formula, place, h)}
     for candidate in candidates:
         if candidate not in yielded:
             yielded.add(candidate)
-            with suppress(InputError):  # such as an H that is not defined there
-                yield _scene(sample, *candidate)
+            with suppress(InputError):  # H may be undefined at the new start
+                yield _build_scene(sample, *candidate)
 
 
-def _scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction) -> Scene:
+def _build_scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction) -> Scene:
     arguments = sample.with_place(place).run_arguments
     start = {name: arguments[name] for name in ("q", "p")}
     grid = {"steps": sample.steps, "step_sizes": [h], "initial_values": [start]}
@@ -148,8 +149,8 @@ def _scene(sample: Sample, formula: str, place: Iterable[Fraction], h: Fraction)
     return scene_from(whole, "neighbour")
 
 
-def _formulas(hamiltonian: Hamiltonian, bounds: tuple[Fraction, Fraction]) -> Iterator[str]:
-    """Yield H with one coefficient of its sum changed."""
+def _changed_formulas(hamiltonian: Hamiltonian, bounds: tuple[Fraction, Fraction]) -> Iterator[str]:
+    """Yield the formulas of H with one coefficient changed."""
     lowest, highest = bounds
     terms = sympy.Add.make_args(hamiltonian.exact)
     for k, term in enumerate(terms):
@@ -166,8 +167,8 @@ def _formulas(hamiltonian: Hamiltonian, bounds: tuple[Fraction, Fraction]) -> It
 
 
 def _round(x: Fraction) -> Fraction:
-    """Round to so few decimals that the scene stays readable."""
-    return round(x, _PLACES)
+    """Round to a few decimals, so that the scene stays readable."""
+    return round(x, _DECIMAL_PLACES)
 
 
 # -- the search -----------------------------------------------------------------------------------
@@ -177,12 +178,16 @@ def search_island(
     measure: str, space: SampleSpace, seed: int, island: int, *, count: int, steps: int
 ) -> HuntResult:
     """Return the worst scenes among the `count` that the island measures, of `steps` steps each."""
-    look = MeasuredScenes(MEASURES[measure], count)
+    measured_scenes = MeasuredScenes(MEASURES[measure], count)
     # Seeds of two islands differ, also for different seeds of the hunt: see MOST_EXAMPLES.
     chance = seed * MOST_EXAMPLES + island
-    _search_directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
-    _refine(look)
-    return HuntResult(worst=tuple(_confirm_worst(look)), examples=len(look.values))
+    _search_directed(
+        measured_scenes, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED_SHARE))
+    )
+    _refine(measured_scenes)
+    return HuntResult(
+        worst=tuple(_confirm_worst(measured_scenes)), examples=len(measured_scenes.values)
+    )
 
 
 class MeasuredScenes:
@@ -212,28 +217,33 @@ class MeasuredScenes:
 
 
 def sorting_key(worst: Worst) -> tuple[float, int, str]:
-    """Return the sorting key: the worst first, among equal ones the shortest."""
+    """Return the key that sorts the worst scene first, and of equally bad ones the shortest."""
     return -worst.value, len(worst.scene), worst.scene
 
 
-def _confirm_worst(look: MeasuredScenes) -> Iterator[Worst]:
+def _confirm_worst(measured_scenes: MeasuredScenes) -> Iterator[Worst]:
     """Yield the worst scene of each shape whose value is confirmed with twice the digits."""
     shapes: set[str] = set()
-    for worst in look.worst():
+    for worst in measured_scenes.worst():
         shape = shape_of(worst)
         if len(shapes) == SCENES_IN_RESULT:
             return
         if shape in shapes:
             continue
-        confirmed_value = look.measure.evaluate(Sample.from_scene(scene_of(worst)), 2 * DIGITS)
-        # A value that changes with more digits is made of rounding errors, and is no measure.
-        if confirmed_value is not None and abs(confirmed_value - worst.value) <= _AGREEMENT:
+        confirmed_value = measured_scenes.measure.evaluate(
+            Sample.from_scene(scene_of(worst)), 2 * DIGITS
+        )
+        # A value that changes with more digits consists of rounding errors.
+        if (
+            confirmed_value is not None
+            and abs(confirmed_value - worst.value) <= _CONFIRMATION_TOLERANCE
+        ):
             shapes.add(shape)
             yield Worst(value=confirmed_value, scene=worst.scene)
 
 
 def _search_directed(
-    look: MeasuredScenes, scenes: st.SearchStrategy[Scene], chance: int, count: int
+    measured_scenes: MeasuredScenes, scenes: st.SearchStrategy[Scene], chance: int, count: int
 ) -> None:
     """Measure `count` scenes drawn by hypothesis, which targets those with large values."""
 
@@ -247,32 +257,32 @@ def _search_directed(
     )
     @given(scenes)
     def look_at(scene: Scene) -> None:
-        value = look(scene)
+        value = measured_scenes(scene)
         if value is not None:
             target(value)
 
-    # Where every scene that is drawn has to be rejected, there are none to look at.
+    # If hypothesis rejects every draw, no scene is measured.
     with suppress(Unsatisfiable):
         look_at()
 
 
-def _refine(look: MeasuredScenes) -> None:
+def _refine(measured_scenes: MeasuredScenes) -> None:
     """Climb from the worst scene of each shape in turn, as long as scenes may be measured."""
-    for begin in select_by_shape(look.worst()):
-        if not look.has_room:
+    for begin in select_by_shape(measured_scenes.worst()):
+        if not measured_scenes.has_room:
             return
-        _climb(begin, look)
+        _climb(begin, measured_scenes)
 
 
-def _climb(begin: Worst, look: MeasuredScenes) -> None:
+def _climb(begin: Worst, measured_scenes: MeasuredScenes) -> None:
     """Move to the first neighbour that is worse, as long as there is one."""
     value, scene, has_moved = begin.value, scene_of(begin), True
     while has_moved:
         has_moved = False
         for moved in neighbours(scene, reach=REACH, steps=STEP_SIZES, coefficients=COEFFICIENTS):
-            if not look.has_room:
+            if not measured_scenes.has_room:
                 return
-            measured_value = look(moved)
+            measured_value = measured_scenes(moved)
             if measured_value is not None and measured_value > value:
                 value, scene, has_moved = measured_value, moved, True
                 break
@@ -280,15 +290,15 @@ def _climb(begin: Worst, look: MeasuredScenes) -> None:
 
 def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
     """Return a strategy for plain scenes: few terms, starts in tenths, h from 1/1000 to 1/10."""
-    # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
-    # the modules loaded, and what is drawn would then depend on which these are. A coefficient with
-    # its sign is drawn as a number below 2·SIZE².
-    tenths = st.integers(-_TENTHS, _TENTHS).map(lambda n: Fraction(n, 10))
+    # All drawn integers are below 100: hypothesis also tries larger constants of the loaded
+    # modules, so that the scenes would depend on which modules are loaded. A coefficient with its
+    # sign is drawn as an integer below 2·MAX_INTEGER².
+    tenths = st.integers(-_MAX_START_IN_TENTHS, _MAX_START_IN_TENTHS).map(lambda n: Fraction(n, 10))
     return strategies.scenes(
-        hamiltonians=hamiltonians_of(drawn, terms=3 if drawn.degrees == 1 else 2, size=SIZE),
+        hamiltonians=hamiltonians_of(drawn, terms=3 if drawn.degrees == 1 else 2, size=MAX_INTEGER),
         schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
         initial_values=starts(tenths, drawn.degrees),
         initial_times=tenths,
-        step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
+        step_sizes=st.sampled_from([Fraction(n, 1000) for n in _STEP_SIZES_IN_THOUSANDTHS]),
         steps=(steps, steps),
     )

@@ -1,7 +1,9 @@
 """Measures of how bad a scene is for float64, or for its scheme, which a hunt maximises.
 
-Each value is a decimal logarithm, or None: if the orbit leaves a bounded part of the plane, or if
-the numerator or the denominator is 0 or has no known digit.
+Each value is a decimal logarithm. It is None if the orbit leaves a bounded part of the phase space,
+or if the numerator or the denominator is 0 or has no known digit. ΔJ = det J − 1 is the area error
+of one step, and Λ = Π (1 + ΔJ_k) − 1 that of a run; in n degrees of freedom S and W are the defects
+of the symplectic form, of one step and of a run.
 """
 
 import math
@@ -18,20 +20,21 @@ from verify.studies.separation.chain import Trail
 from verify.studies.separation.links import separate_chains
 from verify.studies.separation.mixed_run import Stopped
 
-DIGITS = 40  # of what stands for exact arithmetic
-_SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves
-_POINTS = 100  # of an orbit that is drawn
-_FARTHEST = 10  # a run that goes farther from the origin is of no ordinary scene
-# 2⁻⁵³, the greatest relative rounding error of float64.
-_ROUNDOFF = Fraction(1, 2**53)
+DIGITS = 40  # decimal digits of the runs that stand for exact arithmetic
+# The parts of Λ are computed to one digit for each ten of the run; they use more digits inside.
+_DIGITS_PER_DIGIT_OF_PARTS = 10
+_ORBIT_POINTS = 100  # of an orbit in a figure
+_MAX_COORDINATE = 10  # a run that goes farther from the origin is no ordinary scene
+_ROUNDOFF = Fraction(1, 2**53)  # the largest relative rounding error of float64
+_NOISE_FACTOR = 10  # a value below this multiple of its bound has no certain digit
 
 
 @dataclass(frozen=True)
 class Measure:
     """A measure with its description.
 
-    `value(sample, digits)`: its decimal logarithm, or None. `sentence` describes it, and `several`
-    in n degrees of freedom; "" for a measure that exists in the plane alone.
+    `value(sample, digits)`: returns its decimal logarithm, or None. `sentence`: describes it in the
+    plane; `several`: in n degrees of freedom, "" for a measure that exists in the plane alone.
     """
 
     sentence: str
@@ -43,21 +46,23 @@ class Measure:
         return self.value(sample, digits) if self.describe(sample.hamiltonian.degrees) else None
 
     def describe(self, degrees: int) -> str:
-        """Return its description in so many degrees of freedom; "" if it does not exist there."""
+        """Return its description for that number of degrees of freedom; "" if it does not exist."""
         return self.sentence if degrees == 1 else self.several
 
 
 def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
-    """Return lg of the greatest rounding part over the greatest truncation part of a run.
+    """Return lg of the greatest rounding part of Λ over its greatest truncation part, in one run.
 
-    The greatest parts at its checkpoints are taken, as Λ itself may pass through 0, where any
+    The maxima over the checkpoints are compared, since Λ itself may pass through 0, where a
     relative error is infinite.
     """
-    if _stays(sample, digits) is None:
+    if _run_if_near(sample, digits) is None:
         return None
     try:
-        # Parts need more working digits than asked for, which they choose by themselves.
-        chains = run_alone(separate_chains(*sample.kernel_inputs, max(1, digits // _SHARE)))
+        # The separation uses more working digits than are requested.
+        chains = run_alone(
+            separate_chains(*sample.kernel_inputs, max(1, digits // _DIGITS_PER_DIGIT_OF_PARTS))
+        )
     except Stopped:
         return None
     (chain,) = chains.plain
@@ -66,10 +71,9 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
 
 
 def _greatest(trail: Trail, bound: Fraction) -> Fraction:
-    """Return the greatest |value|; 0 if no digit of it is known, since noise is not hunted."""
-    # A value below ten times its bound has no certain digit.
-    top = trail.largest
-    return top if top > 10 * bound else Fraction(0)
+    """Return the greatest |value|; 0 if no digit of it is certain, since noise is not hunted."""
+    greatest = trail.largest
+    return greatest if greatest > _NOISE_FACTOR * bound else Fraction(0)
 
 
 def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
@@ -78,14 +82,18 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     The error is relative to the greatest coordinate along the orbit: near the origin a relative
     error may be large without any loss that matters.
     """
-    accurate = _stays(sample, digits)
+    accurate = _run_if_near(sample, digits)
     if accurate is None:
         return None
     outcome = sample.run("float64", 17)
-    return None if outcome.done < sample.steps else _lost(sample, accurate, outcome)
+    return (
+        None if outcome.done < sample.steps else _lg_error_in_roundoffs(sample, accurate, outcome)
+    )
 
 
-def _lost(sample: Sample, accurate: RunOutcome, outcome: RunOutcome) -> float | None:
+def _lg_error_in_roundoffs(
+    sample: Sample, accurate: RunOutcome, outcome: RunOutcome
+) -> float | None:
     names = tuple(sample.point)
     size = max(abs(x[n]) for x in (sample.point, *accurate.trail) for n in names)
     error = max(abs(outcome.values[n] - accurate.values[n]) for n in names)
@@ -93,16 +101,16 @@ def _lost(sample: Sample, accurate: RunOutcome, outcome: RunOutcome) -> float | 
 
 
 def growth(sample: Sample, digits: int = DIGITS) -> float | None:
-    """Return lg of the greatest |Λ| of the run, computed with so many digits, free of rounding.
+    """Return lg of the greatest |Λ| of the run, computed with that number of digits.
 
-    In n degrees of freedom it is the greatest |entry| of W of the whole run.
+    In n degrees of freedom it is the greatest |entry| of W over the run.
     """
     value = _observable(sample, digits, sample.hamiltonian.structure.over_run)
     return _lg(value) if value else None
 
 
 def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
-    """Return lg of the greatest |ΔJ| of a step, divided by h to its proved order.
+    """Return lg of the greatest |ΔJ| of a step over h^r, where r is the proved order of ΔJ.
 
     In n degrees of freedom it is the greatest |entry| of S of a step.
     """
@@ -114,22 +122,22 @@ def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
 
 
 def _observable(sample: Sample, digits: int, name: str) -> Fraction | None:
-    """Return the observable of the run; None if the run goes far."""
-    run = _stays(sample, digits, name)
+    """Return an observable of the run; None as `_run_if_near`."""
+    run = _run_if_near(sample, digits, name)
     return run.values[name] if run else None
 
 
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Return points (q, p) of the run with 40 digits, from the initial value on."""
-    trail = sample.run("mpfr", DIGITS, sections=_POINTS).trail
+    trail = sample.run("mpfr", DIGITS, sections=_ORBIT_POINTS).trail
     return [(sample.point["q"], sample.point["p"]), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: Sample, digits: int, *observables: str) -> RunOutcome | None:
-    """Run with so many digits; None if the orbit goes far.
+def _run_if_near(sample: Sample, digits: int, *observables: str) -> RunOutcome | None:
+    """Return a run with that number of digits; None if it ends early, or the orbit goes far.
 
-    In n degrees of freedom it is also None if the kernel is long, or if the observables vanish
-    because the scheme is symplectic by its conditions.
+    In n degrees of freedom also None if the kernel is long, or if observables are requested that
+    are 0, as the scheme is symplectic by its conditions.
     """
     if not sample.hamiltonian.planar and (
         not sample.short or (observables and sample.step_map.symplectic_by_conditions)
@@ -138,7 +146,7 @@ def _stays(sample: Sample, digits: int, *observables: str) -> RunOutcome | None:
     outcome = sample.run("mpfr", digits, *observables)
     if outcome.done < sample.steps:
         return None
-    is_near = all(abs(x[name]) <= _FARTHEST for x in outcome.trail for name in sample.point)
+    is_near = all(abs(x[name]) <= _MAX_COORDINATE for x in outcome.trail for name in sample.point)
     return outcome if is_near else None
 
 

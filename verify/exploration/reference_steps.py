@@ -1,10 +1,10 @@
-"""Reference steps, which kernels and maps are held against: in balls, and in many digits.
+"""Reference steps, with which kernels and maps are compared: in balls, and with many digits.
 
-Steps of a map in ball arithmetic need no kernel, so that they are a rigorous oracle for the number
-systems that shares no code with these. ΔJ is computed from the entries of J, not from its closed
-form. Implicit steps, which balls do not cover, are run by a kernel in many digits. It computes the
-derivatives of such a step from further equations; here the Jacobian of a run is computed
-independently, by central differences of runs.
+Steps of a map in ball arithmetic need no kernel. They are rigorous, and share no code with the
+number systems that they check. ΔJ is computed from the entries of J, not from its closed form.
+Implicit steps, which balls do not cover, are run by a kernel with many digits. The kernel computes
+their derivatives from further equations; here the Jacobian of a run is computed independently, by
+central differences of runs.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,13 +24,14 @@ from verify.schemes.maps.step_map import StepMap
 
 # 320 bits leave room for balls that widen from step to step.
 BITS = 320
-_SHARP = 120  # bits that a ball must know to be worth comparing
-# Of runs in many digits: their steps, the accuracy and the greatest size of their ends.
-_STEPS = 2
+_MIN_BITS = 120  # the known bits of a ball that is narrow enough for a comparison
+# Runs with many digits: the number of steps, the accuracy of their ends, and the greatest |end|.
+_STEPS_OF_RUN = 2
 _ACCURACY = Fraction(1, 10**30)
-_FARTHEST = 10**6
-_DIGITS, _BITS = 160, 700
-_SHIFT = Fraction(1, 10**50)  # the derivatives' error is its square, times the third derivatives
+_MAX_END = 10**6
+_RUN_DIGITS, _JACOBIAN_BITS = 160, 700
+# The shift of a central difference, whose error is its square times a third derivative.
+_DIFFERENCE = Fraction(1, 10**50)
 _DERIVATIVE_ACCURACY = Fraction(1, 10**70)
 Matrix = flint.arb_mat
 Point = dict[str, Ball]
@@ -41,7 +42,7 @@ class BallState:
     """The state after some steps.
 
     `point`: the coordinates by name, with t if H depends on it; `matrix`: the tangent map of all
-    steps; `step_jacobian`: the Jacobian of the last one; `product`: Π det J_k over the steps.
+    steps; `step_jacobian`: the Jacobian of the last step; `product`: Π det J_k over the steps.
     """
 
     point: Point
@@ -56,8 +57,8 @@ class BallState:
         wide where the product is not.
         """
         planar = self.matrix.nrows() == 2
-        only_if(all(map(sharp, self.point.values())))
-        only_if(all(map(sharp, [self.product] if planar else self.matrix.entries())))
+        only_if(all(map(is_narrow, self.point.values())))
+        only_if(all(map(is_narrow, [self.product] if planar else self.matrix.entries())))
         return self
 
 
@@ -79,7 +80,8 @@ def ball_steps(
 
 
 def take_step(step: StepMap, state: BallState, h: Ball) -> BallState:
-    """Compute one step from a state, in flint's present precision; Silent if it is undefined."""
+    """Compute one step from a state, in flint's present precision; raises Silent if it is
+    undefined."""
     # A map given by formulas has no step in operations, only its closed form.
     point, closed_form = dict(state.point), step.closed if step.formulas is not None else None
     try:
@@ -135,9 +137,8 @@ def overlap(x: Matrix, y: Matrix) -> bool:
 
 
 def unlike(computed: Ball, expected: Ball) -> str:
-    """Describe both values, with their difference, which 12 digits may not show."""
+    """Describe both values, and their difference, as 12 digits of them may be equal."""
     with working_precision(BITS):
-        # Midpoints may be equal to 12 digits: the difference shows where they part.
         difference = computed - expected
     comparison = f"{format_ball(computed, 12)}, and should be {format_ball(expected, 12)}"
     return f"{comparison} (too large by {format_ball(difference, 3)})"
@@ -152,12 +153,12 @@ def must_overlap(what: str, computed: Ball, expected: Ball, how: str = "") -> No
         raise Violation(f"{what} {unlike(computed, expected)}{how}")
 
 
-def sharp(x: Ball) -> bool:
-    """Return True if a ball is narrow: relative to |x| beyond 1, and absolutely below."""
-    return bool(x.is_finite()) and x.rad() * 2**_SHARP < 1 + x.abs_lower()
+def is_narrow(x: Ball) -> bool:
+    """Return True if the radius of a ball is small: relative to |x| if |x| > 1, else absolutely."""
+    return bool(x.is_finite()) and x.rad() * 2**_MIN_BITS < 1 + x.abs_lower()
 
 
-# -- in many digits -------------------------------------------------------------------------------
+# -- with many digits -----------------------------------------------------------------------------
 
 
 def end_of(sample: Sample, *observables: str, times: int = 1) -> Mapping[str, Fraction]:
@@ -165,9 +166,9 @@ def end_of(sample: Sample, *observables: str, times: int = 1) -> Mapping[str, Fr
 
     Raises Silent if the run ends early, or a value is so large that digits are lost.
     """
-    outcome = replace(sample, steps=_STEPS).run("mpfr", times * _DIGITS, *observables)
-    only_if(outcome.done == _STEPS)
-    only_if(all(abs(outcome.values[name]) <= _FARTHEST for name in sample.point))
+    outcome = replace(sample, steps=_STEPS_OF_RUN).run("mpfr", times * _RUN_DIGITS, *observables)
+    only_if(outcome.done == _STEPS_OF_RUN)
+    only_if(all(abs(outcome.values[name]) <= _MAX_END for name in sample.point))
     return {name: outcome.values[name] for name in (*sample.point, *observables)}
 
 
@@ -188,12 +189,15 @@ def jacobian_of_run(sample: Sample) -> tuple[Matrix, Ball]:
     columns = []
     for name, x in sample.point.items():
         neighbours = (
-            sample.with_place((sample.point | {name: x + dx}).values()) for dx in (_SHIFT, -_SHIFT)
+            sample.with_place((sample.point | {name: x + dx}).values())
+            for dx in (_DIFFERENCE, -_DIFFERENCE)
         )
-        # Central differences are off by the square of _SHIFT, 10⁻¹⁰⁰, times third derivatives.
+        # Central differences are off by 10⁻¹⁰⁰ times third derivatives.
         forward, backward = (end_of(neighbour).values() for neighbour in neighbours)
-        columns.append([(a - b) / (2 * _SHIFT) for a, b in zip(forward, backward, strict=True)])
+        columns.append(
+            [(a - b) / (2 * _DIFFERENCE) for a, b in zip(forward, backward, strict=True)]
+        )
     size = 1 + max(abs(x) for column in columns for x in column)
-    with working_precision(_BITS):
+    with working_precision(_JACOBIAN_BITS):
         jacobian = Matrix([[rational_ball(x) for x in row] for row in zip(*columns, strict=True)])
         return jacobian, rational_ball(_DERIVATIVE_ACCURACY * size**4)

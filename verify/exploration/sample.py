@@ -15,7 +15,7 @@ from verify.functions.function import CIRCLE
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.run_domain import point_of, start_texts
-from verify.kernels.run_inputs import SECTIONS
+from verify.kernels.run_inputs import DEFAULT_SECTIONS
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import Potential, potential_of
@@ -32,8 +32,8 @@ class TermLimits(NamedTuple):
     """The greatest numbers of terms for which each computation still takes only a moment.
 
     `proof`: a proof; `kernels`: writing a kernel; `points`: evaluating the map at a few points;
-    `step`: a single step. `unproved`: kernels are written also where the map is too long for a
-    proof; `runs`: claims on runs are tested.
+    `step`: a single step. `unproved`: True if kernels are written even if the map is too long for a
+    proof; `runs`: True if claims on runs are tested.
     """
 
     proof: int
@@ -44,13 +44,15 @@ class TermLimits(NamedTuple):
     runs: bool
 
 
-# The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
+# In the plane the terms of the map are counted, in n degrees of freedom those of its slopes: see
+# `Sample.terms`.
 _TERM_LIMITS = {
     AREA: TermLimits(40, 20, 150, inf, unproved=False, runs=True),
     SYMPLECTIC: TermLimits(30, 60, 250, 250, unproved=True, runs=False),
 }
-_MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
-_OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
+_MAX_SERIES_ORDER = 4  # of a scheme in n degrees of freedom, whose series a proof computes
+# The kinds of generators whose series have few terms.
+_KINDS_WITH_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,7 @@ class Sample:
     @cached_property
     def potential(self) -> Potential | None:
         """The potential of the leading coefficient of ΔJ; None in n degrees of freedom."""
+        # Linear algebra over monomials looks for G in the plane alone.
         return potential_of(self.proof, self.scheme) if self.hamiltonian.planar else None
 
     # -- how long it is ---------------------------------------------------------------------------
@@ -152,8 +155,10 @@ class Sample:
             return False
         if not self.hamiltonian.planar:
             # The series of other functions have many terms, which make proofs long.
-            short = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
-            return short and scheme.order <= _MOST_ORDER
+            short = (
+                self.step_map.symplectic_by_conditions or self._kinds <= _KINDS_WITH_SHORT_SERIES
+            )
+            return short and scheme.order <= _MAX_SERIES_ORDER
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
         return scheme.needs_separable and not self._kinds & {"inverse", "root"}
@@ -184,7 +189,7 @@ class Sample:
         return canonical_field(self.hamiltonian)[0]
 
     def flow(self, digits: int) -> NumericalFlow:
-        """Return the exact flow, to so many digits."""
+        """Return the exact flow, with that number of digits."""
         return NumericalFlow(self.field, digits)
 
     @property
@@ -207,8 +212,8 @@ class Sample:
 
     @property
     def turn(self) -> int:
-        """A number from the sample by which slow properties select the samples that they test."""
-        # Any fixed function of the sample would do; chance would not, as failures must repeat.
+        """A number by which slow properties select the samples that they test."""
+        # Any function of the sample will do; a random number will not, as failures must repeat.
         p, q = self.place[0], self.place[self.hamiltonian.degrees]
         return 7 * self.steps + abs(p.numerator) + q.denominator
 
@@ -227,9 +232,9 @@ class Sample:
         return self.hamiltonian, self.scheme.name, self.start, self.steps
 
     def run(
-        self, number_system: str, digits: int, *observables: str, sections: int = SECTIONS
+        self, number_system: str, digits: int, *observables: str, sections: int = DEFAULT_SECTIONS
     ) -> RunOutcome:
-        """Run it in a kernel, with a trail of so many sections."""
+        """Run it in a kernel, with a trail of that number of sections."""
         run = KernelRun(*self.kernel_inputs, frozenset(observables), 0, sections=sections)
         return run.run(number_systems.get(number_system, digits))
 

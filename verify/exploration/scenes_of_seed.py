@@ -1,7 +1,7 @@
 """The scenes of a seed, the check of properties on them, and the simplest scene that fails one.
 
-Scene k of seed S is the same everywhere and always: it is drawn from bytes that depend on S and k
-alone, so that it does not matter which others were drawn, where, or by how many workers.
+Scene k of seed s is drawn from bytes that depend on s and k alone: it does not depend on the other
+scenes that are drawn, on the machine, or on the number of workers.
 """
 
 import random
@@ -27,13 +27,12 @@ from verify.scenes.results.exploration import ExploreResult, Failure, ShrunkResu
 from verify.scenes.scene import Scene, scene_text
 from verify.strategies.schemes import separable_for
 
-# Bytes for one scene: hypothesis rejects a draw that needs more.
-_BYTES = 4096
-_MOST_STEPS = 12
-_ATTEMPTS = 100
-_TERMS, _TERMS_IN_DEGREES = 4, 2  # the latter of each of several degrees of freedom
+_BYTES_OF_SCENE = 4096  # hypothesis rejects a draw that needs more
+_MAX_STEPS = 12
+_MAX_ATTEMPTS = 100
+_MAX_PLANAR_TERMS, _MAX_TERMS_PER_DEGREE = 4, 2  # of H, in the plane and with several degrees
 
-Fault = Callable[[Scene], str]  # what is wrong with a scene; empty where nothing is
+FindFault = Callable[[Scene], str]  # returns the fault of a scene, "" if it has none
 
 
 @lru_cache(maxsize=32)
@@ -42,12 +41,12 @@ def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
 
     Raises InputError for an unknown kind or scheme, and a degree below 1.
     """
-    terms = _TERMS if drawn.degrees == 1 else _TERMS_IN_DEGREES
+    terms = _MAX_PLANAR_TERMS if drawn.degrees == 1 else _MAX_TERMS_PER_DEGREE
     usual = not drawn.kinds and drawn.degree == SampleSpace().degree
     return strategies.scenes(
         hamiltonians=None if usual else hamiltonians_of(drawn, terms),
         schemes=strategies.schemes(names=drawn.schemes) if drawn.schemes else None,
-        steps=(1, _MOST_STEPS),
+        steps=(1, _MAX_STEPS),
         time_dependent=drawn.time_dependent and usual,
         degrees=drawn.degrees,
     )
@@ -71,17 +70,17 @@ def hamiltonians_of(
 def sample_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
     """Draw scene `number` of the seed."""
     box, fuzz = _drawer(drawn)
-    for attempt in range(_ATTEMPTS):
+    for attempt in range(_MAX_ATTEMPTS):
         box.clear()
         fuzz(bytes_of(seed, number, attempt))
         if box:
             return box[0]
-    raise RuntimeError(f"none of {_ATTEMPTS} draws gives a scene")
+    raise RuntimeError(f"none of {_MAX_ATTEMPTS} draws gives a scene")
 
 
 def bytes_of(seed: int, number: int, attempt: int = 0) -> bytes:
     """Return the bytes from which a scene is drawn."""
-    return random.Random(f"{seed}:{number}:{attempt}").randbytes(_BYTES)  # noqa: S311 - no secret
+    return random.Random(f"{seed}:{number}:{attempt}").randbytes(_BYTES_OF_SCENE)  # noqa: S311 - no secret
 
 
 @lru_cache(maxsize=32)
@@ -96,10 +95,10 @@ def _drawer(drawn: SampleSpace) -> tuple[list[Scene], Callable[[bytes], Any]]:
     return box, draw.hypothesis.fuzz_one_input  # type: ignore[attr-defined]
 
 
-def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[Scene, str]:
-    """Return the simplest scene to which hypothesis shrinks that one, and its fault by `look`.
+def simplest(drawn: SampleSpace, seed: int, number: int, look: FindFault) -> tuple[Scene, str]:
+    """Return the simplest scene to which hypothesis shrinks that one, and its fault.
 
-    `look` must report a fault of that scene itself.
+    `look` returns the fault of a scene; that scene itself must have one.
     """
     failures: list[tuple[Scene, str]] = []
 
@@ -112,7 +111,7 @@ def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[S
         report_multiple_bugs=False,
         print_blob=False,
     )
-    @seeded(0)  # below the settings: shrinking takes chances, and a seed would forget the database
+    @seeded(0)  # shrinking is random; above the settings a seed would discard the database
     @given(scenes_of(drawn))
     def fails(scene: Scene) -> None:
         message = look(scene)
@@ -120,14 +119,14 @@ def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[S
             failures.append((scene, message))
             raise Violation(message)
 
-    for attempt in range(_ATTEMPTS):
+    for attempt in range(_MAX_ATTEMPTS):
         try:
             fails.hypothesis.fuzz_one_input(bytes_of(seed, number, attempt))  # type: ignore[attr-defined]
         except Violation:
             break
     try:
         fails()
-    except Violation:  # hypothesis ends with the simplest
+    except Violation:  # hypothesis fails the simplest scene last
         return failures[-1]
     raise RuntimeError(f"scene {number} of seed {seed} fails no more")
 
@@ -180,7 +179,7 @@ def check_sample(property_: Property, sample: Sample) -> PropertyCheck:
         return PropertyCheck(property_.holds(sample))
     except Violation as violation:
         return PropertyCheck(True, str(violation))
-    except Exception as error:  # whatever the code under test may raise is a finding
+    except Exception as error:  # any exception of the code under test is a finding
         text = f"raised {type(error).__name__}: {' '.join(str(error).split())}"
         return PropertyCheck(True, text)
 
@@ -190,7 +189,7 @@ def shrink(property_: Property, space: SampleSpace, seed: int, number: int) -> S
     scene, message = simplest(
         space, seed, number, lambda scene: check_sample(property_, Sample.from_scene(scene)).message
     )
-    # Another scheme may have been drawn than the one that a claim speaks of.
+    # The scheme of a claim replaces the one that was drawn.
     named_scene = scene.model_copy(
         update={"name": slug(property_.name), "schemes": (property_.scheme or scene.schemes[0],)}
     )

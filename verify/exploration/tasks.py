@@ -8,7 +8,7 @@ from verify.execution.task import Task
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import ExploreResult, HuntResult, ShrunkResult
 
-_SCENE_COST = 10_000  # of one property of one scene
+_SCENE_COST = 10_000  # the cost of one property on one scene, in the unit of `Task.cost`
 _HUNTED_COST = 10 * _SCENE_COST
 # About three runs measure a scene: one in many digits, one in float64, one to confirm it.
 _RUNS_OF_A_MEASURE = 3
@@ -27,7 +27,7 @@ class _OnProperties(_OnSamples):
 
 
 class ExploreTask(_OnProperties):
-    """Hold properties against `count` scenes: those of this seed from number `first` on."""
+    """Check properties on `count` scenes of this seed, from number `first` on."""
 
     result = ExploreResult
     imports = ("verify.exploration.scenes_of_seed",)

@@ -19,10 +19,10 @@ from verify.hamiltonians.named_system import Motion, exactly
 
 MOST_DIGITS = 10_000
 _MOST_PRECISION = 2 * bits_for(MOST_DIGITS)
-_GUARD = 30  # bits that a formula may well lose
-_FINER = 8  # bits of a value beyond its digits
-_MOST_BITS = 1 << 20  # of exponents: a state beyond it is of no use to anyone
-_TIME_DIGITS = 12  # digits of a time at which a solution ends
+_GUARD_BITS = 30  # bits; cancellation in a formula typically loses fewer
+_GRID_BITS = 8  # the allowed error is 2^_GRID_BITS units of the grid that values are rounded to
+_MAX_EXPONENT = 1 << 20  # binary exponent; a larger state is of no use to anyone
+_TIME_DIGITS = 12  # the digits to which a blow-up time is printed
 
 Numbers = Sequence[Fraction]  # p, q; p1 … pn, q1 … qn
 T = TypeVar("T")
@@ -38,9 +38,9 @@ class Evaluation(NamedTuple):
 def evaluate(motion: Motion, start: Numbers, time: Fraction, digits: int) -> Evaluation:
     """Return φ_time(start), with a bound of at most 10^−digits times the largest coordinate.
 
-    The largest coordinate is taken over both ends.
+    The largest coordinate is taken over both ends, in size.
 
-    Raises NoFlowError if the solution blows up before, and if the digits are not reached.
+    Raises NoFlowError if the solution blows up by then, and if the digits are not reached.
     """
     if motion.is_at_rest or time == 0:
         return Evaluation(start, Fraction(0))
@@ -61,12 +61,15 @@ def evaluate_enclosure(
 
 
 def try_precisions(attempt: Callable[[], T | None], digits: int) -> T:
-    """Return the value of `attempt` at the first precision that gives one. Raises NoFlowError."""
+    """Return the first value of `attempt` that is not None, as the precision doubles.
+
+    Raises NoFlowError beyond the precision of `MOST_DIGITS` digits.
+    """
     return try_precisions_from(attempt, first_precision(digits))
 
 
 def try_precisions_from(attempt: Callable[[], T | None], bits: int) -> T:
-    """Return the same, beginning with so many bits."""
+    """Return the value as `try_precisions` does, from a precision of `bits` bits on."""
     # Doubling costs at most twice the work of the last attempt in all.
     while bits <= _MOST_PRECISION:
         with working_precision(bits):
@@ -78,12 +81,15 @@ def try_precisions_from(attempt: Callable[[], T | None], bits: int) -> T:
 
 
 def first_precision(digits: int) -> int:
-    """Return the number of bits that are likely to give so many digits."""
-    return bits_for(digits) + _GUARD
+    """Return a number of bits that is likely to give `digits` digits."""
+    return bits_for(digits) + _GUARD_BITS
 
 
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
-    """Return |t| where the solution ends, forwards (1) or backwards (−1); None if it does not."""
+    """Return |t| of the blow-up, forwards (sign 1) or backwards (−1) in time; None if none occurs.
+
+    The value has about `digits` digits and no bound.
+    """
     end_of = motion.blow_up
     if end_of is None:
         return None
@@ -100,11 +106,11 @@ def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
 
 
 def may_end_by(motion: Motion, time: Fraction) -> bool:
-    """Return True if the solution blows up until that time, or may do so as far as is decided."""
+    """Return True if the solution blows up by that time, or if this is undecided."""
     end_of = motion.blow_up
     if end_of is None:
         return False
-    # The motion gives the end of the solution in one direction of time.
+    # `motion.blow_up` takes the direction of time, and gives a positive time.
     sign, exact_time = (-1 if time < 0 else 1), exactly(abs(time))
 
     def has_ended() -> bool | None:
@@ -116,11 +122,11 @@ def may_end_by(motion: Motion, time: Fraction) -> bool:
     try:
         return try_precisions(has_ended, 1)
     except NoFlowError:
-        return True  # a rational time, where the invariants are 0
+        return True  # the blow-up is so near to `time` that no precision separates the two
 
 
 def check_no_blow_up(motion: Motion, time: Fraction) -> None:
-    """Raise NoFlowError if the solution blows up until that time, or may do so."""
+    """Raise NoFlowError if the solution blows up by that time, or if this is undecided."""
     if may_end_by(motion, time):
         sign = -1 if time < 0 else 1
         time_text = plain(blow_up(motion, sign, _TIME_DIGITS) or Fraction(0), _TIME_DIGITS)
@@ -130,7 +136,10 @@ def check_no_blow_up(motion: Motion, time: Fraction) -> None:
 
 
 def _round_to_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation | None:
-    """Round the state to a grid of the requested digits; None if its balls are wider."""
+    """Round the state to a grid finer than the requested digits; None if its balls are too wide.
+
+    Raises NoFlowError if the state is too large for any use.
+    """
     if not all(x.is_finite() for x in state):
         return None
     scale = least
@@ -139,26 +148,30 @@ def _round_to_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation 
     scale = scale.lower()
     mantissa, exponent = scale.man_exp()
     size = int(exponent) + int(mantissa).bit_length()  # scale ≥ 2^(size − 1)
-    if scale > 0 and size > _MOST_BITS:
-        raise NoFlowError(f"the exact solution is beyond `2^{_MOST_BITS}` by then")
-    if not scale > 0 or size < -_MOST_BITS:
+    if scale > 0 and size > _MAX_EXPONENT:
+        raise NoFlowError(f"the exact solution is beyond `2^{_MAX_EXPONENT}` by then")
+    if not scale > 0 or size < -_MAX_EXPONENT:
         return None
-    # One grid unit is 2^unit. As scale ≥ 2^(size − 1), it is below 10^−digits of the scale by
-    # `_FINER` bits, which leaves room for balls of up to 2^_FINER units.
-    unit = size - 1 - bits_for(digits) - _FINER
-    # What is far below the grid may have too small an exponent for a fraction.
+    # One grid unit is 2^unit. As scale ≥ 2^(size − 1), 2^_GRID_BITS units are at most 10^−digits
+    # of the scale: that is the largest error allowed.
+    unit = size - 1 - bits_for(digits) - _GRID_BITS
+    # Balls are scaled before they become fractions: the exponent of a coordinate far below the
+    # grid may be too small for a fraction.
     rounded = [_round_ball(x * arb(2) ** -unit) for x in state]
     largest = max(error for _, error in rounded)
-    if largest > 1 << _FINER:
+    if largest > 1 << _GRID_BITS:
         return None
     grid = Fraction(2) ** unit
     return Evaluation([whole * grid for whole, _ in rounded], largest * grid)
 
 
 def _round_ball(x: arb) -> tuple[int, int]:
-    """Return a whole number near the ball, and a bound of its distance from all of the ball."""
+    """Return a whole number near the ball, and a bound of its distance to any point of the ball.
+
+    A bound of 2·2^_GRID_BITS, which is not allowed, stands for a ball that is too wide or large.
+    """
     nearest = (x.mid() + 0.5).floor().unique_fmpz()
     if nearest is None:
-        return 0, 2 << _FINER
+        return 0, 2 << _GRID_BITS
     error = (x - nearest).abs_upper().ceil().unique_fmpz()
-    return int(nearest), 2 << _FINER if error is None else int(error)
+    return int(nearest), 2 << _GRID_BITS if error is None else int(error)

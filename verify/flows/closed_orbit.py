@@ -1,13 +1,14 @@
 """The closed orbits of the exact flow, with their periods.
 
 An orbit is closed where it comes back to its initial value z₀ (a libration), or to z₀ shifted by a
-period of H in p or q (a rotation, as the pendulum's). Nothing else is taken for closed: an orbit on
-a separatrix or one that leaves is a NoFlowError that says what was seen.
+period of H in p or q (a rotation, as the pendulum's). No other orbit is taken for closed:
+NoFlowError, with its reason, is raised for one on a separatrix and for one that leaves.
 
-The flow is followed with few digits until it crosses, in the direction of f(z₀), the line through
-z₀ normal to f(z₀), and comes back to z₀ there. Newton's method then gives the period, and it is
-seen whether the orbit closes to all digits: one on a separatrix does not, as the digits decide how
-near it comes to the saddle. The period of one close beside it has fewer digits than requested.
+The flow is followed with 16 digits until it crosses, in the direction of f(z₀), the line through z₀
+normal to f(z₀), at z₀ itself. Newton's method then refines the period at the full precision, and
+checks that the orbit closes to all digits. One on a separatrix does not close, as the number of
+digits decides how near it comes to the saddle; one close to a separatrix is tried with 15 and 30
+digits more.
 """
 
 import math
@@ -34,21 +35,21 @@ Element = tuple[Ring, Poly]
 Start = tuple[Fraction, Fraction]  # p, q
 Shift = tuple[Fraction, Fraction]  # of p and q, in units of 2π
 
-_ROUGH = 16  # digits with which the period is looked for
-_MORE = (0, 15, 30)  # digits that an orbit near a separatrix may lose
+_SEARCH_DIGITS = 16  # the digits of the flow that looks for the first return
+_EXTRA_DIGITS = (0, 15, 30)  # tried in turn, as an orbit near a separatrix loses digits
 _MOST_STEPS = 2000
-_FAR = 10**4  # an orbit that goes so many times farther than z₀ and its shifts is not closed
-_NEAR = 1e-7  # of the orbit's reach: what comes so near to z₀ may be z₀
-_TURN = (0.5, 0.95)  # cosines: a step turns by less than 60°; one below 18° is made longer
-_HALVINGS, _BISECTIONS, _NEWTON = 100, 6, 8
+_ESCAPE_FACTOR = 10**4  # the reach, in sizes of z₀ and its shifts, beyond which the search ends
+_RETURN_TOLERANCE = 1e-7  # the distance from z₀ that counts as 0, in parts of the orbit's reach
+_TURN_COSINES = (0.5, 0.95)  # a step turns by less than 60°; after one of under 18° it is doubled
+_MAX_HALVINGS, _BISECTIONS, _NEWTON_STEPS = 100, 6, 8
 
 
 @dataclass(frozen=True)
 class ClosedOrbit:
     """The closed orbit through z₀ at the M equally spaced times k P / M.
 
-    `period` is None for an equilibrium, which has one point. `shift`: z(P) − z₀, not zero for a
-    rotation. `flow` is the exact flow with the digits that the points have.
+    `period` is P, or None for an equilibrium, which has one point. `shift`: z(P) − z₀, not zero for
+    a rotation. `flow` is the exact flow at the precision of the points.
     """
 
     flow: NumericalFlow
@@ -75,14 +76,14 @@ class ClosedOrbit:
             raise NoFlowError("the function is not defined along the whole orbit") from None
 
     def finer(self) -> "ClosedOrbit":
-        """Return the orbit with one more point between each two. Raises NoFlowError."""
+        """Return the orbit with one more point halfway between each two. Raises NoFlowError."""
         time = self.time(Fraction(1, 2 * len(self.points)))
         between = [self.flow.advance(z, time) for z in self.points]
         points = tuple(z for pair in zip(self.points, between, strict=True) for z in pair)
         return ClosedOrbit(self.flow, points, self.period, self.shift)
 
     def time(self, part: Fraction) -> Number:
-        """Return that part of the period."""
+        """Return the period times `part`."""
         assert self.period is not None  # noqa: S101 - an equilibrium has none
         with self.flow.arithmetic.context():
             return self.period * self.flow.number(part)
@@ -98,7 +99,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
         p, q = (flow.number(x) for x in start)
         return ClosedOrbit(flow, ((p, q),), None, (zero, zero))
     first_return = _first_return(hamiltonian, start)
-    for more in _MORE:
+    for more in _EXTRA_DIGITS:
         orbit = _refine_period(
             NumericalFlow(field, digits + more), start, first_return, digits, count
         )
@@ -111,7 +112,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
 
 
 def is_equilibrium(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bool:
-    """Return True if z₀ is an equilibrium, by algebra; NoFlowError if H is not defined."""
+    """Return True if z₀ is an equilibrium, by algebra; NoFlowError if that does not decide."""
     ring = field.ring
     numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
     point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
@@ -139,7 +140,7 @@ def shifts(hamiltonian: Hamiltonian) -> Iterator[Shift]:
                 yield (size, zero) if name == "p" else (zero, size)
 
 
-# -- the first way round --------------------------------------------------------------------------
+# -- the first return -----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -156,8 +157,8 @@ class _Return:
 
 @lru_cache(maxsize=8)
 def _first_return(hamiltonian: Hamiltonian, start: Start) -> _Return:
-    # An average asks for the same orbit twice and more, each time to other digits.
-    rough = NumericalFlow(canonical_field(hamiltonian)[0], _ROUGH)
+    # An average asks for the same orbit at least twice, each time with more digits.
+    rough = NumericalFlow(canonical_field(hamiltonian)[0], _SEARCH_DIGITS)
     return _ReturnSearch(rough, start, list(shifts(hamiltonian))).find_return()
 
 
@@ -182,35 +183,35 @@ class _ReturnSearch:
             if any(crossings):
                 first, shift = min(crossing for crossing in crossings if crossing)
                 return _Return(time + first, shift, self.reach)
-            if self.reach > _FAR * span:
+            if self.reach > _ESCAPE_FACTOR * span:
                 raise NoFlowError("the orbit is not closed: it goes far away")
             z, time = after, time + step
-            step *= 2 if cosine > _TURN[1] else 1
+            step *= 2 if cosine > _TURN_COSINES[1] else 1
         raise NoFlowError(f"the orbit is not seen to close until t = `{time:.3g}`")
 
     def take_step(self, z: State, step: float) -> tuple[float, State, float]:
-        """Return the longest of step, step/2, … that is accurate and turns by little.
+        """Return the longest of step, step/2, … that is accurate and turns by less than 60°.
 
-        With it are returned the state after it and the cosine of the angle it turns by.
+        Returned with it: the state after it, and the cosine of the angle that f turns by.
         """
         before = self.flow.slope(z)
-        for _ in range(_HALVINGS):
+        for _ in range(_MAX_HALVINGS):
             after = self.flow.step(z, _exactly(self.flow, step))
             if after is not None:
                 cosine = _cosine(before, self.flow.slope(after))
-                if cosine > _TURN[0]:
+                if cosine > _TURN_COSINES[0]:
                     return step, after, cosine
             step /= 2
         raise NoFlowError(LOST)
 
     def height(self, z: State, target: State) -> float:
-        """Return the height of z above the target's normal line, in the direction of f(z₀)."""
+        """Return f(z₀) · (z − target): it is 0 on the line through the target normal to f(z₀)."""
         return float(self.f0[0] * (z[0] - target[0]) + self.f0[1] * (z[1] - target[1]))
 
     def find_crossing(
         self, z: State, step: float, after: State, goal: tuple[Shift, State]
     ) -> tuple[float, Shift] | None:
-        """Return the time after z at which the orbit meets the target, if the step crosses it."""
+        """Return the time from z to the target, and its shift; None if the step misses it."""
         shift, target = goal
         if not self.height(z, target) < 0 <= self.height(after, target):
             return None
@@ -221,24 +222,24 @@ class _ReturnSearch:
             low, high = (middle, high) if self.height(state, target) < 0 else (low, middle)
         # Newton's method for height(φ_time(z)) = 0, whose derivative in time is f(z₀) · f(z).
         time = high
-        for _ in range(_NEWTON):
+        for _ in range(_NEWTON_STEPS):
             state = self.flow.advance(z, _exactly(self.flow, time))
             slope = self.flow.slope(state)
             rate = float(self.f0[0] * slope[0] + self.f0[1] * slope[1])
             if rate <= 0:
                 return None
             time -= self.height(state, target) / rate
-        near = max(self.reach, _distance(after, self.z0)) * _NEAR
+        near = max(self.reach, _distance(after, self.z0)) * _RETURN_TOLERANCE
         return (time, shift) if _distance(state, target) < near else None
 
 
-# -- all its digits -------------------------------------------------------------------------------
+# -- the period in full ---------------------------------------------------------------------------
 
 
 def _refine_period(
     flow: NumericalFlow, start: Start, first_return: _Return, digits: int, count: int
 ) -> ClosedOrbit | None:
-    """Return the orbit with its period to all digits; None if it does not close to so many."""
+    """Return the orbit with its period to all digits; None if it does not close to `digits`."""
     z0: State = flow.number(start[0]), flow.number(start[1])
     target = _shift_state(flow, z0, first_return.shift)
     period, z = _exactly(flow, first_return.time), z0
@@ -246,7 +247,7 @@ def _refine_period(
         z = flow.advance(z, _part(flow, period, _pieces(count)))
     f0 = flow.slope(z0)
     # Near the period z(t) − target is about (t − P) f(z₀); its part along f(z₀) corrects the time.
-    for _ in range(_NEWTON):
+    for _ in range(_NEWTON_STEPS):
         if _distance(z, target) > first_return.reach / 100:
             return None
         with flow.arithmetic.context():

@@ -1,7 +1,8 @@
 """Functions that a flow evaluates, compiled for one field and one arithmetic.
 
-Gragg's modified midpoint rule is one of them. Its loop contains the slopes and has a variable for
-each coordinate, which takes a tenth to a third off a step of several coordinates.
+Gragg's modified midpoint rule is one of them. Its loop evaluates the slopes in place and has a
+variable for each coordinate, which saves a tenth to a third of the time of a step of several
+coordinates.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +27,7 @@ Function = Callable[..., tuple[Any, ...]]  # numbers of the arithmetic
 def functions_at(
     arithmetic: Arithmetic, elements: Elements, names: Sequence[str] = ("p", "q")
 ) -> Function:
-    """Return (p, q) ↦ the values of ring elements in these names alone.
+    """Return a function from the values of `names` to those of ring elements in these alone.
 
     The function must be called inside the arithmetic's context.
     """
@@ -36,10 +37,10 @@ def functions_at(
 def defined_values(
     arithmetic: Arithmetic, function: Function, columns: Sequence[Sequence[Any]]
 ) -> list[Any]:
-    """Evaluate a function of one value at points, given by the numbers of each coordinate.
+    """Evaluate a function with one value at points, given as one column for each coordinate.
 
-    The numbers are Fractions, or numbers that gmpy2 can add to its own. A value is None if the
-    function is not defined or too large.
+    The numbers are Fractions, or numbers that gmpy2 can add to its own. A value is None where
+    the function is not defined or too large.
     """
     zero = arithmetic.number(Fraction(0))
     try:
@@ -47,7 +48,7 @@ def defined_values(
             values = [
                 x for (x,) in map(function, *([x + zero for x in column] for column in columns))
             ]
-    except (ArithmeticError, ValueError):  # at some point: each is then tried alone
+    except (ArithmeticError, ValueError):  # one point failed: each is tried alone
         points = list(zip(*columns, strict=True))
         if len(points) == 1:
             return [None]
@@ -58,9 +59,9 @@ def defined_values(
 def energies_at(
     hamiltonian: Hamiltonian, digits: int, columns: Sequence[Sequence[Any]]
 ) -> list[Any]:
-    """Evaluate H to so many digits at points, given as `defined_values` takes them.
+    """Evaluate H with `digits` digits at points, given as `defined_values` takes them.
 
-    The values are numbers of MPFR, or None if H is not defined or too large.
+    The values are numbers of MPFR, or None where H is not defined or too large.
     """
     return defined_values(*_energy(hamiltonian, digits), columns)
 
@@ -74,7 +75,7 @@ def _energy(hamiltonian: Hamiltonian, digits: int) -> tuple[Arithmetic, Function
 
 @dataclass(frozen=True)
 class ElementCode:
-    """Ring elements in these names alone as lines of code.
+    """Ring elements in the variables `names` alone, as lines of code.
 
     `static`: the lines before a loop, and `dynamic` those in it. `values`: the names of the
     elements' values. `namespace`: the constants and functions that the lines refer to.
@@ -103,7 +104,7 @@ class ElementCode:
         )
 
     def build_function(self) -> Function:
-        """Return z ↦ the values, to be called inside the context."""
+        """Return a function from z to the values, to be called inside the context."""
         lines = [
             f"def at({', '.join(self.names)}):",
             *_indent(1, [*self.static, *self.dynamic, f"return ({', '.join(self.values)},)", ""]),
@@ -112,10 +113,11 @@ class ElementCode:
         return function
 
     def build_gragg_rule(self) -> Function:
-        """Return (z, time, count) ↦ the state after `count` steps in that time, smoothed at last.
+        """Return a function (z, time, count) ↦ the coordinates after `count` steps in `time`.
 
-        The values are the coordinates' slopes. The names end with t where H depends on it, and then
-        each slope is taken at its own time. The rule must be called inside the context.
+        Gragg's smoothing follows the last step. The code's values must be the slopes of the
+        coordinates; its names end with t where H depends on it, and each slope is then taken at the
+        time of its point. The rule must be called inside the context.
         """
         # t has no slope: where there are more names than values, the last name is the time.
         moves = list(zip(self.names, self.values, strict=False))

@@ -1,9 +1,9 @@
 """The exact orbit over a time: its reach, its stiffness, and whether it leaves every bound.
 
 A stability verdict needs these facts of the exact solution before it looks at any scheme. The
-flow is followed with few digits until it closes (in phase space, or up to a period of H in p or q),
-or until the time is over. Lengths are measured in each coordinate by the orbit's own reach, so that
-neither the size of an orbit nor the units of p and q matter.
+flow is followed with some 20 digits until the orbit closes (in phase space, or up to a period of H
+in p or q), leaves, or the time is over. Lengths are measured in each coordinate by the orbit's own
+reach, so that neither the size of an orbit nor the units of p and q matter.
 
 Where H depends on time nothing closes, and nothing rests: the orbit is followed to its end.
 """
@@ -22,12 +22,12 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import prose
 
 
-# The maps of several schemes have the same orbits, some hundreds.
+# The stability maps of several schemes ask for the same orbits, some hundreds of them.
 @lru_cache(maxsize=4096)
 def exact_orbit(
     hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction = Fraction(0)
 ) -> ExactOrbit:
-    """Return the orbit through (p, q), at t0 where H depends on it, for the length `time`."""
+    """Return the orbit through (p, q) over `time`, from t0 on where H depends on t."""
     # The cache is a list that is filled in place, since `lru_cache` cannot store a value later.
     cache = _orbit_cache(hamiltonian, p, q)
     if cache and time >= cache[0].least_time:
@@ -52,7 +52,7 @@ def exact_orbit(
 class _CachedOrbit(NamedTuple):
     """An orbit that was followed until it closed.
 
-    A search over any time from `least_time` on takes the same steps, and finds the same orbit.
+    A search over any time ≥ `least_time` takes the same steps and finds the same orbit.
     """
 
     orbit: ExactOrbit

@@ -2,8 +2,8 @@
 
 The modified midpoint rule has an expansion in even powers of its step, so that its results with
 2, 4, 6, … steps extrapolate to any order (Hairer, Nørsett, Wanner, Solving Ordinary Differential
-Equations I, section II.9). It asks only for H_p and H_q at points. Its error is estimated, by the
-last two extrapolated values; who relies on a result computes it again with more digits.
+Equations I, section II.9). It evaluates only H_p and H_q. Its error is estimated from the last
+two extrapolated values; a caller that needs a surer bound compares with a run of more digits.
 
 Where H depends on time a state is (p, q, t): with t' = 1 the system is autonomous, and Gragg's rule
 takes its midpoints at t, t + h, t + 2h, …
@@ -21,20 +21,20 @@ from verify.prose import read_prose
 Number = Any  # gmpy2.mpfr, which has no type stubs
 State = tuple[Number, ...]  # the coordinates, and t where H depends on it
 
-GUARD = 12  # digits beyond those requested; extrapolation and rounding may lose LOST_DIGITS of them
+GUARD = 12  # digits beyond those requested; extrapolation and rounding may lose LOST_DIGITS
 LOST_DIGITS = 8
 _HALVINGS = 12
-_MOST_STEPS = 200_000  # of one orbit: minutes
-_PATIENCE = 3  # steps after one that was too long before a longer one is tried
-_SHORTEST = 80  # halvings of the first step, after which time stands still
+_MOST_STEPS = 200_000  # a limit for one orbit; they take minutes
+_PATIENCE = 3  # good steps after a failed one, before a longer one is tried
+_MOST_CUTS = 80  # halvings of the first step; the orbit is given up below that step
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
-STILL = 1000  # a step's error is relative to its length, and to this part of the state
+STILL = 1000  # a step's error is relative to its distance plus 1/STILL of the state's size
 
 
 class NoFlowError(Exception):
     """An exact flow that could not be followed; `reason` says why, the message is its plain text.
 
-    The text is given as `read_prose` takes it, with formulas and numbers quoted.
+    `reason` is written for `read_prose`: its formulas and numbers stand in backquotes.
     """
 
     def __init__(self, reason: str) -> None:
@@ -43,7 +43,7 @@ class NoFlowError(Exception):
 
 
 def columns_for(digits: int) -> int:
-    """Return the greatest number of columns; more gain less than a shorter step does."""
+    """Return the limit of the columns of the extrapolation; a shorter step gains more than more."""
     return 6 + digits // 3
 
 
@@ -62,7 +62,7 @@ class NumericalFlow:
         self._slopes, self._rule = code.build_function(), code.build_gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._factors = [
-            # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
+            # 1 / ((n_j / n_{j−k})² − 1) with n_j = 2 j, as a quotient of whole numbers
             [((j - k) ** 2, j**2 - (j - k) ** 2) for k in range(1, j)]
             for j in range(1, columns_for(digits) + 1)
         ]
@@ -83,15 +83,18 @@ class NumericalFlow:
             raise NoFlowError("the orbit leaves where H is defined") from None
 
     def step(self, z: State, time: Number) -> State | None:
-        """Return φ_time(z) by one extrapolated step; None if that does not give the digits."""
+        """Return φ_time(z) by one extrapolated step; None if its error is estimated too large."""
         try:
             with self.arithmetic.context():
                 return self._extrapolate(z, time)
-        except (ArithmeticError, ValueError):  # a trial step may leave what the orbit does not
+        except (
+            ArithmeticError,
+            ValueError,
+        ):  # a trial step may leave the domain of H
             return None
 
     def advance(self, z: State, time: Number, halvings: int = _HALVINGS) -> State:
-        """Return φ_time(z), by one extrapolated step or by the halves of it. Raises NoFlowError."""
+        """Return φ_time(z) by extrapolated steps, halved where they fail. Raises NoFlowError."""
         end = self.step(z, time)
         if end is not None:
             return end
@@ -103,18 +106,17 @@ class NumericalFlow:
         return self.advance(middle, half, halvings - 1)
 
     def follow(self, z: State, time: Fraction, most_steps: int = _MOST_STEPS) -> State:
-        """Return φ_time(z) for any time, also a long or a negative one, by at most so many steps.
+        """Return φ_time(z) for a time of any length and sign, by at most `most_steps` steps.
 
-        A step is as long as its accuracy allows; one of 30 digits takes about a millisecond, so
-        that the most is minutes. Raises NoFlowError, naming the time reached, where the orbit ends
-        or the steps do.
+        A step is as long as its accuracy allows; one of 30 digits takes about a millisecond. Raises
+        NoFlowError, naming the time reached, if the orbit ends or the steps are used up.
         """
         number = self.number
         goal, done = number(abs(time)), number(Fraction(0))
         sign = -1 if time < 0 else 1
         good = _PATIENCE
         step = self._first_step(z, goal)
-        shortest = step / 2**_SHORTEST
+        shortest = step / 2**_MOST_CUTS
         for _ in range(most_steps):
             if done >= goal:
                 return z
@@ -142,12 +144,13 @@ class NumericalFlow:
             return min(goal, sum(map(abs, z[: len(slopes)]), 1) / speed) if speed else goal
 
     def _extrapolate(self, z: State, time: Number) -> State | None:
-        """Extrapolate by the Aitken–Neville scheme in squares of the step; None if not accurate.
+        """Extrapolate by the Aitken–Neville scheme in the squared substep; None if inaccurate.
 
         The last two values of a row estimate the error: the result is taken where they differ by
         less than the tolerance, relative to how far the step leads and to 1/`STILL` of the state.
         """
-        above: Sequence[Sequence[Number]] = [[] for _ in z]  # a row of values for each coordinate
+        # The previous row of the scheme, for each coordinate.
+        above: Sequence[Sequence[Number]] = [[] for _ in z]
         for j, factors in enumerate(self._factors, start=1):
             rows, distance, size, error = [], 0, 0, 0
             for last, start, before in zip(self._rule(*z, time, 2 * j), z, above, strict=False):

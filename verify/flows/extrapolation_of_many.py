@@ -1,8 +1,8 @@
 """The numerical flow of many points at once, in arrays of floats: Gragg's method, extrapolated.
 
-As `verify.flows.extrapolation` follows one point with any number of digits; here all take the same
-steps, as long as the least accurate of them allows. They are in the C compiler's long double, which
-is not much slower here: in float64 the error grows with the time to 10⁻¹⁰ and more.
+`verify.flows.extrapolation` follows one point with any number of digits. Here all points take the
+same steps, whose length the least accurate point decides. The arrays are of the C compiler's long
+double, which is not much slower here; in float64 the error grows with the time to 10⁻¹⁰ and more.
 """
 
 import math
@@ -22,15 +22,16 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 Array = Any  # numpy.ndarray, which is imported where it is used
-Slopes = Callable[..., tuple[Array, ...]]  # of the coordinates and t
+Slopes = Callable[..., tuple[Array, ...]]  # takes the coordinates and t
 _ZERO = Fraction(0)
 
-_TOLERANCE = 4096  # roundings: of the last two extrapolated values, relative to the orbit so far
-_EASY = 1e-2  # of the tolerance, below which a longer step is tried
-_LONGER, _SHORTER = 1.25, 0.7
-_SHORTEST = 2.0**-60  # of the first step
+# The largest difference of the last two extrapolated values, in roundings of the orbit so far.
+_TOLERANCE_IN_ROUNDINGS = 4096
+_GROWTH_THRESHOLD = 1e-2  # a step with an error below this part of the tolerance is made longer
+_GROWTH_FACTOR, _CUT_FACTOR = 1.25, 0.7
+_SHORTEST_PART = 2.0**-60  # the shortest step allowed, in parts of the first
 _MOST_STEPS = 100_000
-_STEP_BITS = 12  # of a step, so that times are sums without rounding
+_STEP_BITS = 12  # bits of a step's mantissa: so few that times are sums without rounding
 
 
 def follow(
@@ -44,8 +45,8 @@ def follow(
 
     Times may have either sign; where H depends on time they are counted from t0.
 
-    `columns` of the extrapolation: two different numbers of them give independent errors. Raises
-    NoFlowError, naming a point, where one cannot be followed.
+    `columns`: the number of columns of the extrapolation; results of two different numbers have
+    different errors. Raises NoFlowError, naming a point, if one cannot be followed.
     """
     import numpy as np
 
@@ -64,7 +65,7 @@ def follow(
 
 
 def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
-    """Return f as a function of the coordinates and t; an H without time ignores t."""
+    """Return f as a function of the coordinates and t; without time in H it ignores t."""
     field, _ = canonical_field(hamiltonian)
     elements = [(field.ring, x) for x in field.slopes]
     names = hamiltonian.coordinates
@@ -81,7 +82,7 @@ def arrays() -> Arithmetic:
     def root(x: Array, n: int) -> Array:
         y = np.power(x, 1 / n)
         # One step of Newton's method corrects the rounding of 1/n in the exponent.
-        return y - np.where(y > 0, (y**n - x) / (n * y ** (n - 1)), 0.0)  # 1/n is rounded
+        return y - np.where(y > 0, (y**n - x) / (n * y ** (n - 1)), 0.0)
 
     functions = {
         **{name: getattr(np, f.numpy) for name, f in in_rings().items()},
@@ -96,8 +97,7 @@ def arrays() -> Arithmetic:
 
 
 def _short(step: float) -> float:
-    """Round a step down to few bits, so that sums of steps are exact."""
-    # Rounded down to `_STEP_BITS` bits, a step can be added to the time without rounding.
+    """Round a step down to `_STEP_BITS` bits, so that sums of steps are exact."""
     mantissa, exponent = math.frexp(step)
     return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
 
@@ -113,15 +113,15 @@ class CommonSteps:
         self._sign = sign
         self._columns = columns
         self._done = WIDE.mpf(0)
-        self._tolerance = _TOLERANCE * float(WIDE.eps)
-        self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
+        self._tolerance = _TOLERANCE_IN_ROUNDINGS * float(WIDE.eps)
+        self._scale = np.max(np.abs(start), axis=0)  # the largest |coordinate| of each orbit so far
         start_slopes = np.broadcast_arrays(*slopes(*start, t0), start[0])[:-1]
         speed = np.max(abs(np.array(start_slopes)), axis=0)
         # A point at 0 has no scale of its own; 1 stands for it.
         size = np.where(self._scale > 0, self._scale, 1.0)
         fastest = float(np.max(speed / size, initial=0.0))
         self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
-        self._least = self._step * _SHORTEST
+        self._least = self._step * _SHORTEST_PART
 
     def advance_to(self, goal: Any) -> None:
         """Advance all points to this time since the start. Raises NoFlowError."""
@@ -129,7 +129,7 @@ class CommonSteps:
             pass
 
     def steps_to(self, goal: Any) -> Iterator[tuple[Array, Any]]:
-        """Yield, after each step, the points before it and its length."""
+        """Take steps up to this time; yield after each the points before it, and its length."""
         import numpy as np
 
         for _ in range(_MOST_STEPS):
@@ -138,8 +138,7 @@ class CommonSteps:
             last = self._done + self._step >= goal
             step = goal - self._done if last else self._step
             change, error = self._extrapolate(self.z, self._sign * step)
-            # The scale of an orbit is the greatest coordinate so far: it never falls, so that an
-            # orbit that passes 0 does not stall.
+            # An orbit's scale never falls, so that one that passes 0 does not stall.
             size = np.maximum(self._scale, np.max(np.abs(self.z + change), axis=0))
             ratio = error / np.where(size > 0, size, 1.0)
             worst = float(ratio.max(initial=0.0))
@@ -147,10 +146,10 @@ class CommonSteps:
                 before, self.z, self._scale = self.z, self.z + change, size
                 self._done = goal if last else self._done + step
                 yield before, step
-                if worst <= _EASY * self._tolerance and not last:
-                    self._step = _short(self._step * _LONGER)
+                if worst <= _GROWTH_THRESHOLD * self._tolerance and not last:
+                    self._step = _short(self._step * _GROWTH_FACTOR)
                 continue
-            self._step = _short(float(step) * _SHORTER)
+            self._step = _short(float(step) * _CUT_FACTOR)
             if self._step < self._least or self._done + self._step == self._done:
                 raise NoFlowError(self._describe_failure(ratio))
         raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = `{self._sign * self._done:.6g}`")
@@ -162,30 +161,31 @@ class CommonSteps:
         return f"point {i}: {LOST}, at about t = `{self._sign * self._done:.6g}`"
 
     def change_over(self, z: Array, time: Array) -> Array:
-        """Return how far points move, each in its own time of a step's length or less.
+        """Return by how much points change in one step, each with its own time.
 
-        H must not depend on time.
+        No time may be longer than an accurate step, and H must not depend on time.
         """
         return self._extrapolate(z, time)[0]
 
     def _extrapolate(self, z: Array, time: Any) -> tuple[Array, Array]:
-        """Return how far the points move, by the Aitken–Neville scheme, and its estimated error."""
+        """Return the change of the points by the Aitken–Neville scheme, and its estimated error."""
         import numpy as np
 
         t = self._t0 + self._sign * self._done
-        first = np.empty_like(z)  # of all these rules
+        first = np.empty_like(z)  # the slopes at z, with which every rule below begins
         _fill(first, self.slopes(*z, t))
         above: list[Array] = []
         for j in range(1, self._columns + 1):
             row = [self._midpoint(z, first, t, time, 2 * j)]
-            # Aitken and Neville in (1/n_j)² with n_j = 2 j: the weights are (n_j / n_{j−k})² − 1.
+            # Aitken and Neville in (1/n_j)² with n_j = 2 j: differences are divided by
+            # (n_j / n_{j−k})² − 1.
             for k, before in enumerate(above, start=1):
                 row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
             above = row
         return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
 
     def _midpoint(self, z: Array, first: Array, t: Any, time: Any, count: int) -> Array:
-        """Return the change of z by Gragg's rule with so many steps, smoothed at its end.
+        """Return the change of z by Gragg's rule with `count` steps, smoothed at its end.
 
         `first`: the slopes at z and t.
         """
@@ -194,7 +194,7 @@ class CommonSteps:
         h = WIDE.mpf(time) / count
         twice = 2 * h
         before, current = np.zeros_like(z), first * h
-        midpoint, change = np.empty_like(z), np.empty_like(z)  # one array each for all steps
+        midpoint, change = np.empty_like(z), np.empty_like(z)  # buffers that every step reuses
         for k in range(1, count):
             _fill(change, self.slopes(*np.add(z, current, out=midpoint), t + k * h))
             change *= twice

@@ -3,10 +3,11 @@
 ⟨g⟩ is the mean of g over M equally spaced times of one period: for an analytic g that converges
 like e^(−cM), so M is doubled until the mean over every second point is the same. Then the period,
 the points and the mean are computed again with ten digits more and 3M/2 points, among which other
-harmonics alias; what differs is the estimate of the error. It certifies nothing by itself.
+harmonics alias. The difference of the two means estimates the error; that is no certificate.
 
-The bounded part of ∫ g dt, B with X B = g − ⟨g⟩, is the integral of the same Fourier series. It is
-smooth on every ring of closed orbits, and is determined up to what depends on the orbit alone.
+The bounded part of ∫ g dt is a function B with X B = g − ⟨g⟩ (X is the derivative along the flow):
+the integral of the Fourier series of g. B is smooth on every ring of closed orbits, and is
+determined up to a function of the orbit.
 """
 
 from collections.abc import Callable
@@ -21,19 +22,19 @@ from verify.flows.extrapolation import NoFlowError, Number, State
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 MOST_DIGITS = 200
-_ATTEMPTS = ((0, 32), (15, 64), (30, 128))  # digits more, and the fewest points of a mean
-_MOST = 1 << 13
-_CHECK = 10  # further digits of the second computation
-_NEWTON = 50
-_SETTLED = 1e-14  # of the period
+_ATTEMPTS = ((0, 32), (15, 64), (30, 128))  # (digits beyond the requested, first number of points)
+_MOST_POINTS = 1 << 13
+_CHECK_DIGITS = 10  # extra digits of the second computation
+_NEWTON_STEPS = 50
+_PHASE_TOLERANCE = 1e-14  # Newton's last change of a time, in spacings of the orbit's points
 
 
 @dataclass(frozen=True)
 class Average:
     """The average ⟨g⟩ over a closed orbit, with the points that the mean was taken over.
 
-    `bound` is estimated, but of an equilibrium, where ⟨g⟩ = g(z₀) and it is enclosed. `period` is
-    None there, `values` are g at the orbit's points.
+    `bound` is an estimate, except at an equilibrium, where ⟨g⟩ = g(z₀) is enclosed and `period` is
+    None. `values` are g at the orbit's points.
     """
 
     value: Fraction
@@ -44,17 +45,17 @@ class Average:
 
 
 def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> Average:
-    """Return ⟨g⟩ along the exact orbit through start = (p, q), to so many digits of max |g|.
+    """Return ⟨g⟩ along the exact orbit through start = (p, q), to within 10^−digits max |g|.
 
-    g: a ring element in p and q alone. Raises NoFlowError if the orbit is not closed, is not
-    known to be, or so many digits are not reached.
+    g: a ring element in p and q alone. Raises NoFlowError if the orbit is not closed or was not
+    seen to close, and if the digits are not reached.
     """
     for more, fewest in _ATTEMPTS:
         first = closed_orbit(hamiltonian, start, digits + more, fewest)
         if first.period is None:
             return _at_rest(first, g, start, digits)
         first, mean = _refine_until_settled(first, g, digits)
-        finest = digits + more + _CHECK
+        finest = digits + more + _CHECK_DIGITS
         # 3/2 as many points alias other harmonics, so that equal means are no accident.
         finer = closed_orbit(hamiltonian, start, finest, len(first.points) * 3 // 2)
         finer_mean = _compute_mean(finer, g)
@@ -75,14 +76,14 @@ def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> 
 def _refine_until_settled(
     orbit: ClosedOrbit, g: Element, digits: int
 ) -> tuple[ClosedOrbit, "_Mean"]:
-    """Return the orbit with so many points that the mean over every second one is the same."""
+    """Double the orbit's points until the mean over every second one is the same to `digits`."""
     mean = _compute_mean(orbit, g)
-    while len(orbit.points) < _MOST:
+    while len(orbit.points) < _MOST_POINTS:
         half_mean, orbit = mean, orbit.finer()
         mean = _compute_mean(orbit, g)
         if abs(mean.value - half_mean.value) <= _last_digit(digits) * mean.size:
             return orbit, mean
-    raise NoFlowError(f"{_MOST} points are too few for {digits} digits of the average")
+    raise NoFlowError(f"{_MOST_POINTS} points are too few for {digits} digits of the average")
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ def _at_rest(orbit: ClosedOrbit, g: Element, start: Start, digits: int) -> Avera
 def bounded_part(orbit_average: Average) -> Callable[[State], float]:
     """Return z ↦ B(z) − B(z₀) for z near the orbit, with B of the module's text, in float64.
 
-    B is taken at the point of the orbit that is nearest to z; so it is off by O(|H(z) − H(z₀)|).
+    It takes B at the point of the orbit nearest to z, with an error of O(|H(z) − H(z₀)|).
     """
     import numpy as np
 
@@ -128,7 +129,7 @@ def bounded_part(orbit_average: Average) -> Callable[[State], float]:
         return lambda z: 0.0
     count = len(orbit_average.values)
     harmonics = np.arange(1, count // 2)
-    # A harmonic's integral from 0 to t is (e^(iωt) − 1)/(iω); `expm1` cancels no digits of it.
+    # The integral of e^(iωs) from 0 to t is (e^(iωt) − 1)/(iω); `expm1` loses no digits of it.
     rates = 2j * np.pi * harmonics / float(orbit_average.period[0])
     weights = np.fft.fft(orbit_average.values)[1 : count // 2] / count / rates
 
@@ -141,18 +142,19 @@ def bounded_part(orbit_average: Average) -> Callable[[State], float]:
 
 def phase(orbit: ClosedOrbit, z: State) -> float:
     """Return the time t at which φ_t(z₀) is nearest to z, which must be near the orbit."""
-    # A rotation runs on by whole periods of H, while the orbit's points cover one.
+    # On a rotation z may be whole periods of H away from the orbit's points, which cover one.
     z = _remove_turns(orbit, z)
     nearest = min(range(len(orbit.points)), key=lambda k: _squared_distance(z, orbit.points[k]))
     point, time = orbit.points[nearest], float(orbit.time(Fraction(nearest, len(orbit.points))))
-    most = float(orbit.time(Fraction(1, len(orbit.points))))  # beyond it there is no nearest point
-    for _ in range(_NEWTON):
+    # The nearest time is less than one spacing of the points away.
+    most = float(orbit.time(Fraction(1, len(orbit.points))))
+    for _ in range(_NEWTON_STEPS):
         p, q = orbit.flow.slope(point)
         change = float((p * (z[0] - point[0]) + q * (z[1] - point[1])) / (p * p + q * q))
         change = max(-most, min(most, change))
         point = orbit.flow.advance(point, orbit.flow.number(Fraction(change)))
         time += change
-        if abs(change) < _SETTLED * most:
+        if abs(change) < _PHASE_TOLERANCE * most:
             break
     return time
 

@@ -15,15 +15,15 @@ from verify.prose import Prose, read_prose
 
 _DIGITS, _MOST_DIGITS = 20, 40
 _MOST_STEPS, _MOST_IN_TIME = 3000, 20_000
-_PART = Fraction(2, 5)  # of 1/ω, the time of a step at most: 16 points on a circle
-_FAR = 10**6  # an orbit that goes so many times farther than it has before is leaving
-_NEAR = Fraction(1, 5)  # of the reach: what crosses the line through z₀ so near to it is back
-# Of a time, the part that a first step is at most, with room for rounding.
-_FIRST, _ROUNDED = 9, 1 + Fraction(1, 2**20)
-_HALVINGS = 1100  # from any step size of float64's range to any other
-_FASTER = 10**9  # a step that has to be so many times shorter than before: the orbit blows up
-_STILL = 10**12
-_OUTWARDS = 30  # steps in a row of an orbit that is leaving, at least
+_STEP_ANGLE = Fraction(2, 5)  # radians; ω times the longest step: 16 points on a circle
+_ESCAPE_FACTOR = 10**6  # units of |z₀|; an orbit farther out is leaving
+_RETURN_TOLERANCE = Fraction(1, 5)  # reaches; a crossing nearer to z₀ is a return
+# The first step is at most T/8; where T is 9 such steps or more, T does not decide it.
+_FIRST_STEPS, _ROUNDING_MARGIN = 9, 1 + Fraction(1, 2**20)
+_MAX_HALVINGS = 1100  # they lead from any step size of float64's range to any other
+_BLOW_UP_FACTOR = 10**9  # longest step over the present one; a larger ratio is a blow-up
+_STILL_FACTOR = 10**12  # a reach below |coordinate|/_STILL_FACTOR is replaced by |coordinate|
+_OUTWARD_STEPS = 30  # consecutive outward steps that an orbit must make to be leaving
 _OMEGA_DIGITS = 20
 
 Coordinates = tuple[Fraction, ...]  # p, q; p1 … pn, q1 … qn
@@ -37,14 +37,15 @@ Kind = Literal[
 class ExactOrbit:
     """The facts about the orbit through z₀ over a time T.
 
-    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open), or
-    at its end where H depends on time (driven), leaves every bound (escapes), or not followed to
-    its end (unknown); `summary` says more.
-    `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
-    runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
-    det Hess H on the orbit; `period`: that of a closed one, about. `more_digits`: those that z₀ is
-    given with, beyond those of ordinary numbers. `has_neighbours`: True if it is followed
-    beside neighbours, which show how fast they part, instead of until it closes.
+    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open),
+    followed to its end where H depends on time (driven), leaves every bound (escapes), or not
+    followed to its end (unknown); `verify.studies.stability` adds "bounded" and "not followed".
+    `centre`, `reach`: the middle and the half-width of each coordinate's range. `turns`: True for
+    each coordinate in which H is periodic and the orbit goes round, so that it has no bound there.
+    `scale`: by about how much H changes across the orbit. `stiffness`: the greatest ω² =
+    det Hess H on the orbit. `period`: that of a closed orbit, roughly. `more_digits`: the digits
+    that were added because z₀ has more than ordinary numbers have. `has_neighbours`: True if it is
+    followed beside neighbours, which show how fast they part, instead of until it closes.
     """
 
     kind: Kind
@@ -92,7 +93,7 @@ class OrbitSearch:
         self.free = tuple(x.is_zero() for x in (speed, force))  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
-        # From which on any time gives the same, where it closes by steps that its end never cuts.
+        # The least time that gives the same orbit, if it closes by steps that the end never cuts.
         self.least_time: Fraction | None = None
 
     def shift_in_radians(self, shift: tuple[Fraction, Fraction]) -> State:
@@ -124,7 +125,7 @@ class OrbitSearch:
         """Record f and ω² at a point of the orbit; NoFlowError if they are not defined."""
         try:
             with self.arithmetic.context():
-                dp, dq, stiffness, _ = self.evaluate_at(*z)  # H too has to be defined there
+                dp, dq, stiffness, _ = self.evaluate_at(*z)  # H too must be defined at z
         except (ArithmeticError, ValueError):
             raise NoFlowError("H or its derivatives are not defined there") from None
         self.rates.append((dp, dq, stiffness))
@@ -136,14 +137,13 @@ class OrbitSearch:
         for k in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
             with self.arithmetic.context():
                 remaining, limit = self.time - time, self.largest_step()
-                # Steps grow by a factor of 2 at most, so that one bad guess cannot jump over a fast
-                # stretch.
+                # Steps at most double: one bad guess cannot jump over a fast stretch.
                 candidate = min(2 * step, limit)
                 cut = cut or candidate >= remaining or (k == 0 and candidate < limit)
-                least = max(least, time + candidate, _FIRST * candidate if k == 0 else least)
+                least = max(least, time + candidate, _FIRST_STEPS * candidate if k == 0 else least)
                 step = min(candidate, remaining)
             step, after = self.take_step(z, step)
-            if after is None or (longest and step < remaining and step * _FASTER < longest):
+            if after is None or (longest and step < remaining and step * _BLOW_UP_FACTOR < longest):
                 summary = f"becomes ever faster at t = `{self.clock(time):.6g}`"
                 return self.build_orbit("escapes", summary)
             with self.arithmetic.context():
@@ -153,10 +153,10 @@ class OrbitSearch:
                 outwards = outwards + 1 if grown > self.size(z) else 0
             self.points.append(after)
             self.record_rates(after)
-            if grown > _FAR and outwards >= _OUTWARDS:
+            if grown > _ESCAPE_FACTOR and outwards >= _OUTWARD_STEPS:
                 summary = (
-                    f"is `{_FAR:.0e}` times as far out as z0 at t = `{self.clock(time):.6g}`, "
-                    "and goes on"
+                    f"is `{_ESCAPE_FACTOR:.0e}` times as far out as z0 at "
+                    f"t = `{self.clock(time):.6g}`, and goes on"
                 )
                 return self.build_orbit("escapes", summary)
             crossing = None if self.timed else self.find_return(z, after)
@@ -165,7 +165,7 @@ class OrbitSearch:
                 with self.arithmetic.context():
                     period = time - (1 - part) * step
                 if not cut:
-                    self.least_time = self.arithmetic.exact(least) * _ROUNDED
+                    self.least_time = self.arithmetic.exact(least) * _ROUNDING_MARGIN
                 kind: Kind = "rotates" if any(shift) else "closed"
                 summary = f"{kind}, with a period of about `{float(period):.3g}`"
                 return self.build_orbit(kind, summary, shift, period=self.arithmetic.exact(period))
@@ -178,7 +178,7 @@ class OrbitSearch:
         return self.build_orbit("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
 
     def clock(self, time: Number) -> float:
-        """Return t after this time since the start."""
+        """Return the value of t at `time` after the start."""
         return float(time) + (float(self.z0[2]) if self.timed else 0)
 
     def largest_step(self) -> Number:
@@ -186,11 +186,11 @@ class OrbitSearch:
         stiffness = abs(self.rates[-1][2])
         if stiffness == 0:
             return self.time
-        return self.number(_PART) / self.arithmetic.functions["sqrt"](stiffness)
+        return self.number(_STEP_ANGLE) / self.arithmetic.functions["sqrt"](stiffness)
 
     def take_step(self, z: State, step: Number) -> tuple[Number, State | None]:
         """Return the longest of step, step/2, … that is accurate, and the state after it."""
-        for _ in range(_HALVINGS):
+        for _ in range(_MAX_HALVINGS):
             after = self.flow.step(z, step)
             if after is not None:
                 return step, after
@@ -199,19 +199,19 @@ class OrbitSearch:
         return step, None
 
     def size(self, z: State) -> Number:
-        """Return |z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
+        """Return |z|/|z₀| (if z₀ = 0: z₁) in the maximum norm; call it inside the context."""
         near = (self.z0, self.points[min(1, len(self.points) - 1)])
         first, second = (max(map(abs, x[:2])) for x in near)
         return max(map(abs, z[:2])) / (first or second) if first or second else first
 
     def find_return(self, z: State, after: State) -> tuple[State, Number] | None:
-        """Return the shift with which the last step crossed the line through z₀ near z₀, if any.
+        """Return the shift of a return in the step from z, and the part of the step before it.
 
-        With it is returned the part of the step after which it crossed.
+        None if the step crossed no line through a z₀ + shift near to that point.
         """
         with self.arithmetic.context():
             reach = self._ends()[1]
-            # The first steps are still near z₀, and would count as a return.
+            # The first steps are still near z₀: a crossing there is no return.
             if len(self.points) < 4 or not all(reach):
                 return None
             for shift in self.shifts:
@@ -222,9 +222,10 @@ class OrbitSearch:
         return None
 
     def _find_crossing(self, z: State, after: State, target: State, reach: State) -> Number | None:
-        """Return the part of the chord from z to `after` that lies before the target's normal.
+        """Return the part of the chord from z to `after` that lies before the target's line.
 
-        None if it does not cross the line, which is normal to f(z₀), near the target.
+        The line goes through the target, normal to f(z₀) in units of the reach. None if the chord
+        does not cross it near the target.
         """
         slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
 
@@ -239,13 +240,13 @@ class OrbitSearch:
         part = -low / (high - low)
         crossing = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
         near = all(
-            abs(x - t) < self.number(_NEAR) * r
+            abs(x - t) < self.number(_RETURN_TOLERANCE) * r
             for x, t, r in zip(crossing, target, reach, strict=True)
         )
         return part if near else None
 
     def _ends(self) -> tuple[State, State]:
-        """Return the middle of the points so far, and how far they reach from it."""
+        """Return the middle of the points so far, and their half-width, in p and q."""
         ends = [(min(x), max(x)) for x in list(zip(*self.points, strict=True))[:2]]
         middle = tuple((low + high) / 2 for low, high in ends)
         return middle, tuple((high - low) / 2 for low, high in ends)
@@ -262,12 +263,12 @@ class OrbitSearch:
             centre, half_widths = self._ends()
             fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
             stiffest = max((r[2] for r in self.rates), default=zero)
-        # An orbit that has hardly moved in that time is measured by where it is.
+        # A coordinate that has hardly moved in that time is measured by its own size.
         reach = tuple(
-            to_fraction(r) if to_fraction(r) > abs(x) / _STILL else abs(x)
+            to_fraction(r) if to_fraction(r) > abs(x) / _STILL_FACTOR else abs(x)
             for r, x in zip(half_widths, self.start, strict=True)
         )
-        # H_p = q' and H_q = −p': H changes by about so much across the orbit.
+        # H_p = q' and H_q = −p', each at its greatest on the orbit.
         scale = (to_fraction(fastest[1]) * reach[0] + to_fraction(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,

@@ -1,14 +1,14 @@
 """The exact flow of many points at once, in float64.
 
 Where a closed form is known it is evaluated in balls, point by point: each error is certified, and
-is mostly the rounding to float64. The numerical flow would not do: 2,000 points of the pendulum at
-t = 100 take it 10 s, with errors to 5·10⁻¹⁴, and the balls 0.2 s; points of the twist 20 s, with
-errors to 10⁻¹¹, and the balls 0.1 s.
+is mostly the rounding to float64. The numerical flow is slower and less accurate: 2,000 points of
+the pendulum at t = 100 take it 10 s, with errors to 5·10⁻¹⁴, and the balls 0.2 s; those of the
+twist take it 20 s, with errors to 10⁻¹¹, and the balls 0.1 s.
 
 Where no closed form is known, the points follow a numerical flow together. They do so twice, by
 extrapolations of two orders (`verify.flows.extrapolation_of_many`). Where the two differ by more
-than `TRUSTED` a point is solved by itself, with more digits; elsewhere their difference estimates
-the error. A sample of the points is solved by itself too, and must confirm the estimate.
+than `TRUSTED` a point is solved by itself, with more digits; elsewhere four times their difference
+estimates the error. A sample of the points is solved one by one too, and must confirm the estimate.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -34,20 +34,20 @@ from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
-_UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
-_REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a millisecond
-_MOTIONS = 1 << 15  # some 4 kB each
-_FLOWS = 3  # for which so many points are, in some 30 MB each
+_ROUND_UP_FACTOR = 1 + 2.0**-50  # covers the rounding of a bound itself
+_CACHED_POINTS = 1 << 16  # limit for each cached flow; a point in closed form takes 0.2 ms
+_CACHED_MOTIONS = 1 << 15  # limit for each H; a motion takes some 4 kB
+_CACHED_FLOWS = 3  # a flow with its cached points takes some 30 MB
 _RoundedState = tuple[float, float, float]
 _Evaluation = tuple[str, tuple[_RoundedState, ...]]
 _BITS = ball_evaluation.first_precision(16)
-_FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
-COLUMNS = 8, 7  # of the two extrapolations
-UNIT = 2.0**-53  # the rounding of a result, relative to it
-TRUSTED = 1e-8  # the most, of an orbit's scale, that the two may be apart
-SAMPLE, DIGITS = 3, 20  # points that are compared with a solution of so many digits
+_BALL_TOLERANCE = 1e-18  # a ball's largest radius, in orbit scales: far below float64's rounding
+COLUMNS = 8, 7  # the numbers of columns of the two extrapolations
+UNIT = 2.0**-53  # the relative rounding of a result to float64
+TRUSTED = 1e-8  # the largest difference of the two extrapolations, in orbit scales
+SAMPLE, DIGITS = 3, 20  # the points of the sample, and the digits of their solutions
 METHOD = "numerical flow: Gragg's method, extrapolated, in long double"
-_SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
+_SAFETY = 4  # ratio of an estimated bound to the difference from another evaluation
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,8 @@ def exact_points(
         raise InputError("points", shapes, "must be arrays of one length")
     if not np.isfinite(z).all():
         raise InputError("points", "nan", "must be finite")
-    # A motion in closed form belongs to a start, but all starts of one H have one or none has, so
-    # that the first point decides.
-    plane = hamiltonian.planar  # closed forms are used in the plane alone
+    # The first point decides: a closed form is known for every start of an H, or for none.
+    plane = hamiltonian.planar  # closed forms are used only in the plane
     if plane and len(z[0]) and _motions(hamiltonian)(*(float(x[0]) for x in z)) is not None:
         return _in_closed_form(hamiltonian, z, tuple(times))
     together = _CommonFlow(hamiltonian, np.array(z), tuple(times), t0, extreme=plane)
@@ -129,22 +128,22 @@ def _in_closed_form(
     return Points(dict(zip(PLANE, ends, strict=True)), bound, method)
 
 
-@lru_cache(maxsize=_FLOWS)
+@lru_cache(maxsize=_CACHED_FLOWS)
 def _closed_form_evaluator(
     hamiltonian: Hamiltonian, times: tuple[Fraction, ...]
 ) -> Callable[..., _Evaluation]:
     """Return (p, q) ↦ the method, and for each time p, q and a bound of the error of each.
 
-    Several maps carry the same points of a region, and are compared with the same exact ones. It
-    is called with flint's precision at `_BITS`, and raises NoFlowError, and OverflowError beyond
-    float64.
+    Several maps are compared with the exact flow at the same points: the function caches them. It
+    must be called with flint's precision at `_BITS`. It raises NoFlowError, and OverflowError
+    beyond float64.
     """
     zero = Fraction(0)
     ends = {max((zero, *times)), min((zero, *times))} - {zero}
     exact_times = [exactly(time) for time in times]
     motion_from = _motions(hamiltonian)
 
-    @lru_cache(maxsize=_REMEMBERED)
+    @lru_cache(maxsize=_CACHED_POINTS)
     def evaluate_point(p: float, q: float) -> _Evaluation:
         motion = motion_from(p, q)
         assert motion is not None  # noqa: S101 - as another point has one
@@ -157,11 +156,11 @@ def _closed_form_evaluator(
     return evaluate_point
 
 
-@lru_cache(maxsize=_FLOWS)
+@lru_cache(maxsize=_CACHED_FLOWS)
 def _motions(hamiltonian: Hamiltonian) -> Callable[[float, float], Motion | None]:
-    """Return (p, q) ↦ the motion from there; its exact part serves for all times."""
+    """Return a function from (p, q) to the motion that starts there, cached for all times."""
     motion_from = flow_recognition.motions(hamiltonian)
-    return lru_cache(maxsize=_MOTIONS)(lambda p, q: motion_from(Fraction(p), Fraction(q)))
+    return lru_cache(maxsize=_CACHED_MOTIONS)(lambda p, q: motion_from(Fraction(p), Fraction(q)))
 
 
 def _round_state(motion: Motion, p: float, q: float, time: fmpq) -> _RoundedState:
@@ -174,15 +173,15 @@ def _round_state(motion: Motion, p: float, q: float, time: fmpq) -> _RoundedStat
 
 
 def _round_to_float64(motion: Motion, least: float, time: fmpq) -> _RoundedState | None:
-    """Return the same, or None if flint's precision is not enough.
+    """Return p, q and a bound as `_round_state` does; None if flint's precision is not enough.
 
-    `least`: a lower bound of the orbit's size.
+    `least`: a lower bound of the orbit's scale. Raises OverflowError beyond float64.
     """
     exact_p, exact_q = motion.state(arb(time))
     if not (exact_p.is_finite() and exact_q.is_finite()):
         return None
     p, q = float(exact_p.mid()), float(exact_q.mid())
-    fine = _FINE * max(least, abs(p), abs(q))
+    fine = _BALL_TOLERANCE * max(least, abs(p), abs(q))
     if not (float(exact_p.rad()) < fine and float(exact_q.rad()) < fine):
         return None
     if not (isfinite(p) and isfinite(q)):
@@ -190,7 +189,7 @@ def _round_to_float64(motion: Motion, least: float, time: fmpq) -> _RoundedState
     # The bound is the distance from the float64 to the far end of the ball, so that it includes
     # both the ball and the rounding.
     error = max(float((exact_p - p).abs_upper()), float((exact_q - q).abs_upper()))
-    return p, q, error * _UPWARDS
+    return p, q, error * _ROUND_UP_FACTOR
 
 
 @dataclass(frozen=True)
@@ -198,7 +197,7 @@ class _CommonFlow:
     """A numerical flow of all points together.
 
     `starts` is an array (coordinate, point); `times` are counted from t0 where H depends on time.
-    `extreme`: True if the sample has the point of the greatest p.
+    `extreme`: True if the sample includes the point with the greatest p.
     """
 
     hamiltonian: Hamiltonian
@@ -210,18 +209,18 @@ class _CommonFlow:
     def follow_all(self) -> tuple[Array, float, tuple[int, ...]]:
         """Return the states, a bound of their errors, and the points that were solved alone.
 
-        The states are an array (coordinate, time, point); the bound is an estimate that holds for
-        each number.
+        The states are an array (coordinate, time, point); the bound, an estimate, is one number for
+        all of them.
 
-        Raises NoFlowError, naming the point, if one cannot be followed so far, and if the
-        sample's errors are larger than they are estimated.
+        Raises NoFlowError, naming the point, if one cannot be followed so far, and if an error in
+        the sample is more than 4 times the estimated bound.
         """
         import numpy as np
 
         h, times = self.hamiltonian, self.times
         fine, rough = (follow(h, self.starts, times, columns, self.t0) for columns in COLUMNS)
         differences = np.abs(fine - rough).max(axis=0)  # (time, point)
-        # A difference that is nan, of a point that could not be followed, compares as False.
+        # The difference is nan for a point that could not be followed; nan compares as False.
         is_trusted = differences <= TRUSTED * self._scale(fine)
         outliers = tuple(map(int, np.flatnonzero(~is_trusted.all(axis=0))))
         for i in outliers:
@@ -245,7 +244,7 @@ class _CommonFlow:
         return np.maximum(np.abs(self.starts).max(axis=0), np.abs(ends).max(axis=0))
 
     def solve_exactly(self, i: int, time: Fraction) -> tuple[list[float], float]:
-        """Solve point i by itself; return its state and a bound of the error.
+        """Solve point i by itself; return its state and a bound of the error before rounding.
 
         Raises NoFlowError.
         """
@@ -260,9 +259,12 @@ class _CommonFlow:
     def _check_sample(
         self, ends: Array, time: Fraction, outliers: Sequence[int], estimate: float
     ) -> float:
-        """Return a bound of the errors that the sample confirms; NoFlowError if it does not."""
+        """Return a bound of the errors, raised if the sample asks for it.
+
+        Raises NoFlowError if an error in the sample is more than 4 times `estimate`.
+        """
         worst = 0.0
-        # Points solved alone are exact; only those that were followed together need a check.
+        # Points that were solved alone have a bound already; the others need a check.
         for i in self._sample(outliers):
             true, bound = self.solve_exactly(i, time)
             error = max(abs(float(x) - y) for x, y in zip(ends[:, i], true, strict=True))
@@ -275,7 +277,7 @@ class _CommonFlow:
         return max(estimate, _SAFETY * worst)
 
     def _sample(self, outliers: Sequence[int]) -> list[int]:
-        """Select evenly spaced points among those that were followed together."""
+        """Select evenly spaced points of those followed together; `extreme` adds the greatest p."""
         import numpy as np
 
         together = np.setdiff1d(np.arange(self.starts.shape[1]), outliers)

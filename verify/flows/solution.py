@@ -2,8 +2,9 @@
 
 H is split into its uncoupled parts. A part in one degree of freedom has a closed form where
 one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with a polynomial V of
-degree up to 4), and so has Kepler's problem where the orbit is an ellipse. All else is followed by
-the numerical flow, with more digits until two of them agree; poles in t are found before.
+degree up to 4); so has Kepler's problem if the orbit is an ellipse. Every other part is followed by
+the numerical flow, with more and more digits until two runs agree. Poles of H in t are searched
+first.
 
 The numerical flow is Gragg's method extrapolated, which at the orders that many digits need is
 faster than the Lie series: to t = 100 with 30 and 60 digits 0.2 and 0.7 s against 1.1 and 5.0 s on
@@ -21,7 +22,7 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import NumberOrList, plain
-from verify.effort import MOST, answer_unless_long
+from verify.effort import MAX_CALLS, answer_unless_long
 from verify.errors import InputError
 from verify.flows import ball_evaluation
 from verify.flows.closed_orbit import is_equilibrium
@@ -37,26 +38,27 @@ from verify.structures import AREA, SYMPLECTIC
 
 Point = Mapping[str, Fraction]
 METHOD = "numerical flow: Gragg's method, extrapolated"
-_FORCED = "closed form of the forced oscillator"  # the one that is known in time
-_ELLIPSE = "closed form of Kepler's ellipse"
+_FORCED_METHOD = "closed form of the forced oscillator"  # the only one of an H with t
+_ELLIPSE_METHOD = "closed form of Kepler's ellipse"
 ITSELF = "the initial value itself"
 NOT_KNOWN = "not known"
 _FROM_START = Fraction(0)
-_GUARD = 6  # digits of the first flow, beyond those requested
-_MORE = 10  # further digits of each flow after the first
-_TRIES = 6
-_SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
-_PARTS = 1024  # of the time, in which poles of H are looked for
-_TIME_DIGITS = 12  # digits of a time at which a solution ends
+_GUARD_DIGITS = 6  # digits of the first flow beyond the requested ones
+_EXTRA_DIGITS = 10  # digits that each later flow adds
+_ATTEMPTS = 6
+_SAFETY = 2  # ratio of the estimated bound to the difference of two flows
+_POLE_INTERVALS = 1024  # parts of the time, in each of which poles of H are searched
+_TIME_DIGITS = 12  # the digits to which a blow-up time is computed
 
 
 @dataclass(frozen=True)
 class ExactSolution:
-    """The state z = φ_time(z₀), by coordinates' names: `bound` ≥ |error| of each.
+    """The state z = φ_time(z₀), with a bound of the error of each coordinate.
 
-    `point` has a rational for each coordinate. `method` names the way it was computed. In closed
-    form the bound is `enclosed`, by ball arithmetic, and 0 where the solution is exact; else it is
-    an estimate, by a second evaluation with more digits.
+    `point` has a rational for each coordinate, by name; `bound` ≥ |error| of each. `method` says
+    how it was computed. If `enclosed`, the solution has a closed form and the bound comes from ball
+    arithmetic, or is 0 as `point` is exact; else the bound is an estimate by a second evaluation
+    with more digits.
     """
 
     point: Point
@@ -71,7 +73,7 @@ class ExactSolution:
 
     @property
     def q(self) -> Fraction:
-        """The coordinate, in the plane."""
+        """The displacement, in the plane."""
         return self.point["q"]
 
 
@@ -154,7 +156,7 @@ def _solve_in_plane(
         if state is None:
             return None
         return _closed_form_solution(
-            point, ball_evaluation.evaluate_enclosure(state, start, digits), _FORCED
+            point, ball_evaluation.evaluate_enclosure(state, start, digits), _FORCED_METHOD
         )
     motion = flow_recognition.closed_form(hamiltonian, p, q)
     is_at_rest = (
@@ -174,8 +176,8 @@ def _solve_in_plane(
 def _solve_ellipse(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
 ) -> ExactSolution | None:
-    """Return the solution in closed form where H is Kepler's and the orbit is bound, else None."""
-    mu = answer_unless_long(lambda: _kepler_strength(hamiltonian), None, MOST)
+    """Return the closed form if H is Kepler's and the orbit is an ellipse, else None."""
+    mu = answer_unless_long(lambda: _kepler_strength(hamiltonian), None, MAX_CALLS)
     if mu is None:
         return None
     p1, p2, q1, q2 = start = tuple(point.values())
@@ -185,19 +187,20 @@ def _solve_ellipse(
     after = ball_evaluation.evaluate_enclosure(
         lambda: state_on_ellipse(mu, q, p, time), start, digits
     )
-    return _closed_form_solution(point, after, _ELLIPSE)
+    return _closed_form_solution(point, after, _ELLIPSE_METHOD)
 
 
 @lru_cache(maxsize=64)
 def _kepler_strength(hamiltonian: Hamiltonian) -> Fraction | None:
-    """Return μ where H is Kepler's but for a constant, else None."""
+    """Return μ if H is that of Kepler's problem plus a constant, else None."""
     kepler = get("kepler").hamiltonian({}).expression
     if len(hamiltonian.coordinates) != 4 or hamiltonian.time_dependent:
         return None
-    if hamiltonian.exact.is_polynomial():  # seen at once, where simplifying takes seconds
+    if hamiltonian.exact.is_polynomial():  # a quick test, as simplifying takes seconds
         return None
     mu = symbol("mu")
-    # At q = (1, 0) and p = 0 it is −μ, and at q = (2, 0) half of that.
+    # At p = 0, Kepler's H is −μ at q = (1, 0) and −μ/2 at q = (2, 0): their difference, which a
+    # constant does not change, is μ/2.
     points = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]
     first, second = (hamiltonian.exact.subs(x) for x in points)
     value = sympy.nsimplify(2 * (second - first)) if (second - first).is_number else None
@@ -213,10 +216,10 @@ def leaves_by_algebra(
 ) -> str | None:
     """Describe how the exact solution leaves every bound; None if it does not.
 
-    It does where it blows up until that time ≥ 0, or goes to infinity as t grows (a pendulum that
-    goes round does, by its angle): by exact algebra, `NOT_KNOWN` where that alone does not tell.
-    Raises InputError and NoFlowError as `exact_solution` does where H is not defined at the initial
-    value.
+    A solution leaves if it blows up by `time` ≥ 0, or if it goes to infinity as t grows (so does
+    the angle of a pendulum that goes round). The answer is by exact algebra, and `NOT_KNOWN` if
+    that does not decide. Raises InputError as `exact_solution` does, and for an H that depends on
+    t, and NoFlowError if H is not defined at the initial value.
     """
     hamiltonian.check_planar()
     _check(hamiltonian, _TIME_DIGITS)
@@ -248,7 +251,7 @@ def leaves_by_algebra(
 def numerical_solution(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
 ) -> ExactSolution:
-    """Solve by the numerical flow with more and more digits, until two of them agree."""
+    """Solve by the numerical flow with more and more digits, until two runs agree."""
     check_poles(hamiltonian, t0, time)
     field, _ = canonical_field(hamiltonian)
     start = [*point.values(), *([t0] if field.timed else [])]
@@ -257,9 +260,9 @@ def numerical_solution(
 
 
 def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
-    """Raise NoFlowError if H is not smooth at some time on the way."""
-    part = time / _PARTS
-    fault = find_first_fault(hamiltonian, t0, part, _PARTS)
+    """Raise NoFlowError if H is not smooth at some time between t0 and t0 + time."""
+    part = time / _POLE_INTERVALS
+    fault = find_first_fault(hamiltonian, t0, part, _POLE_INTERVALS)
     if fault is not None:
         begin = t0 + fault.step * part
         between = f"t = {plain(begin, 6)} and {plain(begin + part, 6)}"
@@ -276,12 +279,12 @@ def follow_confirmed(
     """
     coordinates = len(field.names)
     before: list[Fraction] | None = None
-    for k in range(_TRIES):
-        flow = NumericalFlow(field, digits + _GUARD + k * _MORE)
+    for k in range(_ATTEMPTS):
+        flow = NumericalFlow(field, digits + _GUARD_DIGITS + k * _EXTRA_DIGITS)
         z = flow.follow(tuple(map(flow.number, start)), time)
         after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
         if before is not None:
-            # The finer flow is nearer to the truth than the two are to each other; the factor
+            # The error of the finer flow is well below the difference of the two; the factor
             # allows for a coarser one that is right by luck.
             bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
             if bound * 10**digits <= max(map(abs, (*start[:coordinates], *after))):

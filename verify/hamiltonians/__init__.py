@@ -1,1 +1,1 @@
-"""H(p, q) with exact parameters, its Lie derivatives, and motion known in closed form."""
+"""Hamiltonians with exact parameters, their Lie derivatives, and motions in closed form."""

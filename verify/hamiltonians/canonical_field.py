@@ -1,8 +1,8 @@
-"""The vector field of H(p1 … pn, q1 … qn), of one H or of every H at once; derivatives along it.
+"""The vector field of H(p1 … pn, q1 … qn), for one H or for every H at once; derivatives along it.
 
-z = (p1 … pn, q1 … qn); z' = f with f = −∂H/∂q for a momentum and ∂H/∂p for a coordinate; X = f·∂ is
-the Lie derivative, and D = ∂_t + X takes its place where H depends on t. The field of one H has its
-components in a ring with the coordinates; that of every H in the ring of H's derivatives, the jets.
+z = (p1 … pn, q1 … qn) and z′ = f, with f = −∂H/∂q for p and ∂H/∂p for q. X = f·∂ is the Lie
+derivative; if H depends on t, D = ∂_t + X takes its place. The components of the field of one H are
+in a ring with the coordinates; those for every H are in the ring of H's derivatives, the jets.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class VectorField(ABC):
     @property
     @abstractmethod
     def ring(self) -> CoefficientRing:
-        """The ring of all its elements, with a variable for each name, and t where H has it."""
+        """The ring of all elements, with a variable for each name, and t if H has it."""
 
     @property
     @abstractmethod
@@ -39,7 +39,7 @@ class VectorField(ABC):
 
     @property
     def degrees(self) -> int:
-        """The number of degrees of freedom: half as many as there are names."""
+        """The number of degrees of freedom, half the number of names."""
         return len(self.names) // 2
 
     @property
@@ -58,7 +58,7 @@ class VectorField(ABC):
         return tuple(Derivatives(self.ring, x) for x in self.slopes)
 
     def derive(self, y: Poly) -> Poly:
-        """Return X y; D y where H depends on time."""
+        """Return X y; D y if H depends on time."""
         total = self.ring.diff(y, "t") if self.timed else self.ring.zero
         for slope, name in zip(self.slopes, self.names, strict=True):
             if not slope.is_zero():
@@ -72,8 +72,7 @@ class VectorField(ABC):
     def power(self, n: int) -> tuple[Poly, ...]:
         """Return Xⁿz, computed once."""
         if n not in self._powers:
-            # Threads may compute the same power at the same time; setdefault keeps the first of
-            # them.
+            # Two threads may compute the same power; setdefault keeps the first result.
             self._powers.setdefault(n, tuple(map(self.derive, self.power(n - 1))))
         return self._powers[n]
 
@@ -82,7 +81,7 @@ class VectorField(ABC):
         return tuple(x / math.factorial(n) for x in self.power(n))
 
     def gradients(self, n: int) -> tuple[tuple[Poly, ...], ...]:
-        """Return ∂(Xⁿz/n!)/∂z by rows, computed once."""
+        """Return the matrix ∂(Xⁿz/n!)/∂z by rows, computed once."""
         if n not in self._gradients:
             self._gradients.setdefault(n, tuple(map(self.gradient, self.term(n))))
         return self._gradients[n]
@@ -97,15 +96,15 @@ class VectorField(ABC):
 
 
 class CanonicalField(VectorField):
-    """The canonical field of one H, an element of a ring with the coordinates, h, t where H has it,
-    and parameters."""
+    """The canonical field of one H, `energy`: an element of a ring with the coordinates, h, t if H
+    has it, and parameters."""
 
     def __init__(self, ring: Ring, names: tuple[str, ...], energy: Poly) -> None:
         self._ring, self.names, self.energy = ring, names, energy
 
     @property
     def ring(self) -> Ring:
-        """The ring, in which equality with zero is decided."""
+        """The ring, in which zero is decided."""
         return self._ring
 
     @cached_property
@@ -117,21 +116,21 @@ class CanonicalField(VectorField):
         return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
 
     def flow_changes(self, eta: int) -> list[Poly]:
-        """Return Σ hⁿ/n! Xⁿz, n = 1 … η: the change of z by the exact flow's Taylor polynomial."""
+        """Return Σ hⁿ/n! Xⁿz, n = 1 … η: z′ − z of `lieη`, the exact flow's Taylor polynomial."""
         h, total = self.ring.variable("h"), [self.ring.zero] * len(self.names)
         for n in range(1, eta + 1):
             total = [x + h**n * y for x, y in zip(total, self.term(n), strict=True)]
         return total
 
     def shears(self, size: Poly | Fraction, places: Sequence[int]) -> list[Poly]:
-        """Return h · size · f in these places."""
+        """Return the components of h · size · f at these places."""
         exact = self.ring.constant(size) if isinstance(size, Fraction) else size
         share = self.ring.variable("h") * exact
         return [self.ring.reduce(share * self.slopes[k]) for k in places]
 
     @cached_property
     def quadratic(self) -> bool:
-        """True if H is seen to be a polynomial of degree 2 at most in z, and without t."""
+        """True if no second derivative of H has a coordinate, and H has no t."""
         second = (y for x in self.slopes for y in self.gradient(x))
         depends = self.ring.depends
         return not self.timed and not any(depends(y, name) for y in second for name in self.names)
@@ -147,16 +146,19 @@ class CanonicalField(VectorField):
 def canonical_field(
     hamiltonian: Hamiltonian, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
 ) -> tuple[CanonicalField, list[Poly]]:
-    """Return the field of `exact`, and other expressions as elements of its ring, in which each
-    symbol that H does not have is a variable too. Raises InputError."""
+    """Return the field of `hamiltonian.exact`, and other expressions as elements of its ring.
+
+    Symbols that H does not have are variables of the ring too. Raises InputError as
+    `Hamiltonian.embed_in_ring` does.
+    """
     if not expressions and most_terms == MAX_TERMS:
         return _cached_field(hamiltonian), []
     ring, energy, elements = hamiltonian.embed_in_ring(*expressions, most_terms=most_terms)
     return CanonicalField(ring, hamiltonian.coordinates, energy), elements
 
 
-# Several schemes are proved for one H after another and share its field. The cache is small, since
-# a field keeps all that was derived along it.
+# Proofs of several schemes for one H share its field. The cache is small, since a field keeps all
+# derivatives along it.
 @lru_cache(maxsize=8)
 def _cached_field(hamiltonian: Hamiltonian) -> CanonicalField:
     ring, energy, _ = hamiltonian.embed_in_ring()
@@ -164,13 +166,13 @@ def _cached_field(hamiltonian: Hamiltonian) -> CanonicalField:
 
 
 def energy_of(hamiltonian: Hamiltonian) -> tuple[Ring, Poly]:
-    """Return the ring of H's field, and H in it."""
+    """Return the ring of H's field, and H as an element of it."""
     field, _ = canonical_field(hamiltonian)
     return field.ring, field.energy
 
 
 class JetField(VectorField):
-    """The flow of f = (−∂H/∂q, ∂H/∂p) for every H, in the jets of H."""
+    """The field f = (−∂H/∂q, ∂H/∂p) for every H, in the jets of H."""
 
     def __init__(self, jets: JetsInDegrees) -> None:
         self._jets = jets
@@ -178,8 +180,8 @@ class JetField(VectorField):
 
     @classmethod
     def with_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> JetField:
-        """Return the flow for that number of degrees of freedom, with derivatives of H up to this
-        order."""
+        """Return the field in n = `degrees` degrees of freedom, with derivatives of H up to
+        `order`."""
         if degrees == 1:
             return cls.from_jets(Jets(order, separable=separable and not timed, timed=timed))
         names = numbered_names(degrees)
@@ -188,7 +190,7 @@ class JetField(VectorField):
     @classmethod
     @lru_cache(maxsize=4)
     def from_jets(cls, jets: JetsInDegrees) -> JetField:
-        """Return the flow in these jets; the last ones are cached with their derivatives."""
+        """Return the field in these jets; the latest fields are cached with their derivatives."""
         return cls(jets)
 
     @property
@@ -204,5 +206,5 @@ class JetField(VectorField):
 
     @property
     def at_rest(self) -> Mapping[str | int, int]:
-        """The values of jets that make f vanish."""
+        """The values of jets at which f vanishes."""
         return {f"H_{name}": 0 for name in self.names}

@@ -1,6 +1,6 @@
 """The names of coordinates: p and q, or p1 … pn and q1 … qn.
 
-Names that are likely meant for a missing coordinate are recognised too: x for q, pq for p*q.
+Names that a user likely meant for a missing coordinate are recognised: x for q, pq for p*q.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ _LIKELY = {
 }
 _NUMBERED = re.compile(r"[pq]([1-9]\d{0,2})", re.ASCII)
 PLANE = ("p", "q")
-MOST_DEGREES = 64  # of freedom; what has n² entries or more has limits of its own
+MAX_DEGREES = 64  # degrees of freedom; quantities with n² entries or more have lower limits
 _PRODUCT = re.compile(r"[pq]{2,}")
 _CALL = re.compile(rf"({'|'.join((*names_of_functions(), 'ln'))})_?([pq])")
 
 
 def coordinates_of(names: Collection[str]) -> tuple[str, ...]:
-    """Return p and q; or, where these are not among the names and numbered ones are, p1 … pn, q1 …
-    qn.
+    """Return p1 … pn, q1 … qn if numbered names are among these and neither p nor q is; else p and
+    q.
 
     >>> coordinates_of({"p1", "q2", "k"})
     ('p1', 'p2', 'q1', 'q2')
@@ -43,23 +43,22 @@ def numbered_names(degrees: int) -> tuple[str, ...]:
 
 
 def coordinates_in(degrees: int) -> tuple[str, ...]:
-    """Return the coordinates for that number of degrees of freedom: p and q, or p1 … pn, q1 …
-    qn."""
+    """Return the coordinates in n = `degrees` degrees of freedom: p and q, or p1 … pn, q1 … qn."""
     return PLANE if degrees == 1 else numbered_names(degrees)
 
 
 def check_degrees(degrees: int) -> None:
-    """Raise InputError unless that is an allowed number of degrees of freedom."""
-    if not 1 <= degrees <= MOST_DEGREES:
-        raise InputError("degrees", degrees, f"must be 1 … {MOST_DEGREES}")
+    """Raise InputError unless the number of degrees of freedom is allowed."""
+    if not 1 <= degrees <= MAX_DEGREES:
+        raise InputError("degrees", degrees, f"must be 1 … {MAX_DEGREES}")
 
 
 def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collection[str]) -> None:
-    """Raise InputError where H has no p or no q, and a parameter's name is likely meant for it.
+    """Raise InputError if H has no p or no q, and a parameter's name is likely meant for it.
 
-    `parameters`: those without a value; a name that is given a value is a parameter on purpose.
+    `parameters`: those without a value; a name with a value is a parameter on purpose.
     """
-    # A missing coordinate is legal (H = p²/2): it is refused only where a parameter looks like it.
+    # A missing coordinate is legal (H = p²/2): it is refused only if a parameter looks like it.
     present = names_in(expression)
     if coordinates_of(present) != PLANE:
         _check_numbers(formula, present)
@@ -85,10 +84,10 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
 
 
 def _check_numbers(formula: str, present: Collection[str]) -> None:
-    """Raise InputError where a number is left out, or there are too many."""
+    """Raise InputError if a number from 1 to n is missing, or n is too large."""
     degrees = len(coordinates_of(present)) // 2
-    if degrees > MOST_DEGREES:
-        problem = f"has {degrees} degrees of freedom; allowed: up to {MOST_DEGREES}"
+    if degrees > MAX_DEGREES:
+        problem = f"has {degrees} degrees of freedom; allowed: up to {MAX_DEGREES}"
         raise InputError("hamiltonian", formula, problem)
     for k in range(1, degrees):
         if not {f"p{k}", f"q{k}"} & set(present):
@@ -100,7 +99,7 @@ def _check_numbers(formula: str, present: Collection[str]) -> None:
 
 
 def _check_words(formula: str, lacks: str, parameters: Collection[str]) -> None:
-    """Raise InputError where a parameter's name is a product or a call written as one word."""
+    """Raise InputError if a parameter's name is a product or a call, written as one word."""
     for name in parameters:
         write = ""
         if _PRODUCT.fullmatch(name):

@@ -1,16 +1,16 @@
 """Jacobi's and Weierstrass's functions on the real axis, in balls, by flint's theta functions.
 
-A result holds the true value, or is not finite, where flint's precision is too low for the argument
+A result contains the true value. It is not finite if flint's precision is too low for the argument
 or the modulus: the caller then raises the precision. Everything that does not depend on the
-argument is computed once, so that a function belongs to the precision at which it was made.
+argument is computed once, at the precision at which the function is built.
 
-With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the values at z = 0)
+With z = u/2K, τ = iK′/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the values at z = 0)
 
-sn = m^(−1/4) θ₁/θ₄, cn = ((1 − m)/m)^(1/4) θ₂/θ₄, dn = (1 − m)^(1/4) θ₃/θ₄.
+    sn = m^(−1/4) θ₁/θ₄,  cn = ((1 − m)/m)^(1/4) θ₂/θ₄,  dn = (1 − m)^(1/4) θ₃/θ₄.
 
 ℘'² = 4℘³ − g₂℘ − g₃ = 4 (℘ − e₁)(℘ − e₂)(℘ − e₃) with Δ = g₂³ − 27g₃² (Abramowitz and Stegun, 18.9;
-DLMF 23.6). flint's own ℘ needs the ratio of both periods, which are two Carlson R_F; sn needs two
-arithmetic-geometric means.
+DLMF 23.6). flint's ℘ is not used: it needs the ratio of both periods, which are two integrals R_F
+of Carlson; sn needs two arithmetic-geometric means.
 """
 
 from collections.abc import Callable
@@ -20,19 +20,19 @@ from functools import partial
 from flint import acb, arb, fmpq
 
 Real = arb | fmpq  # a ball, or an exact number in its place
-Functions = Callable[[Real], tuple[arb, arb, arb]]  # u ↦ sn, cn, dn
+Functions = Callable[[Real], tuple[arb, arb, arb]]  # u ↦ (sn, cn, dn)
 NOT_KNOWN = arb.nan()
 
 
 def jacobi(m: Real) -> Functions:
-    """Return u ↦ sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's
-    transformation.
+    """Return u ↦ (sn, cn, dn) for real u and the parameter m > 0; for m > 1 by the reciprocal
+    modulus.
 
     >>> sn, cn, dn = jacobi(arb(1) / 2)(arb(1))
     >>> (sn**2 + cn**2).overlaps(arb(1)), (dn**2 + sn**2 / 2).overlaps(arb(1))
     (True, True)
     """
-    # The limit of both cases (DLMF 22.5); the theta functions do not exist there, as K is infinite.
+    # m = 1 is the limit of both cases (DLMF 22.5); K is infinite, and there are no theta functions.
     if m == 1:
         return lambda u: (arb(u).tanh(), arb(u).sech(), arb(u).sech())
     if m > 1:
@@ -63,27 +63,29 @@ def _beyond_one(m: Real) -> Functions:
 
 
 def quarter_period(m: Real) -> arb:
-    """Return K(m), real m < 1: π/(2 M(1, √(1 − m))) by the arithmetic-geometric mean (DLMF
+    """Return K(m) = π/(2 M(1, √(1 − m))) for real m < 1, by the arithmetic-geometric mean M (DLMF
     19.8.5)."""
     return arb.pi() / (2 * arb(1 - m).sqrt().agm())
 
 
 @dataclass(frozen=True)
 class Weierstrass:
-    """The function ℘ by its roots: the real `first`, and e₂ ≥ e₃ below it or one of a conjugate
-    pair."""
+    """The function ℘, given by its roots.
+
+    `first`: the greatest real root e₁. `others`: e₂ ≥ e₃, or one of a pair of conjugate roots.
+    """
 
     first: Real
     others: tuple[Real, Real] | acb
 
     @classmethod
     def from_invariants(cls, g2: fmpq, g3: fmpq, delta: fmpq) -> "Weierstrass":
-        """Return ℘ for exact invariants; the sign of Δ tells which roots there are."""
+        """Return ℘ for exact invariants; the sign of Δ tells whether all roots are real."""
         if delta == 0:
             d = double_root(g2, g3)
             return cls(d, (d, -2 * d)) if d >= 0 else cls(-2 * d, (d, d))
         # Cardano's formulas for 4x³ − g₂x − g₃: trigonometric for three real roots, else by a cube
-        # root. The root of the largest size comes first, so that no sum cancels.
+        # root. The root r of the largest size is computed first, so that no sum cancels.
         sign, size, square = (-1 if g3 < 0 else 1), arb(abs(g3)), arb(g2) / 12
         discriminant_root = arb(abs(delta)).sqrt()
         part = discriminant_root / arb(27).sqrt()
@@ -92,7 +94,7 @@ class Weierstrass:
         else:
             u = ((size + part) / 8).root(3)
             r = sign * (u + square / u)
-        # The two others differ by √Δ / (4 (3r² − g₂/4)), without loss where that is little.
+        # The two others differ by √Δ / (4 (3r² − g₂/4)), which loses no digits if they are close.
         half = discriminant_root / (24 * (r * r - square))
         if delta < 0:
             return cls(r, acb(-r / 2, half))
@@ -101,7 +103,7 @@ class Weierstrass:
 
     @property
     def values(self) -> Callable[[Real], tuple[arb, arb]]:
-        """The function t ↦ ℘(t) and ℘'(t) for real t, where no two roots are the same."""
+        """The function t ↦ (℘(t), ℘'(t)) for real t; all roots must be distinct."""
         e1, others = self.first, self.others
         if isinstance(others, acb):
             size = abs(e1 - others)
@@ -112,12 +114,12 @@ class Weierstrass:
         return partial(_by_three, e3, arb(difference).sqrt(), jacobi((e2 - e3) / difference))
 
     def half_period(self) -> arb:
-        """Return half of the real period, which is infinite where e₁ = e₂."""
+        """Return half of the real period, which is infinite if e₁ = e₂."""
         return carlson(arb(0), *(self.first - e for e in self._others()))
 
     def inverse(self, value: Real, side: int) -> arb:
-        """Return the least t > 0 with ℘(t) = value ≥ e₁, where ℘'(t) has that sign; 0 where it is
-        0."""
+        """Return the least t > 0 with ℘(t) = value ≥ e₁ at which ℘'(t) has the sign `side`, 1, −1
+        or 0."""
         if side == 0:
             return self.half_period()
         # t = ∫ dx/√(4(x − e₁)(x − e₂)(x − e₃)) from value to ∞ is R_F of the differences (DLMF
@@ -131,34 +133,35 @@ class Weierstrass:
 
 
 def _by_three(e3: Real, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
-    """Return ℘ and ℘' by three real roots; k² = e₁ − e₃."""
+    """Return ℘ and ℘' at t for three real roots; k² = e₁ − e₃."""
     sn, cn, dn = functions(k * t)
     pole = k / sn
     return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
 
 
 def _by_a_pair(e1: Real, size: arb, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
-    """Return ℘ and ℘' by a real root and a conjugate pair; k² = `size` = |e₁ − e₂|."""
+    """Return ℘ and ℘' at t for a real root and a conjugate pair; k² = `size` = |e₁ − e₂|."""
     sn, cn, dn = functions(2 * k * t)
     less = 1 - cn
     return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
 
 
 def double_root(g2: fmpq, g3: fmpq) -> fmpq:
-    """Return the double root, where Δ = 0."""
+    """Return the double root, for Δ = 0."""
     return -3 * g3 / (2 * g2) if g2 else fmpq(0)
 
 
 def carlson(x: Real, y: Real | acb, z: Real | acb) -> arb:
-    """Return R_F of numbers ≥ 0, or of one and a conjugate pair; not finite where that is not
-    certain."""
+    """Return Carlson's R_F of numbers ≥ 0, or of x ≥ 0 and a conjugate pair; not finite if x ≥ 0 is
+    not certain."""
     if not x >= 0:
         return NOT_KNOWN
     return acb.elliptic_rf(*(v if isinstance(v, acb) else acb(v) for v in (x, y, z))).real
 
 
 def waves(square: Real, t: Real) -> tuple[arb, arb]:
-    """Return cosh κt and sinh(κt)/κ for real κ² of any sign; an exact 0 is recognised."""
+    """Return cosh κt and sinh(κt)/κ for real κ² = `square` of any sign, and for an exact 0; not
+    finite if the sign is not certain."""
     if square == 0:
         return arb(1), arb(t)
     if square > 0:

@@ -1,10 +1,11 @@
-"""Recognition of flows that are known in closed form: a named system, or a polynomial potential.
+"""Recognition of flows that are known in closed form: of a named system, or in a polynomial
+potential.
 
-In n degrees of freedom H is first taken apart into Hamiltonians that are not coupled.
+In n degrees of freedom H is first split into Hamiltonians that are not coupled.
 
-A constant added to H does not change its flow, so it is left out on both sides. A named system's
-parameters are read off by sympy's matching of a short sum, and a match counts only where algebra
-then shows the two vector fields to be the same.
+A constant added to H does not change its flow; so constants are ignored. A named system's
+parameters come from sympy's matching of a short sum. A match counts only if algebra then shows that
+the two vector fields are the same.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -38,12 +39,12 @@ class NamedSystem:
 
 
 def closed_form(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> Motion | None:
-    """Return the motion from (p, q) in closed form; None where none is known."""
+    """Return the motion from (p, q) in closed form; None if none is known."""
     return motions(hamiltonian)(p, q)
 
 
 def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion | None]:
-    """Return `closed_form` of this Hamiltonian, for many points."""
+    """Return `closed_form` of this Hamiltonian as a function of (p, q), for many points."""
     if hamiltonian.symbols or hamiltonian.time_dependent:
         return lambda p, q: None
     coefficients = potential(hamiltonian)
@@ -52,19 +53,19 @@ def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion |
     flows = [(match.system.flow, match.values) for match in named_systems(hamiltonian)]
 
     def motion(p: Fraction, q: Fraction) -> Motion | None:
-        ways = (flow(values, p, q) for flow, values in flows if flow)
-        return next((way for way in ways if way is not None), None)
+        candidates = (flow(values, p, q) for flow, values in flows if flow)
+        return next((x for x in candidates if x is not None), None)
 
     return motion
 
 
 @lru_cache(maxsize=64)
 def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
-    """Return α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
+    """Return α and (c₀, …, c₄) if H = α p²/2 + Σ c_k q^k with α ≠ 0; else None."""
     terms = _terms(hamiltonian.exact)
     if terms is None or not terms.is_polynomial(P, Q):
         return None
-    # Only α p²/2 and powers of q up to 4 are accepted: ℘ solves no others.
+    # ℘ solves the motion for powers of q up to 4, and for no others.
     kinetic, coefficients = fmpq(0), [fmpq(0)] * 5
     for (i, j), c in sympy.Poly(terms, P, Q).terms():
         if not c.is_Rational or (i and (i, j) != (2, 0)) or j > 4:
@@ -79,17 +80,16 @@ def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
 
 @lru_cache(maxsize=64)
 def named_systems(hamiltonian: Hamiltonian) -> tuple[NamedSystem, ...]:
-    """Return the named systems that this Hamiltonian is, with their parameters' values."""
+    """Return the named systems with the flow of this Hamiltonian, with their parameters' values."""
     return () if hamiltonian.time_dependent else tuple(_matches(hamiltonian))
 
 
 def state_in_time(
     hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction, Fraction], time: Fraction
 ) -> Callable[[], State] | None:
-    """Return p and q after `time` from `start`, p, q, t, within flint's current precision.
-
-    None unless H(p, q, t) is a named system, as it is written there, whose flow is known.
-    """
+    """Return a function that computes p and q after `time` from `start` = (p, q, t), at flint's
+    present precision; None unless H(p, q, t) has the formula of a named system with a known
+    flow."""
     for system in all_systems().values():
         flow = system.flow_in_time
         if flow and system.hamiltonian().expression == hamiltonian.expression:
@@ -113,13 +113,13 @@ def _matches(hamiltonian: Hamiltonian) -> Iterator[NamedSystem]:
 
 
 def _terms(exact: sympy.Expr) -> sympy.Expr | None:
-    """Return H written out as a sum; None where that is long."""
+    """Return H expanded to a sum; None if it has many terms."""
     ring, (element,) = embed([exact], ("p", "q"))
     return ring.expression(element) if len(element) <= _MOST_TERMS else None
 
 
 def _values(terms: sympy.Expr, formula: sympy.Expr, names: tuple[str, ...]) -> Values | None:
-    """Return the parameters with which the system may be this sum."""
+    """Return parameters' values for which the system may equal this sum; None if there are none."""
     wild = {symbol(name): sympy.Wild(name, exclude=[P, Q]) for name in names}
     pattern = _without_constant(sympy.expand(formula)).subs(wild)
     match = answer_unless_long(lambda: _without_constant(terms).match(pattern), None)
@@ -139,8 +139,7 @@ def _same_field(system: System, values: Values, exact: sympy.Expr) -> bool:
         candidate = system.hamiltonian(values)
     except InputError:
         return False
-    # sympy's match is only a guess; the ring decides that both derivatives of the difference
-    # vanish.
+    # sympy's match is only a guess; the ring decides whether the difference is constant.
     ring, (difference,) = embed([candidate.exact - exact], ("p", "q"))
     return all(ring.decide(ring.diff(difference, name)).zero is True for name in ("p", "q"))
 
@@ -149,12 +148,14 @@ def _same_field(system: System, values: Values, exact: sympy.Expr) -> bool:
 
 
 def uncouple(hamiltonian: Hamiltonian) -> list[tuple[Hamiltonian, tuple[str, ...]]]:
-    """Return H as a sum of Hamiltonians in separate coordinates: each, in p and q or p1 … qn, with
-    the names that these have in H. Degrees of freedom that are not coupled and do not move stay
-    together."""
-    if hamiltonian.planar:  # whose p and q have no numbers, and which need not be expanded
+    """Return H as a sum of Hamiltonians in separate coordinates, if its terms separate them.
+
+    Each item: the Hamiltonian in p and q or p1 … qn, and the names of these coordinates in H. A
+    degree of freedom that is in no term is an item of its own.
+    """
+    if hamiltonian.planar:  # p and q have no numbers, and nothing is to be split
         return [(hamiltonian, PLANE)]
-    # Degrees of freedom that occur in one term are merged: the groups are the connected components.
+    # Degrees of freedom in one term are merged: the groups are the connected components.
     groups = {k: {k} for k in range(1, hamiltonian.degrees + 1)}
     exact = hamiltonian.exact
     terms = sympy.Add.make_args(answer_unless_long(lambda: sympy.expand(exact), exact))
@@ -176,7 +177,7 @@ def _degrees_in(term: sympy.Expr, coordinates: Sequence[str]) -> set[int]:
 def _part(
     terms: Sequence[sympy.Expr], numbers: Sequence[int], coordinates: Sequence[str]
 ) -> tuple[Hamiltonian, tuple[str, ...]]:
-    """Return the part of H in these degrees of freedom, with the names of its coordinates in H."""
+    """Return the part of H in the degrees of freedom `numbers`, and its coordinates' names in H."""
     names = tuple(f"{letter}{k}" for letter in PLANE for k in numbers)
     renaming = {
         symbol(a): symbol(b) for a, b in zip(names, coordinates_in(len(numbers)), strict=True)

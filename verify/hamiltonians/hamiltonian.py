@@ -29,16 +29,17 @@ from verify.notebook import aligned_latex, cut, short_latex
 from verify.structures import AREA, SYMPLECTIC, Structure
 
 
-# A report asks for the same few Hamiltonians thousands of times: once for every task.
+# Cached: every task of a report parses its Hamiltonian, one of a few.
 @lru_cache(maxsize=64)
 def _parse_formula(formula: str) -> Hamiltonian:
-    """Return H as it is read from its own text, which tasks, stored results and certificates hold.
+    """Return H with an expression whose text is read back as the same expression: tasks, stored
+    results and certificates have that text.
 
-    That text can be much longer than the formula, and sympy multiplies a number into a sum one
-    level deeper each time that it is read.
+    It can be much longer than the formula: each time that it is read, sympy multiplies a number
+    into a sum one level deeper.
     """
     expression, requirements = read(formula, source="hamiltonian")
-    # The loop goes on to a fixed point: the text of the expression must be read as that expression.
+    # The loop ends at a fixed point, at which the text of the expression is read as the expression.
     for _ in range(MAX_DEPTH):
         read_again = expression
         if not reads_back(expression, MAX_LENGTH):
@@ -57,12 +58,12 @@ def _parse_formula(formula: str) -> Hamiltonian:
 @lru_cache(maxsize=64)
 def _with_values(hamiltonian: Hamiltonian, values: tuple[tuple[str, Fraction], ...]) -> Hamiltonian:
     result = replace(hamiltonian, values=values)
-    result.domain  # noqa: B018 - refuses values for which H is not defined
+    result.domain  # noqa: B018 - raises InputError if H is not defined for the values
     return result
 
 
 class _ReadAgain:
-    """The expression of an H that was restored from a record, parsed when it is first used."""
+    """The expression of an H from a record: a descriptor that parses it when it is first read."""
 
     def __get__(self, owner: Hamiltonian | None, _: type) -> sympy.Expr:
         if owner is None:
@@ -74,12 +75,11 @@ class _ReadAgain:
 @drawn_by("hamiltonians")
 @dataclass(frozen=True, eq=False)
 class Hamiltonian:
-    """H(p, q) or H(p, q, t) as an exact expression, with the values of those parameters that have
-    one.
+    """H(p, q) or H(p, q, t) as an exact expression, with values of some or all parameters.
 
-    A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
-    `exact` has the values put in. `text_domain`: the domain of the text it was read from, where
-    that is smaller than the expression's: √q·√q is q.
+    A parameter without a value stays a symbol. In `expression` all parameters are symbols; in
+    `exact` the values stand in their places. `text_domain`: the domain of the text from which H was
+    read, if it is smaller than that of the expression (√q·√q is q); else EVERYWHERE.
     """
 
     expression: sympy.Expr = _ReadAgain()
@@ -89,8 +89,8 @@ class Hamiltonian:
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> Hamiltonian:
-        """Return H from its record (see `verify.hamiltonians.hamiltonian_store`); its expression is
-        parsed only when it is used."""
+        """Return H from its record (see `verify.hamiltonians.hamiltonian_store`); the expression is
+        parsed when it is first used."""
         hamiltonian = cls.__new__(cls)
         vars(hamiltonian).update(
             formula=record["formula"],
@@ -107,7 +107,7 @@ class Hamiltonian:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Hamiltonian):
             return NotImplemented
-        # Formulas determine expressions: two records are compared without importing sympy.
+        # Records are compared by their formulas, which determine the expressions, without sympy.
         if (self.values, self.text_domain) != (other.values, other.text_domain):
             return False
         if self._record and other._record:
@@ -124,13 +124,13 @@ class Hamiltonian:
     def parse(
         cls, formula: str, parameters: Mapping[str, Number | None] | None = None
     ) -> Hamiltonian:
-        """Return H from a formula (see `verify.algebra.formula`) and parameter values; None leaves
-        a symbol.
+        """Return H from a formula (see `verify.algebra.formula`) and parameter values; a parameter
+        with None stays a symbol.
 
         Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
-        name that is likely meant for a p or q that is missing.
+        name that is likely meant for a missing p or q.
         """
-        if not isinstance(formula, str):  # the parser says so
+        if not isinstance(formula, str):  # the parser raises InputError
             parse(formula, source="hamiltonian")
         hamiltonian = _parse_formula(formula)
         if parameters is not None and not isinstance(parameters, Mapping):
@@ -142,8 +142,8 @@ class Hamiltonian:
     def with_values(self, parameters: Mapping[str, Number | None]) -> Hamiltonian:
         """Return the same H with these parameter values instead of its present ones.
 
-        `parameters`: exact numbers, or texts of them, by name; one with None, and one that is not
-        named, has no value in the result. Raises InputError for a name that H does not have, a bad
+        `parameters`: exact numbers, or texts of them, by name. A parameter with None, or without an
+        item, has no value in the result. Raises InputError for a name that H does not have, a bad
         value, and values for which H is not defined.
         """
         numbers = {}
@@ -164,22 +164,21 @@ class Hamiltonian:
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
-        """The coordinates p and q; or p1 … pn, q1 … qn where it has such."""
+        """The coordinates p and q, or p1 … pn, q1 … qn."""
         return coordinates_of(names_in(self.expression))
 
     @property
     def planar(self) -> bool:
-        """True if its coordinates are p and q."""
+        """True if the coordinates are p and q."""
         return self.coordinates == PLANE
 
     @property
     def structure(self) -> Structure:
-        """The structure that a canonical step of it keeps."""
+        """The structure that a canonical step preserves."""
         return AREA if self.planar else SYMPLECTIC
 
     def check_planar(self) -> None:
-        """Raise InputError where its coordinates are not p and q, for calls that work in the plane
-        alone."""
+        """Raise InputError unless the coordinates are p and q."""
         if not self.planar:
             names = ", ".join(self.coordinates)
             problem = f"is of {names}; what is asked for takes p and q, one degree of freedom"
@@ -190,14 +189,14 @@ class Hamiltonian:
         """The number of degrees of freedom."""
         return len(self.coordinates) // 2
 
-    def halves(self, z: Sequence[Any]) -> tuple[Any, Any]:  # Any: one of z's, or several
-        """Return p and q of a point: one each in the plane, in n degrees of freedom n each, as z
-        is."""
+    def halves(self, z: Sequence[Any]) -> tuple[Any, Any]:  # Any: an element of z, or a slice
+        """Return p and q of a point z: its two elements in the plane; in n degrees of freedom its
+        two halves."""
         return (z[0], z[1]) if self.planar else (z[: self.degrees], z[self.degrees :])
 
     @cached_property
     def time_dependent(self) -> bool:
-        """True if t is in H, with the parameters' values put in."""
+        """True if t is in `exact`."""
         return "t" in names_in(self.exact)
 
     @property
@@ -208,35 +207,35 @@ class Hamiltonian:
 
     @cached_property
     def exact(self) -> sympy.Expr:
-        """The expression with the values put in; InputError where it is not defined for them."""
+        """The expression with the values in place of their symbols; InputError if it is not defined
+        for them."""
         return self.substitute_values(self.expression)
 
     @cached_property
     def domain(self) -> FormulaDomain:
-        """The conditions under which `exact` is smooth, and the text it was read from is
-        defined."""
+        """The conditions under which `exact` is smooth, and the text of H is defined."""
         return FormulaDomain.from_requirements(
             requirements_of_expression(self.exact, smooth=True)
         ) & self.text_domain.substitute(self.value_substitutions)
 
     @property
     def domain_moves(self) -> bool:
-        """True if `domain` speaks of coordinates or of t, so that a step may lead out of it."""
+        """True if `domain` has conditions on coordinates or t, so that a step may leave it."""
         return bool(self.domain.names & {*self.coordinates, "t"})
 
     @property
     def value_substitutions(self) -> dict[sympy.Symbol, sympy.Rational]:
-        """The parameters' values by their symbols."""
+        """The parameters' values, by symbol."""
         return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
 
     def substitute_values(self, expression: sympy.Expr) -> sympy.Expr:
-        """Return any expression with H's parameter values put in, under the parser's limits."""
+        """Return an expression with H's values in place of symbols, under the parser's limits."""
         values_text = ", ".join(f"{n}={text(v)}" for n, v in self.values)
         return substitute(expression, self.value_substitutions, values_text)
 
     @cached_property
     def formula(self) -> str:
-        """The expression as text that `Hamiltonian.parse` reads back, to the same expression."""
+        """The expression as a text that `Hamiltonian.parse` reads back to the same expression."""
         return to_text(self.expression)
 
     def __repr__(self) -> str:
@@ -252,7 +251,7 @@ class Hamiltonian:
 
     @property
     def texts(self) -> dict[str, Any]:  # Any: arguments of models, which check them
-        """The formula and parameter values as text, by the names that results give them."""
+        """The formula and parameter values as texts, under their keys in results."""
         return {
             "hamiltonian": self.formula,
             "parameters": {name: text(value) for name, value in self.values},
@@ -260,14 +259,13 @@ class Hamiltonian:
 
     def gradient(self) -> Callable[..., tuple[Any, Any]]:  # Any: floats, or lists of them
         """Return (p, q) ↦ (H_p, H_q) in Python floats, for a user's step function; (p, q, t) ↦
-        (H_p, H_q) where H depends on time.
+        (H_p, H_q) if H depends on time.
 
-        In n degrees of freedom p, q, H_p and H_q are sequences of n floats; those that come back
-        are lists.
+        In n degrees of freedom p and q are sequences of n floats, H_p and H_q lists.
 
-        Each is rounded at every operation, so its last digits are not known. It raises what `math`
-        raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
-        defined. Raises InputError where a parameter has no value.
+        Every operation is rounded, so the last digits are not known. The function raises what
+        `math` raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H
+        is not defined. Raises InputError if a parameter has no value.
         """
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
@@ -281,9 +279,9 @@ class Hamiltonian:
         return function
 
     def with_symbols(self) -> Hamiltonian:
-        """Return H with its parameters as symbols, except those of value 0, whose terms vanish.
+        """Return H with its parameters as symbols, except those with the value 0.
 
-        This is what a kernel is compiled for: the other values are its run-time arguments.
+        Kernels are compiled for it: the values are their run-time arguments.
         """
         return self._with_symbols
 
@@ -293,24 +291,24 @@ class Hamiltonian:
             return self
         if self._record and self._record["generic"]:
             return Hamiltonian.from_record(self._record["generic"])
-        # A kernel for a value of 0 is faster, as whole terms vanish; other values share one kernel.
+        # With a value of 0 whole terms vanish, and the kernel is faster; all others share a kernel.
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
     def embed_in_ring(
         self, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple[Ring, Poly, list[Poly]]:
-        """Return a ring with the coordinates, h, t where H has it and the parameters; `exact` as
-        its element, and other expressions, each symbol of which is a variable too.
+        """Return a ring, `exact` as an element of it, and the expressions as elements.
 
-        Raises InputError where one has more than `most_terms` terms, or is not defined.
+        Its variables: the coordinates, h, t if H has it, the parameters without a value, and all
+        other symbols of the expressions. Raises InputError if an element has more than `most_terms`
+        terms, or is not defined.
         """
         if self._record and not expressions and most_terms == MAX_TERMS:
             return *ring_from_record(self._record["ring"]), []
         time = ("t",) if self.time_dependent else ()
         variables = (*self.coordinates, "h", *time, *self.symbols)
-        # Symbols of the other expressions that H does not have become variables of the ring as
-        # well.
+
         symbols = {x.name for expression in expressions for x in expression.free_symbols}
         variables = (*variables, *sorted(symbols.difference(variables)))
         ring, (energy, *elements) = embed([self.exact, *expressions], variables, most_terms)

@@ -1,12 +1,12 @@
-"""Hamiltonians that were parsed, stored on disk for later commands.
+"""The store of parsed Hamiltonians on disk, for later commands.
 
-A run needs the text of H, its names, the domain where it is smooth, and its element of a ring. To
-make these from a formula takes sympy, whose import is half of the time of a short command. So they
-are stored with the kernels (`verify.code_cache`), and the formula is parsed again only where its
+A run needs the text of H, its names, the domain in which it is smooth, and its element of a ring.
+To compute these from a formula takes sympy, whose import is half of the time of a short command. So
+they are stored with the kernels (`verify.code_cache`), and the formula is parsed again only if its
 expression is used.
 
-Only an H that is smooth everywhere is stored: under a name made of the text it was read from, the
-values of its parameters, and the code and libraries that read it.
+Only an H that is smooth everywhere is stored. The key is made of the text from which it was read,
+the values of its parameters, and the code and libraries that read it.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ _LIBRARIES = ("sympy", "python-flint")
 def load_or_read(
     source: str, values: Mapping[str, str], read: Callable[[Mapping[str, str]], Hamiltonian]
 ) -> Hamiltonian:
-    """Return the H of that formula, or system, with these values: from the store, else as it is
-    `read`, and stored from then on where possible."""
+    """Return H from the store; if it is not stored, return `read(values)`, and store that if it is
+    smooth everywhere. `source`: the formula, or the name of the system."""
     if code_cache.folder() is None or not _readers():
         return read(values)
     values_text = json.dumps(sorted(values.items()))
-    # The key has the code that reads formulas in it: a new version never uses an old record.
+    # The key has a digest of the code that reads formulas: a new version uses no old record.
     key = code_cache.key_of(_FORMAT, _readers(), source, values_text)
     record_text = code_cache.load(key)
     if record_text is not None:
@@ -61,15 +61,16 @@ def load_or_read(
 
 
 def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
-    """Return the record of a Hamiltonian; None where it is not stored."""
+    """Return the record of a Hamiltonian; None if it must not be stored."""
     if hamiltonian.domain or hamiltonian.text_domain:
         return None
-    if parse(hamiltonian.formula) != hamiltonian.expression:  # with zeros put in it may be so
+    # The formula may parse to another expression after zeros were substituted.
+    if parse(hamiltonian.formula) != hamiltonian.expression:
         return None
     try:
-        # Anew, without what schemes have added to the ring that is shared.
+        # A new ring, since schemes have added generators to the shared one.
         ring, energy, _ = hamiltonian.embed_in_ring(most_terms=_MOST_TERMS)
-    except InputError:  # too large, or not defined: refused later, where it is used
+    except InputError:  # too large, or not defined: an error is raised when it is used
         return None
     return {
         "formula": hamiltonian.formula,
@@ -84,8 +85,7 @@ def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
 
 @cache
 def _readers() -> str:
-    """Return a digest of all code that reads a formula; empty where the source files are not
-    available."""
-    house = Path(__file__).parents[1]
-    files = {str(x.relative_to(house)): x for pattern in _CODE for x in house.glob(pattern)}
+    """Return a digest of all code that reads a formula; empty if there are no source files."""
+    package = Path(__file__).parents[1]
+    files = {str(x.relative_to(package)): x for pattern in _CODE for x in package.glob(pattern)}
     return digest_of(files, " ".join(map(version, _LIBRARIES))) if files else ""

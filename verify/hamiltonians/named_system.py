@@ -1,6 +1,6 @@
-"""A named system: a Hamiltonian with its source, and its motion in closed form where that is known.
+"""Named systems: Hamiltonians with their sources, and their motions in closed form if known.
 
-`Motion` is the exact solution through one initial value, as a system's flow provides it.
+`Motion` is the exact solution through one initial value, which a system's flow returns.
 """
 
 import re
@@ -12,7 +12,7 @@ from flint import arb, fmpq
 
 from verify.arithmetic.exact import Number, rational
 from verify.errors import InputError
-from verify.hamiltonians.coordinates import MOST_DEGREES, coordinates_of
+from verify.hamiltonians.coordinates import MAX_DEGREES, coordinates_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 Values = Mapping[str, Fraction]  # a system's parameters
@@ -21,13 +21,17 @@ State = tuple[arb, arb]  # p, q
 
 @dataclass(frozen=True)
 class Motion:
-    """t ↦ (p, q) through one initial value, in closed form and in balls.
+    """A motion t ↦ (p, q) through one initial value, in closed form and in balls.
 
-    `state(t)`, t ≠ 0, and `blow_up(sign)` hold the true values, or are not finite, where flint's
-    precision does not suffice: the caller then raises it. `blow_up`: |t| where the solution ends,
-    forwards (1) or backwards (−1) in time, None where it does not; itself None where no such
-    solution does. `goes()`: how it goes to infinity as t grows, where it does so without an end;
-    None where it stays bounded or blows up. `is_at_rest`: it stays at its start.
+    - `state(t)`, t ≠ 0: the state at time t.
+    - `blow_up(sign)`: |t| at which the solution ends, forwards (1) or backwards (−1) in time; None
+      if it does not end. The field is None if no solution of the system ends.
+    - `goes()`: a text that says how the motion goes to infinity as t grows; None if it stays
+      bounded, or blows up in a finite time.
+    - `method`: a text for reports. `is_at_rest`: the motion stays at its start.
+
+    Balls contain the true values. They are not finite if flint's precision does not suffice: the
+    caller then raises the precision.
     """
 
     state: Callable[[arb], State]
@@ -42,32 +46,30 @@ def at_rest(p: Fraction, q: Fraction) -> Motion:
     return Motion(lambda _: (arb(exactly(p)), arb(exactly(q))), "at rest", is_at_rest=True)
 
 
-# (parameters, (p, q, t) at the start, how long) ↦ p and q.
-
-
 def exactly(x: Fraction) -> fmpq:
-    """Return flint's rational."""
+    """Return x as a rational of flint."""
     return fmpq(x.numerator, x.denominator)
 
 
-# (parameters, p, q) ↦ the motion; None where these parameters have no closed form.
+# (parameters, p, q) → motion; None if these parameters have no closed form.
 ClosedFormFlow = Callable[[Values, Fraction, Fraction], Motion | None]
+# (parameters, (p, q, t) at the start, time after it) → p and q.
 ClosedFormFlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], State]
 Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 
 @dataclass(frozen=True)
 class System:
-    """A Hamiltonian with a name: `formula` is H(p, q), H(p, q, t), or H(p1, …, q1, …).
+    """A Hamiltonian with a name.
 
-    `parameters` explains each of its parameters. `flow` is its exact flow in closed form, where
-    that is known; of an H that depends on time, `flow_in_time` gives p and q for (parameters, p, q
-    and t at the start, how long). Without one, `goes` may say of (parameters, p, q) how the orbit
-    goes to infinity as t grows: None where it stays bounded. `regimes` are examples of the kinds of
-    orbits that it has; in several degrees of freedom p and q are lists in them.
-
-    A `family` is a system for each number n of degrees of freedom from 2 on: it gives the formula
-    for n, which is among the `parameters`, and `formula` is that where n is not given.
+    - `formula`: H(p, q), H(p, q, t), or H(p1, …, q1, …). `source`: where it is from.
+    - `parameters`: an explanation of each parameter.
+    - `flow`: the exact flow in closed form, if it is known; `flow_in_time` if H depends on time.
+    - `goes`, for a system without a flow: (parameters, p, q) → how the orbit goes to infinity as t
+      grows; None if it stays bounded.
+    - `regimes`: examples of the kinds of orbits; in n degrees of freedom p and q are lists in them.
+    - `family`, of a system for each n ≥ 2 degrees of freedom: n → formula. n is then among the
+      `parameters`, and `formula` is used if n has no value.
     """
 
     name: str
@@ -90,8 +92,8 @@ class System:
     def hamiltonian(self, values: Mapping[str, Number | None] | None = None) -> Hamiltonian:
         """Return H with these parameter values; parameters without one stay symbols.
 
-        `values`: exact numbers, or texts of them, by name. Of a family n is no symbol of H. Raises
-        InputError as `Hamiltonian.parse` does, and for an n that is no whole number, 2 … 64.
+        `values`: exact numbers, or texts of them, by name; n of a family is no symbol of H. Raises
+        InputError as `Hamiltonian.parse` does, and if n is no whole number from 2 to 64.
         """
         if self.family is None or not isinstance(values, Mapping):
             return Hamiltonian.parse(self.formula, values)
@@ -106,8 +108,8 @@ class System:
 
     @property
     def degrees(self) -> int:
-        """The number of degrees of freedom; of a family, that of `formula`."""
-        # By the text alone, so that a search for systems of the plane parses no others.
+        """The number of degrees of freedom; for a family that of `formula`."""
+        # The text decides, so that a search for systems of the plane parses no others.
         return len(coordinates_of(re.findall(r"[a-zA-Z]\w*", self.formula))) // 2
 
     @property
@@ -116,18 +118,16 @@ class System:
         return (self.flow or self.flow_in_time) is not None
 
     def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
-        """Return the parameters by their names, p and q of an example, one of `regimes`, exactly.
-
-        Of systems of the plane; raises KeyError for a name that is none of them.
-        """
-        # A regime has p and q of the start among its parameters.
+        """Return the exact parameters by name, p and q of one of `regimes`, for a system of the
+        plane. Raises KeyError for an unknown name."""
+        # A regime has the initial p and q among its parameters.
         values = {key: rational(text, key) for key, text in self.regimes[name].items()}
         return values, values.pop("p"), values.pop("q")
 
 
 def _whole_number(number: Number) -> int:
-    """Return n of a family; InputError unless it is a whole number in its range."""
+    """Return n of a family. Raises InputError unless it is a whole number in its range."""
     value = rational(number, "parameter n")
-    if value.denominator != 1 or not 2 <= value <= MOST_DEGREES:
-        raise InputError("parameter n", number, f"must be a whole number, 2 … {MOST_DEGREES}")
+    if value.denominator != 1 or not 2 <= value <= MAX_DEGREES:
+        raise InputError("parameter n", number, f"must be a whole number, 2 … {MAX_DEGREES}")
     return int(value)

@@ -1,4 +1,4 @@
-"""Periods of H(p, q, t), in one or n degrees of freedom: in a variable, in t, and q as an angle."""
+"""Periods of H in p, q or t, in one or n degrees of freedom; and whether q is an angle."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from verify.lazy_sympy import sympy
 
 
 def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
-    """Raise InputError where H at t + period differs from H at t, or may: an undecided period is
-    not accepted. H without t has every period.
+    """Raise InputError unless H at t + period is shown to equal H at t. H without t has every
+    period.
 
     >>> check_period(Hamiltonian.parse("p**2/2 + q**2*cos(2*pi*t)"), Fraction(1))
     """
@@ -34,7 +34,7 @@ def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
 
 
 def is_angle(hamiltonian: Hamiltonian) -> bool:
-    """Return True if q is known to be an angle: H at q + 2π is H at q.
+    """Return True if q is shown to be an angle: H at q + 2π equals H at q.
 
     >>> is_angle(Hamiltonian.parse("p**2/2 - cos(q)")), is_angle(Hamiltonian.parse("p**2 + q**2"))
     (True, False)
@@ -43,8 +43,8 @@ def is_angle(hamiltonian: Hamiltonian) -> bool:
 
 
 def _is_invariant(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | None:
-    """Return True if H does not change when the shift is added to the variable; None where that is
-    not decided."""
+    """Return True if H does not change when `shift` is added to the variable, False if it does;
+    None if that is not decided."""
     x = symbol(name)
     shifted = answer_unless_long(
         lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None
@@ -59,7 +59,7 @@ def _is_invariant(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> boo
 def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     """Return a period of H in p, q or t, shown by algebra: a rational number, or one times π.
 
-    None where no period is found. Parameters have their values; the period need not be the least.
+    None if no period is found. Parameters have their values; the period need not be the least.
 
     >>> period_in(Hamiltonian.parse("p**2/2 + q**2*(2 + cos(2*pi*t/3) + sin(pi*t))"), "t")
     6
@@ -72,8 +72,8 @@ def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     for unit in (sympy.S.One, sympy.pi):
         rational_rates = [rate / unit for rate in rates]
         if rational_rates and all(part.is_Rational for part in rational_rates):
-            # With the rates unit·a_i/b_i a common period is (2π/unit)·lcm(b_i)/gcd(a_i), which is a
-            # multiple of the period of each function.
+            # For the rates unit·a_i/b_i, (2π/unit)·lcm(b_i)/gcd(a_i) is a multiple of the period of
+            # each function.
             common = (
                 math.lcm(*(int(x.q) for x in rational_rates)),
                 math.gcd(*(int(x.p) for x in rational_rates)),

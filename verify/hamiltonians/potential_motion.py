@@ -6,12 +6,12 @@ Watson, A Course of Modern Analysis, 20.6) is, for f = Σ b_k y^k in y = q − q
 
     q(t) = q₀ + A/B,  A = −v ℘' + (b₁/2)(℘ − b₂/12) + b₀b₃/4,  B = 2 (℘ − b₂/12)² − b₀b₄/2.
 
-It holds in every regime, has no branches, and B = 0 is where q is infinite. There (x → ∞ in the
-formula's inverse) ℘ = b₂/12 + s v √b₄/2 and ℘' = −(b₃ v + s b₁ √b₄)/4, with s the sign of q'.
-The b_k are exact, so that Δ = 0 (a separatrix, or elementary functions) is known and not guessed.
+It holds in every regime, and has no branches. q is infinite if B = 0; then (x → ∞ in the formula's
+inverse) ℘ = b₂/12 + s v √b₄/2 and ℘' = −(b₃ v + s b₁ √b₄)/4, with s the sign of q'. The b_k are
+exact, so Δ = 0 (a separatrix, or elementary functions) is decided exactly.
 
-B may vanish with A at some real t, but not at a rational t ≠ 0: where Δ ≠ 0 and g₂, g₃ and ℘(t) are
-algebraic, t is transcendental (Schneider), so that more precision always tells A/B.
+B may vanish together with A at some real t, but not at a rational t ≠ 0: if Δ ≠ 0 and g₂, g₃ and
+℘(t) are algebraic, t is transcendental (Schneider). So enough precision always yields A/B.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,7 +31,7 @@ _ELEMENTARY = "closed form: elementary functions"
 
 
 def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> ClosedFormFlow:
-    """Return the flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
+    """Return the flow of p²/2 + Σ c_k q^k, k = 0 … 4; `coefficients`: parameters → the c_k."""
 
     def flow(values: Values, p: Fraction, q: Fraction) -> Motion:
         return motions(fmpq(1), [exactly(c) for c in coefficients(values)])(p, q)
@@ -40,8 +40,7 @@ def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Closed
 
 
 def motions(alpha: fmpq, potential: Sequence[fmpq]) -> Callable[[Fraction, Fraction], Motion]:
-    """Return (p, q) ↦ the solution for H = α p²/2 + V(q) from there, α ≠ 0 and V of degree up to
-    4."""
+    """Return (p, q) ↦ the motion from (p, q) for H = α p²/2 + V(q), α ≠ 0, V of degree up to 4."""
     return partial(_motion, PotentialField.from_potential(alpha, potential))
 
 
@@ -56,7 +55,7 @@ def _motion(field: "PotentialField", p: Fraction, q: Fraction) -> Motion:
 
 @dataclass(frozen=True)
 class PotentialField:
-    """q'² = a₀ + f(q) with q' = α p: the part common to all motions, each of which has its own a₀.
+    """The equation q'² = a₀ + f(q), q' = α p, of all motions; only a₀ depends on the motion.
 
     The invariants of a₀ + f are g₂ = `g2[0]` + `g2[1]` a₀, and g₃ likewise.
     """
@@ -71,8 +70,7 @@ class PotentialField:
         """Return the field for H = α p²/2 + V(q)."""
         f = fmpq_poly([0, *(-2 * alpha * c for c in potential[1:])])
         a1, a2, a3, a4 = (f[k] for k in range(1, 5))
-        # The invariants of a quartic are affine in its constant term, which is the only one that
-        # depends on the initial value.
+        # The invariants of a quartic are affine in its constant term a₀.
         g2 = a2**2 / 12 - a3 * a1 / 4, a4
         g3 = a3 * a2 * a1 / 48 - a2**3 / 216 - a4 * a1**2 / 16, a4 * a2 / 6 - a3**2 / 16
         return cls(alpha, f, g2, g3)
@@ -80,8 +78,8 @@ class PotentialField:
 
 @dataclass(slots=True, eq=False)
 class Curve:
-    """The curve y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v, where q = `start` + y and q' =
-    α p."""
+    """The solution y of y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v; q = `start` + y and
+    q' = α p."""
 
     alpha: fmpq
     start: fmpq
@@ -90,7 +88,7 @@ class Curve:
     degree: int
     invariants: tuple[fmpq, fmpq]  # g₂ and g₃
     delta: fmpq
-    # ℘ and ℘' at flint's precision: a motion is evaluated at many times.
+    # Returns t ↦ (℘, ℘') at flint's precision; cached, since a motion is evaluated at many times.
     function: Callable[[], Callable[[Real], tuple[arb, arb]]]
 
     @classmethod
@@ -98,7 +96,7 @@ class Curve:
         """Return the curve through (p, q)."""
         shifted, v = field.f(fmpq_poly([q, 1])), field.alpha * p
         b = v * v, shifted[1], shifted[2], shifted[3], shifted[4]
-        # g₂ and g₃ are the same for the b_k as for the coefficients of q, which are shorter.
+        # A shift of y does not change the invariants; those of f are computed with shorter numbers.
         a0 = b[0] - shifted[0]
         g2, g3 = (constant + a0 * more for constant, more in (field.g2, field.g3))
         invariants, delta = (g2, g3), g2**3 - 27 * g3**2
@@ -107,7 +105,7 @@ class Curve:
 
     @property
     def is_confined(self) -> bool:
-        """True if V rises without end on both sides, by its term of degree 4."""
+        """True if V grows beyond all bounds on both sides, by its term of degree 4."""
         return bool(self.b[4] < 0)
 
     def state(self, t: arb) -> State:
@@ -131,7 +129,8 @@ class Curve:
         """Return the solution of y'' = b₁/2 + b₂ y."""
         b0, b1, b2, *_ = self.b
         if b2 > 0 and b1**2 == 4 * b0 * b2:
-            # On a line through the saddle one exponential is all there is, and the other is noise.
+            # On a line through the saddle the solution has one exponential; the other one would be
+            # rounding noise.
             rate = arb(b2).sqrt() if self.v * b1 > 0 else -arb(b2).sqrt()
             exponent = rate * t
             return b1 / (2 * b2) * exponent.expm1(), self.v * exponent.exp()
@@ -146,8 +145,8 @@ class Curve:
         return bool(double > 0 and not any(vanish))
 
     def heteroclinic(self, t: arb, double: fmpq) -> tuple[arb, arb]:
-        """Return A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth
-        κt."""
+        """Return y and y' from A/B, with A and B divided by ε = ℘ − d, which becomes exponentially
+        small; ℘'/ε = −2κ coth κt."""
         c, s = waves(3 * double, t)
         small, ratio = 1 / s**2, -2 * c / s
         above = self.b[1] / 2 - self.v * ratio
@@ -158,31 +157,31 @@ class Curve:
     # -- where the motion goes --------------------------------------------------------------------
 
     def blow_up(self, sign: int) -> arb | None:
-        """Return |t| of the blow-up, see `verify.hamiltonians.named_system.Motion`; of degree 3 or
-        4, where the motion goes to infinity in a finite time."""
-        to = self.destination(sign)
-        return self.time_to_infinity(sign, to) if to else None
+        """Return |t| of the blow-up (see `verify.hamiltonians.named_system.Motion`), for a curve of
+        degree 3 or 4."""
+        destination = self.destination(sign)
+        return self.time_to_infinity(sign, destination) if destination else None
 
     def goes(self) -> str | None:
-        """Return how the motion goes to infinity without an end in time."""
-        to = 0 if self.degree > 2 else self.destination(1)
-        return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
+        """Return a text that says how the motion goes to infinity in infinite time; else None."""
+        destination = 0 if self.degree > 2 else self.destination(1)
+        return f"q goes to {'+' if destination > 0 else '−'}∞ as t grows" if destination else None
 
     def destination(self, sign: int) -> int:
-        """Return 1 or −1 where y goes to ±∞, forwards or backwards in time; 0 where it stays
+        """Return 1 or −1 if y goes to ±∞, forwards or backwards in time (`sign`); 0 if it stays
         bounded.
 
-        At a simple root of f the motion turns; a multiple one it never reaches.
+        The motion turns at a simple root of the polynomial, and never reaches a multiple one.
         """
         if self.is_confined:
             return 0
         towards = 1 if (sign * self.v or self.b[1]) > 0 else -1
         coefficients = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
-        # Mirrored so that the motion goes to the right.
+        # The polynomial is mirrored so that the motion begins to the right.
         f = fmpq_poly([x * towards**k for k, x in enumerate(coefficients)])
         bits = 64
-        # The loop ends: roots are distinct or exactly multiple in flint, so some precision
-        # separates them from 0 and from each other.
+        # The loop ends: flint's roots have exact multiplicities, so some precision separates them
+        # from 0 and from each other.
         while True:
             with working_precision(bits):
                 root_pairs: Any = f.numer().complex_roots()
@@ -190,7 +189,7 @@ class Curve:
             ahead = [(x, n) for x, n in roots if x > 0]
             if len(ahead) == 0 and all(x < 0 for x, _ in roots):
                 return towards
-            # Those that may be the nearest, and whether each is multiple.
+            # True or False for each root that may be the nearest: whether it is multiple.
             nearest = {n > 1 for x, n in ahead if not any(y < x for y, _ in ahead)}
             if len(nearest) == 1 and all(x > 0 or x < 0 for x, _ in roots):
                 turns_back = self.v == 0 or len(ahead) < len(roots)
@@ -198,11 +197,11 @@ class Curve:
             bits *= 2
 
     def time_to_infinity(self, sign: int, end: int) -> arb:
-        """Return |t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
+        """Return |t| at which y reaches ±∞ (`end`), forwards or backwards in time (`sign`)."""
         _, b1, b2, b3, b4 = self.b
         v, root = sign * self.v, end * arb(b4).sqrt()
         slope = -(b3 * v + b1 * root)
-        # The exact comparison: ℘' is 0 there, which balls of any precision could not decide.
+        # Compared exactly: ℘' = 0, which balls of no precision could decide.
         if (b3 * v) ** 2 == b1**2 * b4 and b3 * v * b1 * end <= 0:
             side = 0
         elif slope > 0 or slope < 0:
@@ -221,7 +220,7 @@ def _function(invariants: tuple[fmpq, fmpq], delta: fmpq) -> Callable[[Real], tu
 def biermann(
     v: Real, b: tuple[Real, Real, Real, Real, Real], g2: Real, function: tuple[Real, Real]
 ) -> tuple[arb, arb]:
-    """Return y and y' from the values of ℘ and ℘'; see the module's formula. ℘'' = 6℘² − g₂/2."""
+    """Return y and y' from the values of ℘ and ℘', by the module's formula and ℘'' = 6℘² − g₂/2."""
     b0, b1, b2, b3, b4 = b
     w, slope = function
     speed, half = arb(v), arb(b1) / 2

@@ -1,8 +1,7 @@
-"""The start of a run, and the times that it passes: H has to be defined and smooth at all of them.
+"""The start of a run, and the times of its steps: H must be defined and smooth at all of them.
 
-A step may pass over a pole in t and never see it. So the conditions that have no p and q in them
-are enclosed over the time of the run, which is halved where the enclosure does not decide, down to
-parts of a step.
+A step may pass over a pole in t without a trace. So the conditions on t alone are enclosed over the
+time of the run. If the enclosure does not decide, the time is halved, down to a 64th of a step.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,15 +22,14 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _BITS = 96
-_MOST = 20_000  # enclosures, beyond which it is left to the run
-_PARTS = 64  # of a step
+_MAX_ENCLOSURES = 20_000  # after so many the search ends, and the conditions count as true
+_PARTS_PER_STEP = 64
 
 
 def point_of(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList) -> dict[str, Fraction]:
-    """Return each coordinate's value by its name, exactly, from q and p as they are given, a list
-    each.
+    """Return the exact values of the coordinates, by name.
 
-    In the plane a number will do. InputError for too few or too many.
+    `q`, `p`: a number in the plane, else a list. Raises InputError for too few or too many numbers.
 
     >>> point_of(Hamiltonian.parse("p1**2/2 + p2**2/2 + q1*q2"), ["0.5", 0], p=[1, 2])["q1"]
     Fraction(1, 2)
@@ -58,7 +56,7 @@ def point_of(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList) -> dict
 def coordinate_texts(
     hamiltonian: Hamiltonian, point: Mapping[str, Fraction], letter: str
 ) -> str | tuple[str, ...]:
-    """Return q or p of a point as text: a number, or a list in n degrees of freedom."""
+    """Return q or p (`letter`) of a point as text; in n degrees of freedom as texts."""
     p, q = hamiltonian.halves(tuple(text(point[name]) for name in hamiltonian.coordinates))
     texts: str | tuple[str, ...] = {"p": p, "q": q}[letter]
     return texts
@@ -67,7 +65,7 @@ def coordinate_texts(
 def start_texts(
     hamiltonian: Hamiltonian, point: Mapping[str, Fraction], t0: Fraction | None
 ) -> dict[str, Any]:
-    """Return the start of a run as results have it: q, p and t0, which is None where H has no
+    """Return the start of a run in the form of results: q, p and t0, which is None if H has no
     time."""
     return {
         "q": coordinate_texts(hamiltonian, point, "q"),
@@ -77,8 +75,8 @@ def start_texts(
 
 
 def check_start(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList, t0: Number = 0) -> None:
-    """Raise InputError where H is not defined, or not smooth, at (q, p), and at t0 where it depends
-    on time.
+    """Raise InputError if H is not defined, or not smooth, at (q, p), and at t0 if it depends on
+    time.
 
     >>> check_start(Hamiltonian.parse("p**2/2 + log(q)"), -1, 0)
     Traceback (most recent call last):
@@ -96,11 +94,11 @@ def check_start(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList, t0: 
         raise InputError(", ".join(point), values_text, problem)
 
 
-# -- the times that it passes ---------------------------------------------------------------------
+# -- the times of the steps -----------------------------------------------------------------------
 
 
 def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int) -> None:
-    """Raise InputError, which names the step, where H is not smooth at some time on the way.
+    """Raise InputError, which names the step, if H may not be smooth at some time of the run.
 
     >>> opened = Hamiltonian.parse("p**2/2 + q**2/(1 - t)")
     >>> check_times(opened, Fraction(0), Fraction(2), 9)
@@ -116,7 +114,7 @@ def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, ste
 
 
 class TimeFault(NamedTuple):
-    """A step in whose time H may not be smooth, counted from 0, and the condition that fails."""
+    """A step, counted from 0, during which H may not be smooth, and the condition that may fail."""
 
     step: int
     condition: str
@@ -125,8 +123,9 @@ class TimeFault(NamedTuple):
 def find_first_fault(
     hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int
 ) -> TimeFault | None:
-    """Return the first step in whose time H may not be smooth; None where there is none.
+    """Return the first step in whose time H may not be smooth; None if there is none.
 
+    Conditions are tried one by one: the step is the first for the first condition that may fail.
     `step_size` may be negative.
     """
     if not hamiltonian.time_dependent:
@@ -136,7 +135,7 @@ def find_first_fault(
         if {s.name for s in requirement.expression.free_symbols} == {"t"}:
             ring, (x,) = embed([requirement.expression], ("t",))
             search = _Search(ring, x, requirement.relation, t0, step_size)
-            step = search.first(0, steps * _PARTS)
+            step = search.first(0, steps * _PARTS_PER_STEP)
             if step is not None:
                 return TimeFault(step, condition)
     return None
@@ -149,16 +148,16 @@ class _Search:
         self, ring: Ring, x: Poly, relation: Relation, t0: Fraction, step_size: Fraction
     ) -> None:
         self.ring, self.x, self.relation = ring, x, relation
-        self.t0, self.part = t0, step_size / _PARTS
-        self.budget = _MOST
+        self.t0, self.part = t0, step_size / _PARTS_PER_STEP
+        self.budget = _MAX_ENCLOSURES
 
     def first(self, low: int, high: int) -> int | None:
-        """Return the first step among these parts of steps; None where the condition holds in
-        all."""
+        """Return the first step among the parts of steps from `low` to `high`; None if the
+        condition holds in all, or the budget is spent."""
         if self.budget <= 0 or self._holds(low, high):
             return None
         if high - low == 1:
-            return low // _PARTS
+            return low // _PARTS_PER_STEP
         middle = (low + high) // 2
         first_half = self.first(low, middle)
         return self.first(middle, high) if first_half is None else first_half
@@ -168,8 +167,7 @@ class _Search:
         self.budget -= 1
         with working_precision(_BITS):
             ends = (rational_ball(self.t0 + n * self.part) for n in (low, high))
-            # The condition is enclosed over the whole interval of time at once, so no pole is
-            # missed.
-            over = next(ends).union(next(ends))
-            enclosure: flint.arb | None = enclose_over(self.ring, self.x, {"t": over})
+            # The condition is enclosed over the whole interval at once, so that no pole is missed.
+            interval = next(ends).union(next(ends))
+            enclosure: flint.arb | None = enclose_over(self.ring, self.x, {"t": interval})
             return holds(enclosure, self.relation) is True

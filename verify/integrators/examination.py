@@ -1,7 +1,9 @@
-"""The examination of a user's step or map at its places: proof as far as it goes, else measurement.
+"""The examination of a user's step or map: by proof if possible, else by measurement at its places.
 
-Where its code lets symbols through, the map is proved, and what algebra leaves open is measured;
-else all is measured, with dual numbers where they go through, or with floats.
+If the code can be called with symbols, the map is proved, and the questions that algebra leaves
+open are measured. Otherwise all is measured, with dual numbers if the code takes them, or else with
+floats. S = JᵀΩJ − Ω is the defect of the symplectic form, where J is the Jacobian of the map; in
+the plane S is ΔJ = det J − 1 times Ω.
 """
 
 from collections.abc import Callable
@@ -10,7 +12,7 @@ from functools import partial
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.clocks import clock_mistakes, measure_clock_mistakes
-from verify.integrators.measured_finding import finding_of
+from verify.integrators.measured_finding import finding_from_measurement
 from verify.integrators.measures.agreement import trace_must_agree
 from verify.integrators.measures.probes import probe_of
 from verify.integrators.measures.structure_measurement import StructureMeasurement
@@ -21,45 +23,49 @@ from verify.integrators.user_code.step import StepError, describe_error, limit_t
 from verify.prose import Prose, join_prose, prose
 from verify.verdict import Verdict
 
-_SHARE_FOR_PROOF = 1 / 3  # of the time that is left
+_SHARE_FOR_PROOF = 1 / 3  # a part of the time that is left
 _CLOCK_SECONDS = 10.0
-_MAX_LISTED = 3  # of what is not pure
+_MAX_LISTED = 3  # names of impure objects in a message
 _MAX_PROOF_SECONDS = 20.0
 # With three degrees of freedom and more algebra seldom ends in time.
 _MAX_PROOF_SECONDS_IN_MANY_DEGREES = 6.0
-_SHARE_FOR_FLOATS = 0.4  # of the time that is left, for floats after dual numbers, which are slow
+_SHARE_FOR_FLOATS = 0.4  # a part of the time that is left; dual numbers, which are slow, come first
+_ORDER_SEPARATOR = "; "  # stands in a measured reason between the order and the defect
 
 
-def examine(trial: Trial, provable: bool) -> Finding:
-    """Return the finding on a step or a map. `provable`: whether a proof may be tried."""
+def examine(trial: Trial, try_proof: bool) -> Finding:
+    """Return the finding on a step or a map.
+
+    `try_proof`: False if the function may differ from call to call. It is traced even then, since
+    the trace may raise, and its error becomes a note.
+    """
     step, notes = trial.step, list[Prose]()
     if step.foreign:
         return _measure(trial, notes)
     try:
-        # In many degrees of freedom algebra seldom ends in time, and the time is needed for
-        # measuring.
-        time_limit = _MAX_PROOF_SECONDS if step.degrees < 3 else _MAX_PROOF_SECONDS_IN_MANY_DEGREES
-        with limit_time(
-            min(time_limit, max(step.left, 0.1) * _SHARE_FOR_PROOF), "its proof takes too long"
-        ):
+        limit = _MAX_PROOF_SECONDS if step.degrees < 3 else _MAX_PROOF_SECONDS_IN_MANY_DEGREES
+        seconds = min(limit, max(step.seconds_left, 0.1) * _SHARE_FOR_PROOF)
+        with limit_time(seconds, "its proof takes too long"):
             trace = trace_of(step)
             _must_be_pure(trace)
-            if provable:
-                trace_must_agree(step, trace.roots, trial.places)
+            if try_proof:
+                trace_must_agree(step, trace.outputs, trial.places)
                 system = trial.hamiltonian
                 finding = prove_step(trace, system) if system else prove_map(trace, step.names)
-        if not provable:
+        if not try_proof:
             return _measure(trial, notes)
         finding = _decide(finding, trial, trace)
         order = finding.convergence_order
-        return finding.noting(*_clock(trial, lambda h: clock_mistakes(h, trace.roots, order)))
+        return finding.noting(
+            *_note_clock(trial, lambda system: clock_mistakes(system, trace.outputs, order))
+        )
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", describe_error(error)))
     return _measure(trial, notes)
 
 
 def _must_be_pure(trace: Trace) -> None:
-    """Raise StepError where the code reaches something that may change from call to call."""
+    """Raise StepError if the code reaches objects that may change from call to call."""
     impure = trace.tape.surroundings.texts
     if impure:
         names = join_prose(", ", map(prose, impure[:_MAX_LISTED]))
@@ -67,60 +73,63 @@ def _must_be_pure(trace: Trace) -> None:
 
 
 def _decide(finding: Finding, trial: Trial, trace: Trace) -> Finding:
-    """Return the finding of a proof, completed by measurement where the proof leaves something
-    open.
+    """Complete the finding of a proof by measurement if the proof leaves a question open.
 
-    Rounded coefficients stand for others: of a trace that has them no order is proved, and Ω only
-    where it is preserved.
+    Rounded coefficients, floats that are read as no simple number, approximate the ones that are
+    meant. Of a trace with such coefficients no order is proved, and S ≢ 0 is not, as the rounding
+    may cause it; S ≡ 0 is proved, as it holds for the coefficients of the code.
     """
     is_rounded, symplectic = bool(trace.tape.rounded), finding.symplectic
     of_map = trial.hamiltonian is None
-    open_ = symplectic is None and finding.verdict is not Verdict.REFUTED
+    # A refuted step is no scheme: nothing more is measured of it.
+    symplecticity_open = symplectic is None and finding.verdict is not Verdict.REFUTED
     volume_open = symplectic is False and finding.area_preserving is None
     if of_map and symplectic:
         return finding
-    if not (is_rounded or open_ or volume_open or of_map):
+    if not (is_rounded or symplecticity_open or volume_open or of_map):
         return finding
     try:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", describe_error(error)))
-    measurement = finding_of(trial, structure, distances)
+    measurement = finding_from_measurement(trial, structure, distances)
     measured_finding = replace(measurement, notes=(*finding.notes, *measurement.notes))
     if of_map:
         return (
             measured_finding
-            if is_rounded or open_
-            else _refuted_map(finding, measured_finding, structure)
+            if is_rounded or symplecticity_open
+            else _refute_map(finding, measured_finding, structure)
         )
     if is_rounded:
-        return _but_for_rounding(finding, measured_finding)
-    if open_:
-        return _with_series(finding, measured_finding)
+        return _combine_despite_rounding(finding, measured_finding)
+    if symplecticity_open:
+        return _combine_with_series(finding, measured_finding)
     return replace(finding, area_preserving=structure.volume_kept)
 
 
-def _but_for_rounding(finding: Finding, measured_finding: Finding) -> Finding:
-    """Combine the measured order with what is proved of Ω."""
-    order, _, defect = measured_finding.reason.partition("; ")
-    exactly = finding.convergence_order
+def _combine_despite_rounding(finding: Finding, measured_finding: Finding) -> Finding:
+    """Combine the measured order with the proof that Ω is preserved, if there is one."""
+    # `measured_finding._of_step` joins the texts of the order and of the defect so.
+    order_text, _, defect_text = measured_finding.reason.partition(_ORDER_SEPARATOR)
+    exact_order = finding.convergence_order
     clause = "but for the rounding of its coefficients"
-    if exactly is not None and exactly != measured_finding.convergence_order:
-        clause += f" (taken exactly, they make the order {exactly})"
+    if exact_order is not None and exact_order != measured_finding.convergence_order:
+        clause += f" (taken exactly, they make the order {exact_order})"
     if not finding.symplectic:
-        return replace(measured_finding, reason=prose(order, f", {clause}; ", defect))
+        reason = prose(order_text, f", {clause}; ", defect_text)
+        return replace(measured_finding, reason=reason)
     statement = "det J ≡ 1, proved" if finding.degrees == 1 else "S ≡ 0, proved"
     verdict = measured_finding.verdict
     if verdict is Verdict.UNDECIDED and measured_finding.order_decided:
         verdict = Verdict.MEASURED
     return replace(
-        measured_finding, verdict=verdict, reason=prose(order, f", {clause}; ", statement),
+        measured_finding, verdict=verdict, reason=prose(order_text, f", {clause}; ", statement),
         order=None, symplectic=True, area_preserving=True,
     )  # fmt: skip
 
 
-def _with_series(finding: Finding, measured_finding: Finding) -> Finding:
-    """Combine what is measured of Ω with the order and the series of a proof that leaves Ω open."""
+def _combine_with_series(finding: Finding, measured_finding: Finding) -> Finding:
+    """Combine the measured defect of Ω with the order and the series that a proof has."""
     order = (
         finding.convergence_order if finding.order_decided else measured_finding.convergence_order
     )
@@ -134,15 +143,17 @@ def _with_series(finding: Finding, measured_finding: Finding) -> Finding:
     )
 
 
-def _refuted_map(
+def _refute_map(
     finding: Finding, measured_finding: Finding, structure: StructureMeasurement
 ) -> Finding:
-    """Refute a map by algebra, and show it by dual numbers at places where it can be seen."""
+    """Refute a map by algebra if the measurement shows its defect too; else return the measured
+    finding, since a refutation needs a place at which anybody can see it."""
     volume = finding.area_preserving
     if volume is None:
         volume = structure.volume_kept
+    # By algebra S is not 0, but it is too small for doubles to show.
     if measured_finding.symplectic is not False:
-        return measured_finding  # algebra says it is not 0; it is too small for doubles to show
+        return measured_finding
     identity = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
     volume_text = f"; det J {identity} all the same" if volume else ""
     entry = measured_finding.entry or finding.entry
@@ -152,37 +163,42 @@ def _refuted_map(
                    against=measured_finding.against, places=measured_finding.places)  # fmt: skip
 
 
-def _clock(trial: Trial, mistakes: Callable[[Hamiltonian], list[str]]) -> list[str]:
-    """Name the mistake that the step's clock looks like; return nothing where none is seen in
-    time."""
-    if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
+def _note_clock(trial: Trial, find_mistakes: Callable[[Hamiltonian], list[str]]) -> list[str]:
+    """Return notes on the times at which the step reads H, if they look like a mistake.
+
+    The analysis exists in the plane alone, for an H that depends on t.
+    """
+    if trial.hamiltonian is None or not trial.step.time_dependent or trial.step.degrees > 1:
         return []
     try:
         with limit_time(_CLOCK_SECONDS, "its clock takes too long"):
-            return mistakes(trial.hamiltonian)
+            return find_mistakes(trial.hamiltonian)
     except Exception:  # the user's code may raise anything
         return []
 
 
 def _measure(trial: Trial, notes: list[Prose]) -> Finding:
+    """Return the finding of the first kind of probe that works; each failure becomes a note."""
     step = trial.step
-    # Dual numbers are slow: some of the time is held back for floats, and given back before these
-    # begin.
-    reserve = 0.0 if step.foreign else _SHARE_FOR_FLOATS * max(step.left, 0)
-    for how in step.ways:
+    # The dual numbers come first. Some of the time is held back from them, and given back before
+    # the floats begin.
+    reserve = 0.0 if step.foreign else _SHARE_FOR_FLOATS * max(step.seconds_left, 0)
+    for how in step.probe_kinds:
         step.hold_back(reserve if how == "duals" else -reserve)
         try:
-            finding = finding_of(trial, *trial.measure(how))
+            finding = finding_from_measurement(trial, *trial.measure(how))
             finding = replace(finding, notes=(*notes, *finding.notes))
-            return finding.noting(*_clock(trial, partial(_find_still_clock, trial, how, finding)))
-        except Exception as error:  # as above
+            find_mistakes = partial(_find_clock_mistakes, trial, how, finding)
+            return finding.noting(*_note_clock(trial, find_mistakes))
+        except Exception as error:  # the user's code may raise anything
             notes.append(prose(f"not measured with {how}: ", describe_error(error)))
     message = prose("it can be neither traced nor measured")
-    return Finding(Verdict.UNDECIDED, message, "calls", step.degrees).noting(*notes)
+    return Finding(Verdict.UNDECIDED, message, how="calls", degrees=step.degrees).noting(*notes)
 
 
-def _find_still_clock(
+def _find_clock_mistakes(
     trial: Trial, how: str, finding: Finding, hamiltonian: Hamiltonian
 ) -> list[str]:
+    """Measure the times at which the step reads H, and describe the mistakes that they show."""
     probe = probe_of(trial.step, how)
     return measure_clock_mistakes(probe, hamiltonian, trial.places, finding.convergence_order)

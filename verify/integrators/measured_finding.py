@@ -1,4 +1,7 @@
-"""The finding on a user's map that was measured: the verdict, and the order and defect in words."""
+"""The finding from a measurement of a user's map: the verdict, the order, and the defect in words.
+
+The defect is S = JᵀΩJ − Ω of the symplectic form Ω, in the plane ΔJ = det J − 1.
+"""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -7,7 +10,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import plain
 from verify.integrators.measures.distances import Distances, PlaceOrder
-from verify.integrators.measures.error_powers import ENOUGH
+from verify.integrators.measures.error_powers import ENOUGH_SLOPES
 from verify.integrators.measures.measurement_notes import (
     describe_numbers,
     describe_places,
@@ -16,7 +19,7 @@ from verify.integrators.measures.measurement_notes import (
     note_unseen,
 )
 from verify.integrators.measures.sides import Sides
-from verify.integrators.measures.structure_measurement import REFUTES, StructureMeasurement
+from verify.integrators.measures.structure_measurement import REFUTING_RATIO, StructureMeasurement
 from verify.integrators.measures.survey import Request
 from verify.integrators.places.trial_places import SIDE, USER
 from verify.integrators.places.wrap_periods import describe_periods
@@ -27,13 +30,15 @@ from verify.prose import prose, read_prose
 from verify.structures import structure_in
 from verify.verdict import Verdict
 
-_STILL = 1e-3  # units that the flow goes, with which an error would hardly show
+# If the flow moves a shorter distance, in units of the place, an error would hardly show.
+_MIN_VISIBLE_DISTANCE = 1e-3
+_SHOWN_SLOPES = 8
 
 
 @dataclass(frozen=True)
 class _Order:
-    """`order`: None where none is seen or none has settled. `decided`: whether it is no
-    higher, and no lower than what is claimed."""
+    """The measured `order`, None if no error is seen, or if no power has settled. `decided`: True
+    if it is certain, or certainly lower than claimed. `domain`: the conditions for the order."""
 
     order: int | None
     decided: bool
@@ -42,54 +47,54 @@ class _Order:
     notes: tuple[str, ...] = ()
 
 
-def finding_of(
+def finding_from_measurement(
     trial: Trial, structure: StructureMeasurement, distances: Distances | None
 ) -> Finding:
-    """Build the finding: the order, and if Ω is preserved at the places; for a map the latter
+    """Build the finding on the order of a step, and on Ω; for a map, without `distances`, on Ω
     alone."""
     step, is_kept = trial.step, structure.is_kept(trial.request.within)
     defect_text = _describe_structure(step, structure, is_kept, trial.request)
     finding = (
-        _of_map(step, structure, is_kept, defect_text)
+        _finding_of_map(step, structure, is_kept, defect_text)
         if distances is None
-        else _of_step(trial, structure, distances, is_kept, defect_text)
+        else _finding_of_step(trial, structure, distances, is_kept, defect_text)
     )
-    return _consistent(finding.noting(*map(read_prose, note_sides(structure))))
+    return _check_consistency(finding.noting(*map(read_prose, note_sides(structure))))
 
 
-def _of_map(
+def _finding_of_map(
     step: UserMap, structure: StructureMeasurement, is_kept: bool | None, text: str
 ) -> Finding:
     verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[is_kept]
     if is_kept is False:
-        # In several degrees of freedom det J = 1 is weaker than JᵀΩJ = Ω. It is said, so that a map
-        # that preserves volume is not taken for worse than it is.
-        only_volume = step.degrees > 1 and structure.volume_kept  # in the plane S is det J − 1
+        # In several degrees of freedom det J = 1 is weaker than JᵀΩJ = Ω: the reason tells if a map
+        # that is not symplectic preserves volume.
+        only_volume = step.degrees > 1 and structure.volume_kept
         volume = "; det J is 1 all the same" if only_volume else ""
-        entry = step.entry(structure.largest.largest_entry)
+        entry = step.entry_name(structure.largest.largest_entry)
         text = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
-    return _base(step, structure, verdict, text, is_kept)
+    return _base_finding(step, structure, verdict, text, is_kept)
 
 
-def _of_step(
+def _finding_of_step(
     trial: Trial,
     structure: StructureMeasurement,
     distances: Distances,
     is_kept: bool | None,
     text: str,
 ) -> Finding:
-    step, order = trial.step, _order(distances, structure.sides, trial.claims)
+    step, order = trial.step, _judge_order(distances, structure.sides, trial.claims)
     verdict, reason = Verdict.MEASURED, order.text
-    # A scheme agrees with the flow up to h at least. Below order 1 the map approximates another
-    # flow, or none, however well it preserves Ω.
+    # A scheme agrees with the flow up to h at least. With an order below 1 the map approximates
+    # another flow, or none, however well it preserves Ω.
     if order.order is not None and order.decided and order.order < 1:
         verdict, reason = Verdict.REFUTED, f"not a scheme for this H: {reason}"
     elif is_kept is None or not order.decided:
         verdict = Verdict.UNDECIDED
-    finding = _base(step, structure, verdict, f"{reason}; {text}", is_kept)
+    finding = _base_finding(step, structure, verdict, f"{reason}; {text}", is_kept)
     finding = replace(
         finding,
-        # `order` is that of the defect: a map that preserves Ω has none.
+        # `order` is that of the defect, which is 0 if the map preserves Ω.
         order=None if is_kept else structure.power,
         convergence_order=order.order,
         order_decided=order.decided,
@@ -99,7 +104,7 @@ def _of_step(
     return finding.noting(*map(read_prose, [*notes, *order.notes, *note_unseen(step, distances)]))
 
 
-def _base(
+def _base_finding(
     step: UserMap,
     structure: StructureMeasurement,
     verdict: Verdict,
@@ -122,7 +127,7 @@ def _base(
         largest=reading.defect,
         probe_error=structure.noise,
         against=reading,
-        entry=step.entry(reading.largest_entry) if is_kept is False else "",
+        entry=step.entry_name(reading.largest_entry) if is_kept is False else "",
         domain=(str(describe_places(step, places)),),
         notes=tuple(map(read_prose, note_places(step, structure))),
         places=places,
@@ -135,70 +140,72 @@ def _base(
 def _describe_structure(
     step: UserMap, structure: StructureMeasurement, is_kept: bool | None, request: Request
 ) -> str:
-    """Describe if S, or ΔJ in the plane, is 0 as far as can be seen, and its size otherwise."""
+    """Describe S, or ΔJ in the plane: that it is 0 up to the noise, or else its power or size."""
     name = structure_in(step.degrees).defect
     largest, noise = structure.largest.defect, structure.noise
+    size = _format_size(largest)
     if request.within is not None:
         allowed_text = f"`{float(request.within):.1e}` that is allowed"
         if is_kept:
-            return f"|{name}| ≤ {_size(largest)} at every place, within the {allowed_text}"
+            return f"|{name}| ≤ {size} at every place, within the {allowed_text}"
         if is_kept is None:
             return (
-                f"|{name}| is up to {_size(largest)}, the probe's own error `{noise:.1e}`: "
+                f"|{name}| is up to {size}, the probe's own error `{noise:.1e}`: "
                 f"whether it is within the {allowed_text} is not seen"
             )
-        return f"|{name}| is up to {_size(largest)}, more than the {allowed_text}"
+        return f"|{name}| is up to {size}, more than the {allowed_text}"
     if is_kept:
         numbers = describe_numbers(step) if structure.how == "floats" else "doubles"
         scope = "place and step size" if step.takes_step_size else "place"
-        bound = _size(max(largest, noise))
+        bound = _format_size(max(largest, noise))
         return f"|{name}| ≤ {bound} at every {scope}, within the noise of {numbers}"
-    if is_kept is None and structure.worst.beyond <= REFUTES:
+    if is_kept is None and structure.worst.beyond <= REFUTING_RATIO:
         if noise > 1e-7:
             return f"{name} is hidden by the probe's own error, `{noise:.1e}`"
-        return f"|{name}| ≤ {_size(largest)}, where the noise of its numbers is `{noise:.1e}`"
+        return f"|{name}| ≤ {size}, where the noise of its numbers is `{noise:.1e}`"
     if structure.power is not None:
         return f"{name} shrinks as `h^{structure.power}`"
     if structure.how == "duals" and structure.iterates:
         jumps = ", and jumps where the number of iterations changes" if structure.jumps else ""
         return (
-            f"|{name}| is up to {_size(largest)}, follows no power of h{jumps}: an iteration that "
-            f"stops, at a tolerance of at least {_size(largest)}"
+            f"|{name}| is up to {size}, follows no power of h{jumps}: an iteration that "
+            f"stops, at a tolerance of at least {size}"
         )
-    return f"|{name}| is up to {_size(largest)} and follows no power of h"
+    return f"|{name}| is up to {size} and follows no power of h"
 
 
-def _size(x: float) -> str:
+def _format_size(x: float) -> str:
     return plain(Fraction(x), 2) if 1e-3 <= x < 1e3 else f"`{x:.1e}`"
 
 
 # -- the order ------------------------------------------------------------------------------------
 
 
-def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
+def _judge_order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     places = distances.places
     if all(x.exact for x in places):
-        if max(x.distance for x in places) < _STILL:
+        if max(x.distance for x in places) < _MIN_VISIBLE_DISTANCE:
             return _Order(None, False, "its steps are too short for an error to show")
         return _Order(None, True, "the map is the exact flow to its last digits")
     resolved = [x for x in places if x.power is not None]
-    loose = [x for x in places if not x.exact and x.power is None]
-    loose = [x for x in loose if not resolved or _counts(x, resolved)]
-    is_minority = len(loose) < max(2, len(places) / 4)  # at one place terms may cancel as h falls
-    if is_minority and len(resolved) >= 2 and not any(x.place.source == USER for x in loose):
-        loose = []
+    unsettled = [x for x in places if not x.exact and x.power is None]
+    unsettled = [x for x in unsettled if not resolved or _may_be_lower(x, resolved)]
+    is_minority = len(unsettled) < max(
+        2, len(places) / 4
+    )  # at one place terms may cancel as h falls
+    if is_minority and len(resolved) >= 2 and not any(x.place.source == USER for x in unsettled):
+        unsettled = []
     if not resolved:
-        return _Order(None, False, f"its error follows no power of h{_describe_slopes(loose)}")
+        return _Order(None, False, f"its error follows no power of h{_describe_slopes(unsettled)}")
     usual = Counter(x.power or 0 for x in resolved if x.place.source != SIDE) or Counter(
         x.power or 0 for x in resolved
     )
-    # The order is that of most places; of two powers that are equally frequent the lower one is
-    # taken.
+    # The order is that of most places; of two equally frequent powers it is the lower one.
     main = min(power for power, times in usual.items() if times == max(usual.values()))
     # Places of a lower power may lie on the other side of a comparison in the code. If one
-    # comparison separates them from the others, the order holds on this side only.
+    # comparison separates them from the others, the order is that of this side only.
     failing = [x for x in resolved if (x.power or 0) < main]
-    passing = [x for x in places if x not in failing and x not in loose]
+    passing = [x for x in places if x not in failing and x not in unsettled]
     domain: tuple[str, ...] = ()
     notes = list[str]()
     if failing:
@@ -217,10 +224,10 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     lowest = min(resolved, key=lambda x: x.power or 0)
     # The error of one step is O(h^(r+1)) for a scheme of order r.
     order = (lowest.power or 0) - 1
-    decided = not loose or (claims.order is not None and order < claims.order)
+    decided = not unsettled or (claims.order is not None and order < claims.order)
     text = _describe_order(order, lowest)
     if not decided:
-        text += _describe_slopes(loose)
+        text += _describe_slopes(unsettled)
     tails = [x.tail for x in resolved if x.tail is not None]
     if tails:
         tail = max(tails, key=lambda x: x.error)
@@ -234,21 +241,25 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     return _Order(order, decided, text, domain, tuple(notes))
 
 
-def _counts(loose: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
+def _may_be_lower(unsettled: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
     """Return True if a place that has not settled may have a lower order than the others.
 
-    Where a loop ends at a tolerance it tells nothing; beside a single other place it always may,
-    unless its slopes show that it does not.
+    If at another place a loop leaves an error (a tail), the place tells nothing. Beside a single
+    settled place it may always be lower, unless enough slopes show the contrary.
     """
-    if len(resolved) < 2 and len(loose.slopes) < ENOUGH:
+    if len(resolved) < 2 and len(unsettled.slopes) < ENOUGH_SLOPES:
         return True
     lowest_power = min(x.power or 0 for x in resolved)
-    return loose.may_fall_below(lowest_power) and not any(x.tail for x in resolved)
+    return unsettled.may_fall_below(lowest_power) and not any(x.tail for x in resolved)
 
 
 def _describe_order(order: int, lowest: PlaceOrder) -> str:
     run = lowest.run
-    range_text = "" if run is None else f", as seen for h = {_step(run.first)} … `{run.last:.1e}`"
+    range_text = (
+        ""
+        if run is None
+        else f", as seen for h = {_format_step_size(run.first)} … `{run.last:.1e}`"
+    )
     if order == -1:
         return f"its error after one step does not shrink with h{range_text}"
     if order == 0:
@@ -256,7 +267,7 @@ def _describe_order(order: int, lowest: PlaceOrder) -> str:
     return f"the map's order is {order}{range_text}"
 
 
-def _step(h: float) -> str:
+def _format_step_size(h: float) -> str:
     fraction = Fraction(h)
     # Step sizes are halved from simple ones, so that the first ones are short binary fractions.
     return (
@@ -266,18 +277,18 @@ def _step(h: float) -> str:
     )
 
 
-def _describe_slopes(loose: Sequence[PlaceOrder]) -> str:
-    """Format the slopes that have not settled, of one component at one place."""
-    example = next((x for x in loose if x.slopes), None)
+def _describe_slopes(unsettled: Sequence[PlaceOrder]) -> str:
+    """Format the slopes of one component at one place that has not settled."""
+    example = next((x for x in unsettled if x.slopes), None)
     if example is None:
         return ""
-    slopes = ", ".join(f"{x:.1f}" for x in example.slopes[:8])
+    slopes = ", ".join(f"{x:.1f}" for x in example.slopes[:_SHOWN_SLOPES])
     return f" (the slopes of {example.component}' as h falls: {slopes})"
 
 
-def _consistent(finding: Finding) -> Finding:
-    """Make a finding UNDECIDED where its area order is too low for its order: a map that agrees
-    with the flow up to h^r has a defect of O(h^(r+1))."""
+def _check_consistency(finding: Finding) -> Finding:
+    """Make a finding UNDECIDED if the order of its defect is too low: a map that agrees with the
+    flow up to h^r has a defect of O(h^(r+1))."""
     area, order = finding.order, finding.convergence_order
     if finding.verdict is Verdict.REFUTED or area is None or order is None or area > order:
         return finding

@@ -30,7 +30,7 @@ class Claims:
     symplectic: bool = False
 
 
-NOTHING = Claims()
+NO_CLAIMS = Claims()
 
 
 @dataclass(frozen=True)

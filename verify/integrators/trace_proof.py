@@ -1,4 +1,7 @@
-"""Proofs about a user's map that is called with symbols."""
+"""Proofs about a user's map that is called with symbols.
+
+A call with symbols writes the operations of the code on a tape: the trace of the map.
+"""
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -32,28 +35,33 @@ from verify.prose import Prose, prose, read_prose
 from verify.schemes.maps import closed_form
 from verify.verdict import Verdict
 
-_MOST_OF_MAP = 4000  # operations of which a closed form is tried
-_MOST_TERMS = 2000
-_MOST_INSIDE = 100  # operations of what is divided by, or of which a root is taken
-_NOT_WRITTEN = "the function divides by no 0, and takes no root or logarithm of what is negative"
+# Operations of a map without an H, written out as trees, up to which a closed form is tried.
+_MAX_MAP_OPERATIONS = 4000
+_MAX_TERMS = 2000  # of an element of the ring
+_MAX_OPERAND_OPERATIONS = 100  # of a divisor or of the operand of a root, for the stated domain
+_UNWRITTEN_DOMAIN = (
+    "the function divides by no 0, and takes no root or logarithm of what is negative"
+)
 
 
 @dataclass(frozen=True)
 class Trace:
-    """z' as operations on symbols."""
+    """The operations of a map on symbols: `outputs` are the nodes of p' and then q' on the tape."""
 
     tape: Tape
-    roots: tuple[Node, ...]
+    outputs: tuple[Node, ...]
 
 
 def trace_of(step: UserMap) -> Trace:
-    """Call the step with symbols. Raises what the user's code raises of them, UntraceableError and
-    StepError."""
+    """Call the step with symbols, and return the trace.
+
+    Raises UntraceableError, StepError, and what the user's code raises when it meets symbols.
+    """
     tape = Tape()
     symbols = [tape.symbol(name) for name in step.names]
     # Where H does not depend on time, t is the number 0, so that a clock that the code computes
     # folds away.
-    clock = tape.symbol("t") if step.moving else tape.rational(Fraction(0))
+    clock = tape.symbol("t") if step.time_dependent else tape.rational(Fraction(0))
     size = tape.symbol("h")
     result = step.call(copy_function(step.function, tape), symbols, size, clock, tape.rational)
     tape.check()
@@ -77,9 +85,11 @@ def _notes(tape: Tape) -> list[Prose]:
 
 
 def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
-    """Prove the step by the prover for one H. Raises InputError where it has no series and no
-    closed form."""
-    traced = traced_map(hamiltonian, trace.roots)
+    """Prove the step by the prover for one H.
+
+    Raises InputError if the step has neither a series in h nor a closed form.
+    """
+    traced = traced_map(hamiltonian, trace.outputs)
     proof = prove(traced.step_map)
     text, fields = "traced with symbols", dict[str, Any]()
     if proof.planar:  # closed forms and a bound of the order are reported in the plane alone
@@ -108,7 +118,7 @@ def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
 
 
 def prove_map(trace: Trace, names: tuple[str, ...]) -> Finding:
-    """Decide by exact algebra if S vanishes. Raises StepError where the map is too long."""
+    """Decide by exact algebra if S = JᵀΩJ − Ω vanishes. Raises StepError if the map is too long."""
     ring, closed = _embed_closed_form(trace, names)
     form = closed_form.defect_of(ring, names, closed)
     decision, place = form.decide()
@@ -138,28 +148,27 @@ def prove_map(trace: Trace, names: tuple[str, ...]) -> Finding:
 
 def _embed_closed_form(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     """Return the map as elements of a ring."""
-    forms = write_expressions(trace.roots, _MOST_OF_MAP)
+    forms = write_expressions(trace.outputs, _MAX_MAP_OPERATIONS)
     if forms is None:
-        raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
-    return embed([check_expression(x, "map", "its closed form") for x in forms], names, _MOST_TERMS)
+        raise StepError(f"written out it has more than {_MAX_MAP_OPERATIONS} operations")
+    return embed([check_expression(x, "map", "its closed form") for x in forms], names, _MAX_TERMS)
 
 
 # -- where it is defined --------------------------------------------------------------------------
 
 
 def domain_of(tape: Tape) -> FormulaDomain:
-    """Collect the requirements of all operations on the tape, also of those that cancel in the
-    end."""
+    """Collect the requirements of all operations on the tape, also of those that cancel later."""
     requirements, words = list[Requirement](), list[str]()
     if tape.positive:
         requirements.append(Requirement(symbol("h"), ">"))
     for node in tape.nodes:
         operand = node.inputs[-1] if node.inputs else None
-        if operand is None or not _asks(node):
+        if operand is None or not _has_requirement(node):
             continue
-        inner = write_expressions([operand], _MOST_INSIDE)
+        inner = write_expressions([operand], _MAX_OPERAND_OPERATIONS)
         if inner is None:
-            words.append(_NOT_WRITTEN)
+            words.append(_UNWRITTEN_DOMAIN)
         else:
             requirements += _requirements_of(node, inner[0])
     return (
@@ -169,7 +178,7 @@ def domain_of(tape: Tape) -> FormulaDomain:
     )
 
 
-def _asks(node: Node) -> bool:
+def _has_requirement(node: Node) -> bool:
     power = node.operation == "power" and (node.value < 0 or node.value.denominator > 1)
     function = by_name().get(node.operation)
     return power or node.operation == "divide" or bool(function and function.domain)

@@ -1,6 +1,7 @@
-"""The trial of a user's step or map: what is measured of it, beside what is claimed.
+"""The trial of a user's step or map: its measurement, and the judgement of what is claimed of it.
 
-A claim that fails gets a counterexample, a place at which anybody can see it fail.
+A claim that fails gets a counterexample, a place at which anybody can see it fail. A place is a
+state with a time, a largest step size and the units of its coordinates.
 """
 
 import math
@@ -16,21 +17,25 @@ from verify.integrators.measures.distances import Distances, PlaceOrder, distanc
 from verify.integrators.measures.probes import DualProbe, probe_of
 from verify.integrators.measures.reading import DefectReading
 from verify.integrators.measures.structure_measurement import (
-    REFUTES,
+    REFUTING_RATIO,
     StructureMeasurement,
     structure_of,
 )
-from verify.integrators.measures.survey import NOWHERE, Request
+from verify.integrators.measures.survey import NO_REQUEST, Request
 from verify.integrators.places.trial_places import TrialPlace
-from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, judge_claims
+from verify.integrators.results import NO_CLAIMS, Claims, Counterexample, Finding, judge_claims
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, join_prose, prose
 from verify.verdict import Verdict
 
-# There are no distances of a map, which is for no H.
+# The structure, and the distances from the exact flow; None for a map, which has no H.
 Measurement = tuple[StructureMeasurement, Distances | None]
-_LACKING = 0.4  # of a power of h: a step's other terms make less of it
-_PLAINLY = 0.8  # of what is lacking at most
+# A quantity refutes a power of h if its slope is lower by this number; the higher terms of a
+# correct step change a slope by less.
+_REFUTING_DEFICIT = 0.4
+_CLEAR_SHARE = 0.8  # a deficit is clear if it is this part of the largest deficit
+_NOISE_FACTOR = 10  # a value shows a power only if it is larger than its noise by this factor
+_MAX_PLACES_SHOWN = 3  # failing places at which a counterexample is looked for
 _VERDICTS = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
 
 
@@ -41,17 +46,20 @@ class Trial:
     step: UserMap
     hamiltonian: Hamiltonian | None
     places: list[TrialPlace]
-    claims: Claims = NOTHING
-    request: Request = NOWHERE
+    claims: Claims = NO_CLAIMS
+    request: Request = NO_REQUEST
     _last: Measurement | None = field(default=None, init=False, repr=False)
 
     def measure(self, how: str, ladder: Sequence[Fraction] = ()) -> Measurement:
-        """Measure the structure and the distances, by dual numbers or by floats. Raises StepError,
-        and what the user's code raises."""
+        """Measure the structure and the distances, by dual numbers or by floats.
+
+        `how`: the kind of probe, "duals" or "floats". `ladder`: step sizes in place of the usual
+        ones. Raises StepError, and what the user's code raises.
+        """
         probe = probe_of(self.step, how)
         if isinstance(probe, DualProbe):
-            # Dual numbers may take another branch than floats do: what they measure would then be
-            # of another map.
+            # Dual numbers may take another branch of the code than floats do: they would then
+            # measure another map.
             must_agree(probe, self.places)
         structure, distances = structure_of(self.step, probe, self.places), None
         if self.hamiltonian is not None:
@@ -62,9 +70,9 @@ class Trial:
 
     @property
     def evidence(self) -> Measurement | None:
-        """The measurement in which a claim may be seen to fail: the last one, or a new one; None
-        where none succeeds."""
-        for how in self.step.ways:
+        """The measurement in which a claim may be seen to fail: the last one, else a new one, by
+        the first kind of probe that succeeds; None if none does."""
+        for how in self.step.probe_kinds:
             if self._last is None:
                 with suppress(Exception):  # the user's code may raise anything
                     self.measure(how)
@@ -74,31 +82,33 @@ class Trial:
 # -- the claims -----------------------------------------------------------------------------------
 
 
-def with_claims(finding: Finding, trial: Trial) -> Finding:
-    """Refute the finding where a claim fails, with a counterexample; leave it undecided where a
-    claim is not decided.
+def apply_claims(finding: Finding, trial: Trial) -> Finding:
+    """Return the finding with the verdict on the claims.
 
-    Where all that is claimed is shown, and that it is a scheme, nothing else that is undecided
-    counts.
+    - If a claim is false, or the step is no scheme, it is REFUTED, with a counterexample.
+    - Otherwise it is UNDECIDED if a claim is undecided.
+    - If all claims hold, and the step is shown to be a scheme, it is PROVED or MEASURED, even if
+      the finding left another question open.
     """
     judged_claims = judge_claims(trial.claims, finding)
-    failed = [claim for claim in judged_claims if claim.holds is not True]
-    false = [claim for claim in failed if claim.holds is False]
-    if not failed and finding.verdict is not Verdict.REFUTED:
-        waits = finding.verdict is Verdict.UNDECIDED and trial.claims != NOTHING
+    not_shown = [claim for claim in judged_claims if claim.holds is not True]
+    false = [claim for claim in not_shown if claim.holds is False]
+    if not not_shown and finding.verdict is not Verdict.REFUTED:
+        is_open = finding.verdict is Verdict.UNDECIDED and trial.claims != NO_CLAIMS
         return (
             replace(finding, verdict=_VERDICTS[finding.how])
-            if waits and finding.scheme
+            if is_open and finding.scheme
             else finding
         )
     if not false and finding.verdict is not Verdict.REFUTED:
         return replace(
             finding,
             verdict=Verdict.UNDECIDED,
-            reason=prose(failed[0].name, " is claimed and not decided: ", finding.reason),
+            reason=prose(not_shown[0].name, " is claimed and not decided: ", finding.reason),
         )
     if finding.verdict is Verdict.REFUTED:
-        finding = _but_for_area(finding, [claim.name for claim in judged_claims if claim.holds])
+        claims_that_hold = [claim.name for claim in judged_claims if claim.holds]
+        finding = _add_claims_that_hold(finding, claims_that_hold)
     if false:
         name = false[0].name
         reason = prose(name, " is claimed; ", false[0].evidence, " (", finding.reason, ")")
@@ -108,14 +118,15 @@ def with_claims(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, counterexample=counterexample(str(name), trial))
 
 
-def _but_for_area(finding: Finding, other_claims: Sequence[Prose]) -> Finding:
-    """Add to a refuted order which other claims hold all the same."""
+def _add_claims_that_hold(finding: Finding, claims: Sequence[Prose]) -> Finding:
+    """Add to the reason of a refuted order the claims that hold nevertheless."""
     area = [prose("det J ≡ 1")] if finding.area_preserving else []
-    stands = area or other_claims  # which is more than an order of ΔJ
-    if not stands:
+    # det J ≡ 1 implies every claim on the order of ΔJ, so that it stands alone.
+    statements = area or claims
+    if not statements:
         return finding
     how_shown = "proved" if finding.how == "proof" else "measured"
-    claim_names = join_prose(" and ", stands)
+    claim_names = join_prose(" and ", statements)
     reason = prose(
         "the order is refuted, not ", claim_names, f", which is {how_shown}: ", finding.reason
     )
@@ -126,14 +137,14 @@ def _but_for_area(finding: Finding, other_claims: Sequence[Prose]) -> Finding:
 
 
 def counterexample(name: str, trial: Trial) -> Counterexample | None:
-    """Find a place at which the claim of that name is seen to fail; None where there is none."""
+    """Return a counterexample to the claim of that name; None if no place shows it."""
     (structure, distances), step = trial.evidence or (None, None), trial.step
     if name in ("det J ≡ 1", "that it is symplectic"):
-        if structure is None or structure.worst.beyond <= REFUTES:
+        if structure is None or structure.worst.beyond <= REFUTING_RATIO:
             return None
-        # Of the readings that refute the one of the largest defect is shown: it is the easiest to
-        # confirm by hand.
-        clear = [x for x in structure.readings if x.beyond > REFUTES]
+        # Among the readings that refute the claim, the one with the largest defect is the easiest
+        # to confirm by hand.
+        clear = [x for x in structure.readings if x.beyond > REFUTING_RATIO]
         return counterexample_of_reading(step, max(clear, key=lambda x: x.defect), name)
     if name.startswith("ΔJ"):
         power = trial.claims.area_order or 1
@@ -146,26 +157,26 @@ def counterexample(name: str, trial: Trial) -> Counterexample | None:
     power = (trial.claims.order or 1) + 1
     failing = sorted(
         (x for x in (distances.places if distances else ()) if x.rows),
-        # The places of the lowest power come first, those that have not settled last.
+        # The places of the lowest power come first, those without a power last.
         key=lambda x: x.power if x.power is not None else 99,
     )
-    candidates = [_counterexample_of_place(step, x, power) for x in failing[:3]]
+    candidates = [_counterexample_of_place(step, x, power) for x in failing[:_MAX_PLACES_SHOWN]]
     return next((x for x in candidates if x is not None), None)
 
 
 def counterexample_of_reading(step: UserMap, reading: DefectReading, name: str) -> Counterexample:
-    """Build the counterexample of an entry of S, or of det J − 1, that is not 0."""
+    """Build the counterexample of a reading in which an entry of S, or det J − 1, is not 0."""
     z = dict(zip(step.names, reading.place.z, strict=True))
     h = reading.h if step.takes_step_size else None
-    t = reading.place.t if step.moving else None
+    t = reading.place.t if step.time_dependent else None
     if step.degrees == 1 or (
-        name == "det J ≡ 1" and abs(reading.volume) > REFUTES * reading.volume_noise
+        name == "det J ≡ 1" and abs(reading.volume) > REFUTING_RATIO * reading.volume_noise
     ):
         value = f"{reading.volume:.6e} ± {reading.volume_noise:.1e}"
         return Counterexample(z, h, "det J − 1", value, "0", t)
     indices = reading.largest_entry
     value = f"{reading.entries[indices]:.6e} ± {reading.noise[indices]:.1e}"
-    return Counterexample(z, h, f"the entry {step.entry(indices)} of S", value, "0", t)
+    return Counterexample(z, h, f"the entry {step.entry_name(indices)} of S", value, "0", t)
 
 
 def _counterexample_of_place(
@@ -178,24 +189,25 @@ def _counterexample_of_place(
 def _find_slow_shrinking(
     step: UserMap, place: TrialPlace, rows: list[tuple[float, float, float]], power: int, name: str
 ) -> Counterexample | None:
-    """Find two step sizes between which a quantity shrinks by less than its power says.
+    """Return the counterexample of a quantity that shrinks more slowly than h^power.
 
-    The larger ones are preferred, of those at which that shows as plainly as it does anywhere.
+    `rows`: step sizes, falling, each with the value and its noise. Among the pairs of neighbouring
+    step sizes that show this clearly, the one with the largest step sizes is taken.
     """
     pairs: list[tuple[float, float, float, float, float]] = []
-    for (large, larger_value, first), (small, smaller_value, second) in pairwise(rows):
+    for (large, large_value, large_noise), (small, small_value, small_noise) in pairwise(rows):
         # Both values must be well above their noise, else their ratio tells nothing of a power.
-        if larger_value > 10 * first and smaller_value > 10 * second:
-            bound = larger_value * (small / large) ** power
-            # With a value proportional to h^r this is power − r: the part of the power that is
-            # missing.
-            lacking = math.log(smaller_value / bound) / math.log(large / small)  # of the power
-            pairs.append((lacking, small, smaller_value, bound, large))
-    most_lacking = max((lacking for lacking, *_ in pairs), default=0.0)
-    if most_lacking < _LACKING:
+        is_clear = large_value > _NOISE_FACTOR * large_noise
+        if is_clear and small_value > _NOISE_FACTOR * small_noise:
+            bound = large_value * (small / large) ** power
+            # If the value is proportional to h^r, this is power − r.
+            deficit = math.log(small_value / bound) / math.log(large / small)
+            pairs.append((deficit, small, small_value, bound, large))
+    largest_deficit = max((deficit for deficit, *_ in pairs), default=0.0)
+    if largest_deficit < _REFUTING_DEFICIT:
         return None
     _, h, value, bound, larger_step = next(
-        pair for pair in pairs if pair[0] >= _PLAINLY * most_lacking
+        pair for pair in pairs if pair[0] >= _CLEAR_SHARE * largest_deficit
     )
     return Counterexample(
         dict(zip(step.names, place.z, strict=True)),
@@ -203,5 +215,5 @@ def _find_slow_shrinking(
         name,
         f"{value:.6e}",
         f"about {bound:.2e} for O(h^{power}), by that at h = {Fraction(larger_step)}",
-        place.t if step.moving else None,
+        place.t if step.time_dependent else None,
     )

@@ -1,1 +1,1 @@
-"""Kernels: step map → program → loop → N steps, and bounds on the rounding of one step."""
+"""Kernels: step map → program → loop → N steps, and bounds on the rounding error of one step."""

@@ -1,4 +1,7 @@
-"""The loop of one kernel in chunks, the notes it takes on the way, and its checkpoints."""
+"""A run of one kernel in chunks: the notes that it takes on the way, and its checkpoints.
+
+A note has the coordinates and observables at one stop.
+"""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -11,15 +14,15 @@ from verify import observables
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number_system import Arithmetic, State, SystemNumber
 from verify.arithmetic.systems.float64 import nearest_double
-from verify.kernels.kernel import Kernel, clock_inputs, first_rest
+from verify.kernels.kernel import Kernel, clock_inputs, initial_remainder
 from verify.kernels.notes import LazyNote, Notes, ReachedPoint, checkpoint_adapter
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
 from verify.lockstep import Course, clock
 from verify.scenes.results.run import SeriesPoint
 
-Progress = Callable[[int], None]  # called with the number of steps done
-ENTRIES = "symplectic_defect_entries"  # with it W's own entries are noted in `tangents`
+Progress = Callable[[int], None]  # is called with the number of steps done
+W_ENTRIES = "symplectic_defect_entries"  # a request to note the entries of W in `tangents`
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 
@@ -36,8 +39,8 @@ class _RunningPoint(NamedTuple):
 
 
 def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) -> Course[int]:
-    """Return the greatest number of steps below `count` that stays in range, by bisection.
-    `advance(n)` returns no states if one of n steps leaves the range."""
+    """Return the greatest number of steps below `count` that stay in range, by bisection.
+    `advance(n)` returns no states if one of n steps leaves the range, as one of `count` does."""
     # Raising the count never brings an orbit back into range, so the property is monotonic.
     good, bad = 0, count
     while bad - good > 1:
@@ -68,8 +71,8 @@ class ChunkedLoop:
         self.fixed += [number(x) for x in limits]
         if kernel.timed:
             self.fixed += [number(x) for x in clock_inputs(arithmetic, run.start).values()]
-        # If H is periodic in t, the clock is reset to the first period before every chunk, as a
-        # fixed-point t would leave its format.
+        # If H is periodic in t, whole periods are taken off t before every chunk: a fixed-point t
+        # would leave its format.
         self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
         self._position = {name: k for k, name in enumerate(kernel.state_names)}
@@ -82,11 +85,11 @@ class ChunkedLoop:
         tangent_names = tangent_map.names_of(kernel.coordinates)
         carried_names = (*(name for name in tangent_names if name in self._position), "done")
         self._tangent = carried_names if "growth" in self._position else ()
-        self._tangent += tuple(self._form) if ENTRIES in run.observables else ()
+        self._tangent += tuple(self._form) if W_ENTRIES in run.observables else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = run.section
-        # The label identifies the run: a checkpoint with another one is ignored, since its numbers
-        # would have other bits.
+        # The label identifies the run: a checkpoint with another label is ignored, since its
+        # numbers would have other bits.
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
@@ -103,23 +106,23 @@ class ChunkedLoop:
             start = start | self._clock_after(0)
         state: list[SystemNumber] = []
         start_names = (*self.kernel.coordinates, *self.kernel.start)
-        for kind, first in zip(self.kernel.kinds, start_names, strict=True):
-            value = start[first] if isinstance(first, str) else Fraction(first)
+        for kind, source in zip(self.kernel.kinds, start_names, strict=True):
+            value = start[source] if isinstance(source, str) else Fraction(source)
             state.append(nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
 
     def _clock_after(self, steps: int) -> dict[str, Fraction]:
-        """Return the values with which the kernel's clock starts after so many steps."""
+        """Return the start values of the kernel's clock after `steps` steps."""
         t = self.run.start["t"] + steps * self.run.start["h"]
         t = self.turns.time(t, self.arithmetic) if self.turns else t
-        return {"t": t} | first_rest(self.arithmetic, t)
+        return {"t": t} | initial_remainder(self.arithmetic, t)
 
     def _state_in_first_period(self) -> State:
         """Return the state with whole periods of H taken off t."""
         state, clock = list(self.state), self._clock_after(self.done)
-        for index, first in enumerate(self.kernel.start, start=len(self.kernel.coordinates)):
-            if isinstance(first, str) and first in clock:
-                state[index] = self.arithmetic.number(clock[first])
+        for index, source in enumerate(self.kernel.start, start=len(self.kernel.coordinates)):
+            if isinstance(source, str) and source in clock:
+                state[index] = self.arithmetic.number(clock[source])
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
@@ -128,12 +131,12 @@ class ChunkedLoop:
         """Step to the end, or until a number leaves the arithmetic's range; `done` is then the
         number of steps that stayed in it.
 
-        `goes_on` is called with the steps done after every chunk. Return False if it said no.
+        `goes_on(steps done)` is called after every stop. Return False if it does, else True.
         """
         run = self.run
         self.arithmetic.expect(self.kernel.function, run.steps - self.done)
-        # A call with 0 steps compiles the kernel, and is not timed.
-        yield from self._advance(0)  # compiles: `seconds` is the stepping alone
+        # A call with 0 steps compiles the kernel, so that `seconds` is the time of the steps alone.
+        yield from self._advance(0)
         while self.done < run.steps:
             every, stops = self._next_stops()
             begun = clock()
@@ -146,19 +149,19 @@ class ChunkedLoop:
                     return False
                 if run.keeper.due(self._label):
                     self.keep()
-            # A number left the range in the next `every` steps.
+            # Within the next `every` steps a number leaves the range.
             if len(states) < stops:
                 self.done += yield from last_good(every, self._advance)
                 return True
         return True
 
     def _next_stops(self) -> tuple[int, int]:
-        """Return the number of steps to the next stop, and the number of stops: to a note or to
-        several, or part of the way to a note that is far."""
+        """Return the number of steps from stop to stop, and the number of stops in one call:
+        several stops are the next notes; one is the next note, or a chunk on the way to it."""
         to_note, chunk = self.section - self.done % self.section, self.arithmetic.chunk
         chunk = min(chunk, self.turns.steps) if self.turns else chunk
         remaining = self.run.steps - self.done
-        # The first note is made by itself, since a run may be asked there whether to go on.
+        # The first note is the only stop of its call: the run may end there.
         if self.done and to_note == self.section and 2 * self.section <= min(chunk, remaining):
             return self.section, min(chunk, remaining) // self.section
         return min(chunk, to_note, remaining), 1
@@ -188,11 +191,11 @@ class ChunkedLoop:
     def _note(self) -> None:
         """Note the state. All notes are replaced at once, since an interruption may come at any
         moment."""
-        before, state, done = self._latest, self.state, self.done
+        previous, state, done = self._latest, self.state, self.done
         # The tuple is complete before it is assigned to `_latest`: a KeyboardInterrupt in between
         # leaves the old, consistent notes.
         seen = self._extremes(state) if self._extreme else {}
-        trail, tangents, series = before.trail, before.tangents, before.series
+        trail, tangents, series = previous.trail, previous.tangents, previous.series
         if done % self.section == 0 or done == self.run.steps:
             if self._tangent:
                 note = LazyNote(self._tangent, self._tangent_value, state, done)
@@ -215,34 +218,33 @@ class ChunkedLoop:
         return extremes
 
     def _tangent_value(self, name: str, state: State, done: int) -> Fraction:
-        """Return one number of the tangent map's notes, as the exact rational that it is."""
+        """Return one number of the tangent map's notes, as an exact rational."""
         if name in self._form:
             return self._unscale(1, self._total(name, state, self._exact))
         return Fraction(done) if name == "done" else self._exact(state[self._position[name]])
 
     def _exact_value(self, name: str, state: State, done: int) -> Fraction:
-        """Return p, q or an observable after the steps done, as the exact rational that it is."""
+        """Return a coordinate or an observable after the steps done, as an exact rational."""
         value = self._observe(name, state, done, self._exact)
         return value - self._observables[name].begins if name in self._observables else value
 
     def _observe(
         self, name: str, state: State, done: int, convert: Callable[[SystemNumber], Fraction]
     ) -> Fraction:
-        """Return the same from the carried numbers, or from their radii, with the value it began
-        with."""
+        """Return a coordinate or an observable of the carried numbers (or of their radii, by
+        `convert`), without its initial value `begins` subtracted."""
         if name not in self._observables:
             return self._total(name, state, convert)
         observable = self._observables[name]
         carried = self._form if observable.carried == "w_" else [observable.carried]
-        # W has several accumulators, all others one; each carries 2^(s·shift) times its value.
+        # W has several accumulators, others one, of the value times 2^(run's · observable's shift).
         totals = (self._total(entry, state, convert) for entry in carried)
         return observable.read([self._unscale(observable.shift, x) for x in totals], done)
 
     def _total(
         self, name: str, state: State, convert: Callable[[SystemNumber], Fraction]
     ) -> Fraction:
-        """Return the carried number of that name, plus the remainder that a compensated kernel
-        carries with it."""
+        """Return the carried number of that name, plus its remainder in a compensated kernel."""
         total = convert(state[self._position[name]])
         if (rest := f"{name}_rest") in self._position:
             total += convert(state[self._position[rest]])
@@ -256,8 +258,7 @@ class ChunkedLoop:
         return value / (1 << scale) if scale else value
 
     def radii(self) -> dict[str, Fraction]:
-        """Return how far the last values may be from the true ones, if numbers are
-        enclosures."""
+        """Return the radii of the last values; empty without enclosures or after an early end."""
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
             return {}
@@ -275,8 +276,8 @@ class ChunkedLoop:
     # -- checkpoints --------------------------------------------------------------------------
 
     def keep(self) -> None:
-        """Write a checkpoint: all that is needed to go on with the same bits."""
-        # A ball's radius is not kept; such runs are short.
+        """Write a checkpoint, from which the run can go on with the same bits."""
+        # Runs in balls have no checkpoints, as these hold no radii; such runs are short.
         if self.arithmetic.radius is None and self._latest.done:
             self.run.keeper.save(
                 self._label, checkpoint_adapter().dump_python(self._evaluate_notes(), mode="json")
@@ -290,7 +291,7 @@ class ChunkedLoop:
         return replace(reached, state=state, trail=trail, tangents=tangents)
 
     def _restore(self, checkpoint: Mapping[str, Any]) -> ReachedPoint:
-        """Read a checkpoint, and set the state from it."""
+        """Set the state from a checkpoint, and return its point."""
         reached = checkpoint_adapter().validate_python(checkpoint)
         self.state = tuple(
             float(x) if kind == "float" else self.arithmetic.number(x)

@@ -1,15 +1,15 @@
-"""Step map + observables → a loop over N steps in one arithmetic, with nothing that was not
+"""Step map + observables → a loop over N steps in one arithmetic, which computes only what was
 requested.
 
-The statements of the loop that use a step's values are written in `verify.kernels.statements`.
+`verify.kernels.statements` writes the statements of the loop that use a step's values.
 
-If H depends on time, step k is made at t = t₀ + k h, without an error that accumulates. Floating
-point: k is carried, an exact number, and t₀ + k h is rounded three times in addition to t₀ itself.
-Fixed point: t₀ and h in the format are carried and added, which is exact; the parts that the format
-cuts off from both are carried with them, 2^60 times as large, so that t is right to its last place.
+If H depends on time, step k is made at t = t₀ + k h; the error of t does not accumulate. In
+floating point the integer k is carried, exactly; t₀, h, the product and the sum are rounded once
+each. In fixed point the clock adds h to t, which is exact in the format; the remainders of t₀ and h
+that the format cuts off are carried beside it, times 2^60, so that t is right to its last place.
 
-If an arithmetic's numbers have an absolute precision (fixed point), the loop ends where p, q, Λ,
-Π det J or a function's value leaves the limits that are passed with the parameters.
+If an arithmetic's numbers have an absolute precision (fixed point), the loop ends when p, q, Λ,
+Π det J, an entry of M or a function's value leaves the limits that are passed with the parameters.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -28,18 +28,18 @@ from verify.schemes.maps.step_map import StepMap
 
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
-_OF_MATRIX = "reach_m"  # if M is carried
-_PLACES = 60  # bits by which the cut-off remainder is scaled up
-_ERRORS = 4  # roundings of t, each at most a unit of |t₀| + N h; in fixed point fewer
+_MATRIX_LIMIT = "reach_m"  # one more limit, if M is carried
+_REMAINDER_BITS = 60  # a remainder is carried times 2^60
+_CLOCK_ROUNDINGS = 4  # each is at most a unit of |t₀| + N h; fixed point has fewer
 
 
 @dataclass(frozen=True)
 class Clock:
     """The time in a kernel's source.
 
-    Names of the kernel's `arguments` and of `carried` numbers, with the start's name or number;
-    `reading` is the statement that computes t at the beginning of a step, `ticks` are those at its
-    end.
+    `arguments`: the names of the kernel's arguments for it. `carried`: (name, start value) of its
+    carried numbers; a start value is a number, or a name among the run's inputs. `reading`: the
+    statement that computes t at the beginning of a step; `ticks`: the statements at its end.
     """
 
     arguments: tuple[str, ...]
@@ -49,7 +49,7 @@ class Clock:
     absolute: bool
 
     def constants(self, arithmetic: Arithmetic) -> dict[str, SystemNumber]:
-        """Return the constants that the statements name."""
+        """Return the constants of the statements, by name."""
         return {} if self.absolute else {"clock_one": arithmetic.number(Fraction(1))}
 
 
@@ -59,41 +59,40 @@ _FLOATING = Clock(
 _FIXED = Clock(
     ("h_rest",),
     (("clock", "t"), ("clock_rest", "t_rest")),
-    f"t = clock + shifted(clock_rest, {_PLACES})",
+    f"t = clock + shifted(clock_rest, {_REMAINDER_BITS})",
     ("clock = clock + h", "clock_rest = clock_rest + h_rest"),
     absolute=True,
 )
 
 
-def clock_of(arithmetic: Arithmetic) -> Clock:
+def choose_clock(arithmetic: Arithmetic) -> Clock:
     """Return the clock for kernels of this arithmetic."""
     return _FIXED if arithmetic.absolute else _FLOATING
 
 
 def clock_inputs(arithmetic: Arithmetic, start: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Return the values of a clock's arguments by their names."""
+    """Return the values of a clock's arguments, by name."""
     if arithmetic.absolute:
-        return {"h_rest": _cut(arithmetic, start["h"])}
+        return {"h_rest": _scaled_remainder(arithmetic, start["h"])}
     return {"t0": start["t"]}
 
 
-def first_rest(arithmetic: Arithmetic, t: Fraction) -> dict[str, Fraction]:
-    """Return the remainder that is carried with t from its start."""
-    return {"t_rest": _cut(arithmetic, t)} if arithmetic.absolute else {}
+def initial_remainder(arithmetic: Arithmetic, t: Fraction) -> dict[str, Fraction]:
+    """Return the remainder of the initial t, by name; empty in floating point, which has none."""
+    return {"t_rest": _scaled_remainder(arithmetic, t)} if arithmetic.absolute else {}
 
 
-def _cut(arithmetic: Arithmetic, x: Fraction) -> Fraction:
-    """Return the part of x that the format cuts off, as it is carried."""
-    # The remainder is exact: a rational minus the rational that the format holds.
-    cut: Fraction = x - arithmetic.exact(arithmetic.number(x))
-    return cut * (1 << _PLACES)
+def _scaled_remainder(arithmetic: Arithmetic, x: Fraction) -> Fraction:
+    """Return x minus its number in the format, times 2^60: exactly, as a rational."""
+    remainder: Fraction = x - arithmetic.exact(arithmetic.number(x))
+    return remainder * (1 << _REMAINDER_BITS)
 
 
-def error_of_time(arithmetic: Arithmetic, latest: Fraction) -> Fraction:
-    """Return a bound on the error of t, `latest` being the greatest |t₀| + k h."""
-    # In fixed point a unit is absolute; in floating point it is relative to the largest time.
+def bound_time_error(arithmetic: Arithmetic, latest: Fraction) -> Fraction:
+    """Return a bound on the error of t; `latest` is the greatest |t₀| + k h."""
+    # In fixed point the unit is absolute; in floating point it is relative to the largest time.
     unit = Fraction(1, 2**arithmetic.bits)
-    return _ERRORS * unit * (1 if arithmetic.absolute else latest)
+    return _CLOCK_ROUNDINGS * unit * (1 if arithmetic.absolute else latest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +101,11 @@ class Kernel(Computation):
 
     `function(steps, h, *parameters, *scales, *limits, *clock, *state)` → (steps done, *state).
 
-    `state_names` names the state and accumulators in their order: p, q, then those of the
-    observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translator`), `start`
-    has the initial values, coordinates apart: numbers, or names of the run's own. An arithmetic of
-    absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with.
-    `lowering` writes the program; `names` is what the source's names stand for.
+    `state_names`: the carried numbers in their order: p, q, then the accumulators of observables;
+    `kinds`: the kind of each (see `verify.arithmetic.wide.translator`). `start`: the initial values
+    of all but the coordinates: numbers, or names among the run's inputs. An arithmetic of absolute
+    precision has `scales` and `limits`, with which the loop's guard compares. `lowering` writes the
+    program; `names`: the values of the names in the source.
     """
 
     function: Callable[..., tuple[int, *tuple[SystemNumber, ...]]]
@@ -128,14 +127,13 @@ def kernel_for(
     observables: frozenset[str],
     compensated: bool = False,
 ) -> Kernel:
-    """Return the kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled
-    once."""
+    """Return the kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), cached."""
     step_map = step_map_of(hamiltonian, scheme)
     return KernelWriter(step_map, arithmetic, observables, compensated).kernel()
 
 
 class KernelWriter:
-    """Writes the source of one kernel."""
+    """A writer of the source of one kernel."""
 
     def __init__(
         self,
@@ -163,7 +161,7 @@ class KernelWriter:
             self.computation, self.lowering, arithmetic, observables, compensated
         )
         self.state = self.statements.state
-        self.clock = clock_of(arithmetic) if self.computation.timed else None
+        self.clock = choose_clock(arithmetic) if self.computation.timed else None
         # The clock is carried behind the state, so that p and q keep their places.
         for name, start in self.clock.carried if self.clock else ():
             self.statements.carry(name, start)
@@ -171,10 +169,9 @@ class KernelWriter:
     # -- the computation ----------------------------------------------------------------------
 
     def kernel(self) -> Kernel:
-        """Compile the kernel. UnsupportedError if the arithmetic lacks something that it
-        needs."""
+        """Compile the kernel. Raises UnsupportedError if the arithmetic lacks something for it."""
         lines = self.statements.all_lines()
-        matrix = (_OF_MATRIX,) * bool(self.computation.matrix)
+        matrix = (_MATRIX_LIMIT,) * bool(self.computation.matrix)
         limits = (*LIMITS, *matrix) if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
         clock = self.clock.arguments if self.clock else ()
@@ -203,30 +200,32 @@ class KernelWriter:
         )
 
     def check(self, roots: Sequence[int]) -> None:
-        """Raise UnsupportedError if the arithmetic lacks a function, or solves no equations."""
+        """Raise UnsupportedError if the arithmetic lacks a function, or cannot solve the step's
+        equations."""
         for function in sorted(self.lowering.function_names(roots)):
             if function not in self.arithmetic.functions:
                 raise UnsupportedError(f"{self.arithmetic.name} has no {function}")
-        # Newton's method needs numbers of a relative precision that are no enclosures: it is
-        # written neither for fixed point nor for balls.
+        # Newton's method needs floating point: its loop is written neither for fixed point nor for
+        # enclosures.
         rounds = not self.arithmetic.absolute and self.arithmetic.radius is None
         if self.lowering.solves(roots) and not rounds:
             raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
     def constants_of_tangent(self) -> dict[str, SystemNumber]:
-        """Return the constants of the tangent map's lines, as doubles by their names."""
+        """Return the constants of the tangent map's lines, as doubles, by name."""
         tangent = self.tangent
         return tangent.lowering.named_constants(nearest_double, tangent.change) if tangent else {}
 
-    # -- how it is written --------------------------------------------------------------------
+    # -- the source ---------------------------------------------------------------------------
 
     def assemble(
         self, roots: Sequence[int], statements: list[str], more_arguments: Sequence[str]
     ) -> str:
-        """Return the kernel's source for the operations of these roots; more arguments follow H's
-        parameters."""
-        # Static lines do not depend on the state: they stand before the loop, and cost nothing per
-        # step.
+        """Return the kernel's source: the operations that the roots need, and the statements.
+
+        `more_arguments` follow H's parameters in the signature.
+        """
+        # Static lines do not depend on the state: they stand before the loop.
         static, dynamic = self.lowering.lines(roots)
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)
@@ -245,7 +244,7 @@ class KernelWriter:
             [
                 f"def kernel({arguments}):",
                 *(f"    {line}" for line in static),
-                "    for k in range(steps):",  # the lines before it are the same for every k
+                "    for k in range(steps):",
                 *(f"        {line}" for line in [*dynamic, *statements]),
                 *([f"        if not ({guard}): return k, {names}"] if guard else []),
                 f"    return steps, {names}",
@@ -254,8 +253,7 @@ class KernelWriter:
         )
 
     def guard(self, roots: Sequence[int]) -> str:
-        """Return the condition that holds as long as the orbit is in range; empty if nothing is
-        checked."""
+        """Return the condition that holds while the orbit is in range; empty if there is none."""
         if not self.arithmetic.absolute:
             template = self.arithmetic.guard
             inside = (template.format(x=x) for x in self.coordinates) if template else ()
@@ -263,10 +261,10 @@ class KernelWriter:
         limit_of = {name: f"reach_{name[0]}" for name in self.coordinates}
         products = [name for name, _, _ in self.state if name in ("part", "plain")]
         limit_of |= dict.fromkeys(products, "reach_part")
-        limit_of |= dict.fromkeys(self.computation.matrix, _OF_MATRIX)
-        # Sums and products cannot overflow while p, q and function values are within their limits:
-        # `verify.kernels.stepping.limits` has chosen these so. Only unbounded functions are
-        # checked.
+        limit_of |= dict.fromkeys(self.computation.matrix, _MATRIX_LIMIT)
+        # While p, q and function values are within their limits, no sum or product overflows:
+        # `verify.kernels.stepping.limits` chooses the limits so. A function whose value stays in
+        # any range that contains its argument is not checked.
         for index in self.lowering.live(roots):
             if may_leave_range(self.program.ops[index]):
                 limit_of[self.lowering.name(index)] = "reach_value"

@@ -1,4 +1,4 @@
-"""Notes on the way of a run, numbers by their names, and the point with them that is kept."""
+"""The notes of a run, numbers by name, and the point of a run that a checkpoint keeps."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,8 +17,8 @@ Note = Mapping[str, Fraction]
 
 
 class LazyNote(Mapping[str, Fraction]):
-    """The numbers of a state after so many steps, each computed when it is first read: most notes
-    are hardly read."""
+    """The numbers of a state at one stop; a number is computed when it is first read, since most
+    are never read."""
 
     __slots__ = ("_cache", "_make", "_names", "_state", "_steps_done")
 
@@ -29,7 +29,7 @@ class LazyNote(Mapping[str, Fraction]):
         state: Sequence[Any],
         done: int,
     ) -> None:
-        """`make`: computes the number of that name from the state and the steps done."""
+        """`make` computes the number of a name from the state and the number of steps done."""
         self._names, self._make, self._state, self._steps_done = names, make, state, done
         self._cache: dict[str, Fraction] | None = None
 
@@ -50,13 +50,12 @@ class LazyNote(Mapping[str, Fraction]):
 
     @property
     def state(self) -> Sequence[Any]:
-        """The state that the numbers are computed from, as the arithmetic has it."""
+        """The state from which the numbers are computed, in the arithmetic's numbers."""
         return self._state
 
 
 class Notes(Sequence[T]):
-    """An immutable sequence of notes; adding one makes another sequence, which shares the older
-    notes."""
+    """An immutable sequence of notes; `and_then` returns another one, which shares these notes."""
 
     __slots__ = ("_count", "_items")
 
@@ -74,25 +73,26 @@ class Notes(Sequence[T]):
         return iter(self._items[: self._count])
 
     def and_then(self, item: T) -> "Notes[T]":
-        """Return these and one more."""
-        # Notes of another branch, or of an interrupted call, may lie behind these.
+        """Return these notes and one more."""
+        # The list is shared and only `_count` differs, so that this takes constant time; but
+        # another sequence, or an interrupted call, may have added notes to the list: then it is
+        # copied.
         shared = self._items if len(self._items) == self._count else self._items[: self._count]
         shared.append(item)
-        # The list is shared and only `_count` differs, so that adding a note takes constant time.
-        after: Notes[T] = Notes()
-        after._items, after._count = shared, self._count + 1
-        return after
+        longer: Notes[T] = Notes()
+        longer._items, longer._count = shared, self._count + 1
+        return longer
 
 
 @dataclass(frozen=True)
 class ReachedPoint:
-    """The point that a run has reached after some chunks, with its notes: all that a checkpoint
-    keeps.
+    """The point that a run has reached after some chunks, with its notes: the content of a
+    checkpoint.
 
-    `trail` has p, q and the observables at points on the way and at the last step done, as the
-    exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
-    same points, with the entries of W (`w_a_b`, a < b) if they are requested. `state`: all that is
-    carried; `seen`: extremes since the last note.
+    `trail`: the coordinates and the observables at the noted steps and at the last step done, as
+    exact rationals. `tangents`: the numbers of `verify.kernels.step.tangent_map` at the same steps,
+    with the entries of W (`w_a_b`, a < b) if they are requested. `state`: the carried numbers;
+    `seen`: the extremes since the last note.
     """
 
     done: int = 0
@@ -106,5 +106,5 @@ class ReachedPoint:
 
 @cache
 def checkpoint_adapter() -> TypeAdapter[ReachedPoint]:
-    """Return the reader and writer of kept points, made once."""
+    """Return the reader and writer of checkpoints' points."""
     return TypeAdapter(ReachedPoint)

@@ -1,9 +1,9 @@
 """Rounding errors of a program's values, bounded operation by operation over a box of states.
 
-Every value gets an interval that holds it for all states in the box, and a bound on the error of
-its computed value there. The rules are those of forward error analysis, without linearisation:
-with |x̂ − x| ≤ a and |ŷ − y| ≤ b, |x̂ŷ − xy| ≤ |x| b + |y| a + a b, and a function's error is its
-greatest slope over the interval, widened by a, times a; each operation adds its own rounding.
+Every value gets an interval that contains it for all states in the box, and a bound on the error of
+the computed value there. The rules are those of forward error analysis, without linearisation. With
+|x̂ − x| ≤ a and |ŷ − y| ≤ b, |x̂ŷ − xy| ≤ |x| b + |y| a + a b. The error of a function is a times its
+greatest slope over the interval of x widened by a. Each operation adds its own rounding error.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,12 +20,12 @@ from verify.kernels.step.kinds import Op
 from verify.kernels.step.operations import StepProgram
 
 Ball = flint.arb
-PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits
+PRECISION_BITS = 96  # for intervals and bounds: their first digits suffice
 
 
 @dataclass(frozen=True)
 class RoundedValue:
-    """An interval that holds the exact value, and a bound on the error of the computed one."""
+    """An interval that contains the exact value, and a bound on the computed value's error."""
 
     interval: Ball
     error: Ball
@@ -42,17 +42,17 @@ class RoundedValue:
 
     @property
     def computed_interval(self) -> Ball:
-        """An interval that holds the computed value, not only the exact one."""
+        """An interval that contains both the computed and the exact value."""
         return self.interval + self.error * flint.arb(0, 1)
 
 
-Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
+Rounding = Callable[[Op, Ball], Ball]  # (operation, magnitude of its result) → rounding error
 
 
 def rounding_of(arithmetic: Arithmetic) -> Rounding:
-    """Return the rounding error of one operation of the arithmetic, which must be known."""
+    """Return the bound on the rounding error of an operation; the arithmetic must have one."""
     rounding = arithmetic.rounding
-    assert rounding is not None, arithmetic.name  # noqa: S101 - the caller's condition
+    assert rounding is not None, arithmetic.name  # noqa: S101 - the caller checks it
 
     def rounding_error(op: Op, size: Ball) -> Ball:
         if op.kind == "const":
@@ -63,12 +63,12 @@ def rounding_of(arithmetic: Arithmetic) -> Rounding:
     return rounding_error
 
 
-_UNIT, _LEAST = flint.arb(2) ** -52, flint.arb(2) ** -1000
-FLOAT: Rounding = lambda op, size: size * _UNIT + _LEAST  # noqa: E731
+_FLOAT64_UNIT, _FLOAT64_UNDERFLOW = flint.arb(2) ** -52, flint.arb(2) ** -1000
+FLOAT64_ROUNDING: Rounding = lambda op, size: size * _FLOAT64_UNIT + _FLOAT64_UNDERFLOW  # noqa: E731
 
 
 def _fmpq(x: Fraction) -> flint.fmpq:
-    """Return flint's rational, whose differences take a tenth of the time."""
+    """Return x as flint's rational, which subtracts in a tenth of the time."""
     return flint.fmpq(x.numerator, x.denominator)
 
 
@@ -79,11 +79,11 @@ def analyse(
     rounding: Rounding,
     limit: Ball | None = None,
 ) -> dict[int, RoundedValue] | None:
-    """Return each live operation's value over the inputs' intervals; None if one may be
-    undefined.
+    """Return the value of each live operation over the inputs' intervals, by index; None if a value
+    may be undefined.
 
-    `limit`, for inputs without an error: if a function may leave a range, its values are taken
-    to be within ±limit, since the kernel's guard ends the loop otherwise.
+    `limit`, for inputs without an error: the values of a function that may leave ±limit are assumed
+    to be in it, since the kernel's guard ends the loop otherwise.
     """
     values: dict[int, RoundedValue] = {}
     for index in live:
@@ -91,11 +91,9 @@ def analyse(
         if op.kind == "input":
             values[index] = inputs[op.name]
             continue
-        if op.kind == "loop":  # how far Newton's method is from the solution is not counted
+        if op.kind == "loop":  # the error of Newton's method is not bounded here
             return None
         interval, error = _value(op, [values[a] for a in op.args])
-        # The kernel's guard ends the loop if such a value leaves ±limit, so larger ones need not
-        # be followed.
         if limit is not None and _function(op)[0] in BALLS and not _is_within(interval, limit):
             interval = limit * flint.arb(0, 1)
         if not (interval.is_finite() and error.is_finite()):
@@ -112,8 +110,8 @@ def _is_within(interval: Ball, limit: Ball) -> bool:
 
 
 def _value(op: Op, args: Sequence[RoundedValue]) -> tuple[Ball, Ball]:
-    """Return the interval of the exact result, and the error caused by the errors of the
-    arguments."""
+    """Return the interval of the exact result, and a bound on the error that the arguments' errors
+    cause."""
     zero = flint.arb(0)
     match op.kind:
         case "const":
@@ -136,25 +134,27 @@ def _value(op: Op, args: Sequence[RoundedValue]) -> tuple[Ball, Ball]:
     x = args[0]
     kind, degree = _function(op)
     value = BALLS[kind](x.interval, degree)
-    if x.error.is_zero():  # of no matter then is a slope without a bound
+    if x.error.is_zero():  # the slope, which may be unbounded, does not matter then
         return value, zero
-    # By the mean value theorem, with the slope over an interval that holds x and x̂.
+    # By the mean value theorem, with the slope over an interval that contains x and x̂.
     return value, _slope(kind, degree, x.computed_interval).abs_upper() * x.error
 
 
 def _function(op: Op) -> tuple[str, int]:
-    """Return the kind of a function among `BALLS`, and a root's degree."""
+    """Return the operation's kind, or the name of the function that it calls; and the degree of a
+    root, else 1."""
     if op.kind == "call":
         return op.function.name, 1
     return op.kind, op.degree if op.kind == "root" else 1
 
 
 def _slope(kind: str, degree: int, x: Ball) -> Ball:
-    """Return a ball that holds the slopes of a function at x, or a bound on them."""
+    """Return a ball that contains the slopes of a function over x (up to their sign), or a bound on
+    their size."""
     if kind == "inverse":
         return square(1 / x)
-    # The slope of x^(1/n) is x^(1/n)/(n x), which a ball around 0 makes infinite: then None is
-    # returned.
+    # The slope of x^(1/n) is x^(1/n)/(n x). If x contains 0 it is not finite, and `analyse` returns
+    # None.
     if kind == "root":
         return x.root(degree) / (degree * x)
     function = in_rings()[kind]

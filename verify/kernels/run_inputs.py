@@ -1,9 +1,8 @@
-"""The inputs of a run in a kernel, apart from the arithmetic.
+"""The inputs of a run in a kernel, whatever the arithmetic.
 
-Whole periods of H(p, q, t) are taken off t if it is too large for a fixed-point format.
-
-If H has the period P in t, a step from t is the step from t − m P. As P is 2π/ω more often than
-not, t − m P is rounded: by 2^−20 of the format's unit at most, whatever m is.
+If H has the period P in t, a step from t is the step from t − m P. So whole periods are taken off a
+t that is too large for a fixed-point format. Since P is mostly irrational, 2π/ω, t − m P is rounded
+to at most 2^−20 of the format's unit, whatever m is.
 """
 
 from __future__ import annotations
@@ -27,19 +26,21 @@ from verify.kernels.kernel import Kernel
 from verify.kernels.step.computation import step_map_of
 from verify.lazy_sympy import sympy
 
-_LARGE = 2**12  # of t, and of the angle that it makes: in the format are numbers below 2^15
-_SMALL = 16  # times up to which no period is needed
-_PERIODS = 256  # that t goes on before some are taken off again
-_SPARE = 24  # bits that t − m P has beyond those of the format
-_ABOVE_PI = Fraction(22, 7)
+_MAX_TIME = 2**12  # for t and for the angle 2π t/P; the format has numbers below 2^15
+_SMALL_TIME = 16  # up to this t no period is taken off
+_PERIODS_PER_LOOP = 256  # after so many, periods are taken off t again
+_GUARD_BITS = 24  # t − m P is computed with so many bits more than the format has
+_PI_BOUND = Fraction(22, 7)  # is greater than π
 
 Times = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True)
 class Turns:
-    """The period P = `factor` π^`power`. From one `time` on a loop goes `steps` steps at most, all
-    of them made between `times`."""
+    """The period P = `factor` π^`power` of H in t, with its multiples taken off t.
+
+    From a reduced `time` a loop makes at most `steps` steps; all of them lie between `times`.
+    """
 
     factor: Fraction
     power: int
@@ -50,38 +51,39 @@ class Turns:
         """Return t − m P, between −P and P."""
         size = max(abs(t), self.factor, 1 / self.factor).__ceil__().bit_length()
         # m may have `size` bits and multiplies the rounding of P, hence the extra bits.
-        with working_precision(arithmetic.bits + _SPARE + 3 * size):
+        with working_precision(arithmetic.bits + _GUARD_BITS + 3 * size):
             period: Ball = rational_ball(self.factor) * flint.arb.pi() ** self.power
-            whole = round(midpoint_and_radius(rational_ball(t) / period)[0])
-            return midpoint_and_radius(rational_ball(t) - whole * period)[0]
+            multiple = round(midpoint_and_radius(rational_ball(t) / period)[0])
+            return midpoint_and_radius(rational_ball(t) - multiple * period)[0]
 
 
 def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | None:
-    """Return the period to take off; None if the times are small enough, or H is not known to
-    have a period in t."""
+    """Return the period to take off; None if the times are small enough, or no period of H in t is
+    known."""
     latest = max(map(abs, times))
-    period = period_in(hamiltonian, "t") if latest > _SMALL else None
+    period = period_in(hamiltonian, "t") if latest > _SMALL_TIME else None
     if period is None:
         return None
     power = 1 if period.has(sympy.pi) else 0
     number = period / sympy.pi**power
     factor = Fraction(int(number.p), int(number.q))
-    above = factor * _ABOVE_PI**power
-    # The angle 2π t/P stays below 2^12 too if t/P is below 2^12/8, as 2π < 8.
-    if latest < _LARGE and latest / factor < _LARGE / 8:
+    period_bound = factor * _PI_BOUND**power
+    # Then the angle 2π t/P is also below 2^12, since 2π < 8 and P ≥ factor.
+    if latest < _MAX_TIME and latest / factor < _MAX_TIME / 8:
         return None
-    steps = max(1, (_PERIODS * factor / h).__floor__())
-    return Turns(factor, power, steps, (-above, above + steps * h))
+    steps = max(1, (_PERIODS_PER_LOOP * factor / h).__floor__())
+    return Turns(factor, power, steps, (-period_bound, period_bound + steps * h))
 
 
-SECTIONS = 16  # notes of a run, if nothing is said
+DEFAULT_SECTIONS = 16  # the number of notes of a run
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
-    """Return H with its parameters as the kernel's arguments, if the scheme accepts it so.
+    """Return H with its parameters as the kernel's arguments, if the scheme has a map of it; else H
+    with the parameters' values.
 
-    A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
-    a = 1; then the values are put in.
+    A scheme may have a map for some values only: symplectic Euler has one of (a − 1) p q + … for
+    a = 1.
     """
     generic = hamiltonian.with_symbols()
     return generic if _accepts(generic, scheme) else Hamiltonian(hamiltonian.exact)
@@ -98,12 +100,11 @@ def _accepts(hamiltonian: Hamiltonian, scheme: str) -> bool:
 
 
 class RunInputs:
-    """H, a scheme, a starting point, a number of steps, and the observables requested of them.
+    """H, a scheme, a starting point, a number of steps, and the requested observables.
 
-    `start` has p, q, the step size h, and the time t if H depends on it.
-
-    The state is noted `points` times on the way if a series is kept, else `sections` times.
-    `shares_kernel`: so many other runs use the same kernel that compiling it pays.
+    `start`: the coordinates, the step size h, and the time t if H depends on it. The state is noted
+    `points` times if a series is kept (`points` > 0), else `sections` times. `shares_kernel`: so
+    many other runs use the same kernel that it is worth compiling.
     """
 
     def __init__(
@@ -115,7 +116,7 @@ class RunInputs:
         observables: frozenset[str],
         points: int,
         keeper: Keeper = NOTHING,
-        sections: int = SECTIONS,
+        sections: int = DEFAULT_SECTIONS,
         shares_kernel: bool = False,
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
@@ -139,27 +140,26 @@ class RunInputs:
         """Return the same run with other observables, and without a series."""
         run = copy(self)
         run.observables, run.points = observables, 0
-        run.sections = SECTIONS
+        run.sections = DEFAULT_SECTIONS
         return run
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
-        """Return h, the parameters and the scales by their names in the kernel's source."""
-        # κ = 2^s h^r is computed exactly here and rounded once, as ΔJ/h^r is what the program
-        # evaluates.
+        """Return h, the parameters and the scales, by their names in the kernel's source."""
+        # The program evaluates ΔJ/h^r; κ = 2^s h^r is computed exactly here, and rounded once.
         h = self.start["h"]
         parameters = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
         scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
         return {"h": h, **parameters, **(scales if kernel.scales else {})}
 
     def turns(self, arithmetic: Arithmetic) -> Turns | None:
-        """Return the periods that are taken off t in this arithmetic; None if none are."""
+        """Return the period that is taken off t in this arithmetic; None if there is none."""
         if not (arithmetic.absolute and self.hamiltonian.time_dependent):
             return None
         return turns_of(self._hamiltonian_of_user, self._all_times(), self.start["h"])
 
     def times(self, arithmetic: Arithmetic) -> Times | None:
-        """Return the first and the last time at which a step is made in this arithmetic; None if
-        H does not depend on time."""
+        """Return bounds of the times at which steps are made in this arithmetic; None if H does not
+        depend on time."""
         if not self.hamiltonian.time_dependent:
             return None
         turns = self.turns(arithmetic)

@@ -1,17 +1,19 @@
-"""The statements of a kernel's loop that use the values of a step: observables, then the step.
+"""The statements of a kernel's loop that use the values of a step: observables, then z ← z + Δz.
 
 The statements of an observable are in its file of `verify.observables`. Two more may be requested:
 `extremes`, the least and greatest ΔJ and Λ of one call's steps; and `tangent`, which carries the
-tangent map along, for a rigorous bound (`verify.kernels.step.tangent_map`).
+tangent map along, for a rigorous bound (`verify.kernels.step.tangent_map`). ΔJ is the area error of
+a step, and Λ = Π (1 + ΔJ) − 1.
 
-If an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
-so are its sums, so that they keep their significant digits however small h is; it is evaluated from
-ΔJ/h^r, r as great as can be, with κ = 2^s h^r in its coefficients. Λ itself is carried too, as
-`part`, since it multiplies.
+If an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ and its sums are
+carried, so that they keep their significant digits however small h is. D is evaluated as κ times
+ΔJ/h^r with κ = 2^s h^r and the greatest possible r. The unscaled Λ is carried too, as `part`, since
+it is a factor of a product.
 
 A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
-precision (Knuth's two-sum): only the rounding of the increments remains, which is smaller by a
-factor of about h. Its difference from the plain kernel estimates the plain kernel's rounding error.
+precision (Knuth's two-sum). Then the rounding errors of the increments remain, which are smaller by
+a factor of about h. The difference from the plain kernel estimates the plain kernel's rounding
+error.
 """
 
 from collections.abc import Set
@@ -33,13 +35,16 @@ def needs_of(requests: Set[str]) -> set[Need]:
 
 
 def is_scaled(requests: Set[str]) -> bool:
-    """Return True if any requested quantity is carried 2^s times."""
+    """Return True if any requested quantity is carried with the factor 2^s."""
     return EXTREMES in requests or any(observable.shift for observable in kinds.select(requests))
 
 
 class Statements:
-    """Writes the statements; `state` lists the numbers that they carry from step to step: name,
-    kind of number, and start value, a number or a name among the run's inputs."""
+    """A writer of the statements.
+
+    `state` lists the numbers that they carry from step to step: (name, kind, start value); a start
+    value is a number, or a name among the run's inputs.
+    """
 
     def __init__(
         self,
@@ -58,7 +63,8 @@ class Statements:
         self.entries = [lowering.name(index) for index in computation.defect.values()]
 
     def all_lines(self) -> list[str]:
-        """Return all statements, in their order."""
+        """Return all statements: those of observables and of the tangent map read the state before
+        the step, those of z ← z + Δz come last."""
         requests = self.observables
         lines = [f"dj = {self.value['dj']}"] if "delta_j" in needs_of(requests) else []
         for observable in kinds.select(requests):
@@ -68,7 +74,7 @@ class Statements:
             for name, kind in (("dj", "wide"), ("lam", "sum")):
                 for end, order in ((f"{name}_low", "<"), (f"{name}_high", ">")):
                     self.carry(end, 0, kind)
-                    lines.append(self.keep_extreme(end, name, order, first="k == 0 or "))
+                    lines.append(self.keep_extreme(end, name, order, reset="k == 0 or "))
         if self.computation.tangent:
             for name, start in tangent_map.initial_values(self.computation.coordinates):
                 self.carry(name, start, "float")
@@ -82,13 +88,13 @@ class Statements:
         return lines
 
     def product(self) -> list[str]:
-        """Return the statements Λ ← Λ + ΔJ + Λ ΔJ, once."""
+        """Return the statements Λ ← Λ + ΔJ + Λ ΔJ; none if another observable has them already."""
         if self.carries("lam"):
             return []
         lines = self.sum_up("lam", "dj + lam * dj")
         product = "lam"
-        # `lam` is scaled by 2^s here, but a factor of a product must not be: `part` carries the
-        # unscaled Λ.
+        # In fixed point `lam` has the factor 2^s, which a factor of a product must not have: `part`
+        # is the unscaled Λ.
         if self.arithmetic.absolute:
             self.carry("part", 0)
             product = "part"
@@ -104,22 +110,25 @@ class Statements:
         return lines
 
     def largest(self, name: str, term: str, kind: str = "wide") -> list[str]:
-        """Return the statements that keep the greatest |term| under a name that ends in top."""
+        """Return the statements that keep the greatest |term| in `name`, which ends in `top`."""
         if not self.carries(name):
             self.carry(name, 0, kind)
         size = f"{name.removesuffix('top')}size"
         return [f"{size} = abs({term})", self.keep_extreme(name, size, ">")]
 
-    def keep_extreme(self, name: str, candidate: str, order: str, first: str = "") -> str:
-        """Return the statement that makes `name` the least or greatest of its value and
-        `candidate`."""
+    def keep_extreme(self, name: str, candidate: str, order: str, reset: str = "") -> str:
+        """Return the statement that makes `name` the least (for "<") or greatest (for ">") of its
+        value and `candidate`.
+
+        `reset`: the condition, followed by `or`, under which `name` becomes `candidate`.
+        """
         choose, opposite = {"<": ("minimum", ">="), ">": ("maximum", "<=")}[order]
         if choose not in self.arithmetic.functions:
-            return f"if {first}{candidate} {order} {name}: {name} = {candidate}"
-        # Balls, of which neither may be certainly the greater: then the extreme is a third ball.
+            return f"if {reset}{candidate} {order} {name}: {name} = {candidate}"
+        # Of two balls neither need be certainly the greater: the extreme may be a third ball.
         extreme = f"{choose}({candidate}, {name})"
-        value = f"{candidate} if k == 0 else {extreme}" if first else extreme
-        return f"if {first}not {candidate} {opposite} {name}: {name} = {value}"
+        value = f"{candidate} if k == 0 else {extreme}" if reset else extreme
+        return f"if {reset}not {candidate} {opposite} {name}: {name} = {value}"
 
     def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
         """Add a number to the state: its name, its start value, and its kind."""
@@ -130,15 +139,16 @@ class Statements:
         return any(name == state_name for state_name, _, _ in self.state)
 
     def sum_up(self, name: str, increment: str) -> list[str]:
-        """Return the statements `name += increment` of a sum that begins with 0."""
+        """Carry a sum that begins with 0, and return its statements `name += increment`."""
         self.carry(name, 0, "sum")
         return self.accumulate(name, increment)
 
     def accumulate(self, name: str, increment: str) -> list[str]:
-        """Return the statements `name += increment`; compensated (Kahan) if the kernel is."""
+        """Return the statements `name += increment`, by Knuth's two-sum if the kernel is
+        compensated."""
         if not self.compensated:
             return [f"{name} = {name} + ({increment})"]
-        # Knuth's two-sum: `rest` is the exact error of the addition, whichever operand is larger.
+        # Two-sum: `{name}_rest` is the exact error of the addition, whichever operand is larger.
         self.carry(f"{name}_rest", 0)
         return [
             f"add = {name}_rest + ({increment})",

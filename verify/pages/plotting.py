@@ -1,10 +1,10 @@
-"""The report's figures as matplotlib figures, to show, to restyle and to save.
+"""The figures of a report as matplotlib figures, to show, to restyle and to save.
 
 Each function returns a `matplotlib.figure.Figure` on white; the caller may change `figure.axes` and
-everything on them. A function that draws a single plot takes `ax`, the axes to draw it on, and then
-returns their figure. Logarithms are taken before anything is drawn, so that 1e-500 has its place
-too: the data of a logarithmic axis are decimal logarithms, and its ticks say 10ⁿ. All quantities
-are without units. An `InputError` is raised if there is nothing to draw.
+everything on them. Most functions that draw a single plot take `ax`, the axes to draw it on, and
+then return their figure. For figures over the step size or the run time logarithms are taken before
+anything is drawn, so that 1e-500 has a place too: the data are decimal logarithms, and the ticks
+say 10ⁿ. All quantities are without units. If there is nothing to draw, InputError is raised.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import StabilityMapResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
-# Of runs against the step size.
+# The quantities of runs against the step size, with their labels.
 QUANTITIES = {
     **{
         name: observable.plotted or observable.label
@@ -46,7 +46,7 @@ QUANTITIES = {
     "solution_error": "solution error",
 }
 PHASE = "phase"
-# Of one run over time.
+# The quantities of one run over time, with their labels.
 ORBIT_QUANTITIES = {
     "energy_error": "H − H₀",
     "solution_error": "solution error",
@@ -57,12 +57,12 @@ ORBIT_QUANTITIES = {
     PHASE: "p",  # against q
 }
 _DRIFT = "drift"
-_UPWARDS = ORBIT_QUANTITIES | {_DRIFT: "|H̃ − H̃₀|"}
+_VERTICAL_LABELS = ORBIT_QUANTITIES | {_DRIFT: "|H̃ − H̃₀|"}
 _LOGARITHMIC = ("solution_error", _DRIFT)
 # Heights in points of a plot over time and of a phase portrait.
-_HEIGHT, _SQUARE = 280, 380
-# Characters of a scheme's formula in a label.
-_LABEL = 40
+_TIME_HEIGHT, _PHASE_HEIGHT = 280, 380
+# The limit on characters of a scheme's formula in a label.
+_MAX_LABEL = 40
 
 
 def plot_runs(
@@ -83,7 +83,7 @@ def plot_runs(
     if quantity not in QUANTITIES:
         raise unknown_name("quantity", quantity, QUANTITIES)
     runs = list(runs)
-    height_of = _LOG_PLACES.get(quantity)
+    height_of = _LG_FUNCTIONS.get(quantity)
     schemes = dict.fromkeys(run.scheme for run in runs)
     lines = [
         size_figures.LogarithmicLine(
@@ -103,16 +103,16 @@ def plot_runs(
     return restyle_for_caller(lambda: size_figures.draw_against_step_size([panel], ax), ax)
 
 
-def _energy_error(run: RunResult) -> float:
+def _lg_energy_error(run: RunResult) -> float:
     sizes = (abs(Fraction(text)) for text in run.orbit.texts("energy_error") if text)
     return lg(decimal(max(sizes, default=Fraction(0)), 7))
 
 
-def _solution_error(run: RunResult) -> float:
+def _lg_solution_error(run: RunResult) -> float:
     return lg(run.solution_errors(1)[-1][1].value)
 
 
-_LOG_PLACES = {"energy_error": _energy_error, "solution_error": _solution_error}
+_LG_FUNCTIONS = {"energy_error": _lg_energy_error, "solution_error": _lg_solution_error}
 
 
 def plot_over_time(run: RunResult) -> Figure:
@@ -130,8 +130,8 @@ def plot_over_time(run: RunResult) -> Figure:
 def plot_separation(grid: SeparationGrid, *, ax: Any = None) -> Figure:
     """Plot the greatest |truncation| and |rounding| in Λ against the step size, with crossovers.
 
-    `grid`: what `separate_grid` returns in the plane. `ax`: the axes to draw on, whose figure is
-    then returned. Raises InputError if there are not two step sizes with both.
+    `grid`: the result of `separate_grid` in the plane. `ax`: the axes to draw on, whose figure is
+    then returned. Raises InputError unless both parts are known at two step sizes.
     """
     lines, marks = size_figures.lines_and_marks(grid)
     if len(lines) < 2:
@@ -165,7 +165,7 @@ def plot_table(claim: ClaimResult) -> Figure:
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
     """Plot the solution error at T against run time in seconds, and against the step size.
 
-    `found`: what `bench` returns. All axes are logarithmic; a point that rounding limits is hollow.
+    `found`: the result of `bench`. All axes are logarithmic; points limited by rounding are hollow.
     Returns a figure with the two panels. Raises InputError if no run has an error and a time.
     """
     panels = list(error_panels(found))
@@ -175,14 +175,14 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
 
 
 def plot_stability(over: StabilityMapResult) -> Figure:
-    """Plot the verdicts in the plane of step size and stiffness."""
+    """Plot the verdicts on runs over the step size and a parameter of H."""
     return restyle_for_caller(lambda: kind_map_figure.draw_planes([over]))
 
 
 def plot_flow(flow: FlowResult, plane: int | None = None) -> Figure:
     """Plot a region and its images by each map, q to the right and p upwards, on equal axes.
 
-    `plane`: in n degrees of freedom, the k of the plane (q_k, p_k) on which they are projected; by
+    `plane`: in n degrees of freedom, the k of the plane (q_k, p_k) on which they are projected, by
     default that of the region. Raises InputError if there is no image, or no such plane.
     """
     if not flow.before or not any(image.outlines for image in flow.images):
@@ -232,14 +232,13 @@ def _curve_of(run: RunResult, quantity: str) -> tuple[Any, Any]:
 
 
 def label_run(run: RunResult, among: Sequence[RunResult]) -> str:
-    """Return a label of the run that says how it differs from the others: scheme, h, start."""
+    """Return a label of the run: its scheme, and those of h, q and p that differ among the runs."""
     parts = {
-        "": run.scheme if len(run.scheme) <= _LABEL else cut(run.scheme)[:_LABEL] + "…",
+        "": run.scheme if len(run.scheme) <= _MAX_LABEL else cut(run.scheme)[:_MAX_LABEL] + "…",
         "h": run.step_size,
         "q": run.start_text("q"),
         "p": run.start_text("p"),
     }
-    # An input that is the same for all runs does not tell them apart, and is left out of the label.
     keys = {"": "scheme", "h": "step_size", "q": "q", "p": "p"}
     names = [n for n in parts if n == "" or len({getattr(x, keys[n]) for x in among}) > 1]
     return ", ".join(f"{n} = {parts[n]}" if n else parts[n] for n in names)
@@ -265,7 +264,7 @@ def plot_energy_drift(
 
 
 def _drift_points(drift: EnergyDrift) -> tuple[list[float], list[float]]:
-    # What is exactly 0, as at the start, has no logarithm.
+    # A drift of exactly 0, as at the start, has no logarithm.
     return [float(t) for t in drift.t], [abs(x) if x else float("nan") for x in drift.values]
 
 
@@ -275,7 +274,7 @@ def _drift_label(run: RunResult, among: Sequence[RunResult], power: int) -> str:
 
 
 def _draw(lines: Sequence[tuple[str, Any, Any]], quantity: str, ax: Any) -> Figure:
-    figure, axes = canvas_on(ax, _SQUARE if quantity == PHASE else _HEIGHT)
+    figure, axes = canvas_on(ax, _PHASE_HEIGHT if quantity == PHASE else _TIME_HEIGHT)
     for index, (label, x, y) in enumerate(lines):
         style = line_style(index, len(lines)) | {"marker": "", "linewidth": 1.1}
         axes.plot(x, y, label=label, **style)
@@ -289,6 +288,6 @@ def _draw(lines: Sequence[tuple[str, Any, Any]], quantity: str, ax: Any) -> Figu
         else:
             set_scaled_ticks(axes.yaxis, *axes.get_ylim())
     draw_grid(axes, "both" if quantity == PHASE else "y")
-    axes.set_ylabel(_UPWARDS[quantity])
+    axes.set_ylabel(_VERTICAL_LABELS[quantity])
     draw_legend(figure if ax is None else None, axes, ncols=2)
     return figure

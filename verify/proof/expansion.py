@@ -27,18 +27,19 @@ from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import Place, TwoForm
 
-MOST_ORDERS = 12  # Taylor coefficients examined where a map is not a polynomial in h
+MOST_ORDERS = 12  # Taylor coefficients examined if a map is not a polynomial in h
 
 
 @dataclass(frozen=True)
 class Leading:
     """The leading coefficient: the first in h, of h^`power`, that is not shown to vanish.
 
-    `decision.zero` is False at a proved leading term, None at an undecided one, and True where
-    every coefficient vanishes (`power` is None then). False with `power` None: what is expanded is
-    not zero, but its leading term lies beyond the orders looked at; `element` is then itself.
+    `decision.zero` is False if the leading term is proved, None if it is undecided, and True if all
+    coefficients vanish; then `power` is None. False with `power` None: the expanded element is not
+    zero, but its leading term lies beyond the examined orders; `element` is then the element
+    itself.
 
-    For S it is a 2-form, `form`, and `element` is the entry at `place`, which decides.
+    For S, `form` is the coefficient, a 2-form, and `element` its entry at `place`, which decides.
     """
 
     power: int | None
@@ -49,7 +50,7 @@ class Leading:
 
     @classmethod
     def of_form(cls, power: int | None, form: TwoForm, ring: Ring) -> Leading:
-        """Make it of the coefficient of h^power in S; with power None, of S itself."""
+        """Return the leading coefficient `form` of h^power in S; power None: `form` is S itself."""
         decision, place = form.decide()
         if place is None:
             return VANISHES
@@ -57,7 +58,7 @@ class Leading:
 
     @cached_property
     def coefficient(self) -> sympy.Expr:
-        """The coefficient as an expression; 0 where there is none."""
+        """The coefficient as an expression; 0 if there is none."""
         if self.element is None or self.power is None:
             return sympy.S.Zero
         ring, x = self.element
@@ -72,7 +73,7 @@ class Leading:
 
     @cached_property
     def domain(self) -> FormulaDomain:
-        """The parameters for which the coefficient is not the zero function of the coordinates."""
+        """The parameters for which the coefficient, if proved, is not the zero function of z."""
         if self.decision.zero is not False or self.element is None:
             return EVERYWHERE
         if self.power is None and not self.entry:
@@ -81,10 +82,10 @@ class Leading:
         return not_zero_for(*self.element, f"the entry {self.entry} of S" if self.entry else what)
 
     def restrict_to(self, domain: FormulaDomain) -> Leading:
-        """Return it decided in the domain: undecided unless a witness lies there."""
+        """Return the coefficient decided in a domain: undecided if no witness is found there."""
         if self.decision.zero is None or not domain.requirements:
             return self
-        ring, x = self.element or _ZERO  # what vanishes has no element
+        ring, x = self.element or _ZERO_ELEMENT  # VANISHES has no element
         if self.form is None:
             return replace(self, decision=domain.decide(ring, x))
         decision, place = self.form.decide(partial(domain.decide, ring))
@@ -96,7 +97,7 @@ class Leading:
 
     @property
     def text(self) -> str:
-        """The coefficient as a formula; beyond the plane that of the whole 2-form."""
+        """The coefficient as a formula; in n degrees of freedom the whole 2-form."""
         if self.element is None or (self.power is None and not self.entry):
             return "0"
         if self.entry and self.form is not None:
@@ -105,15 +106,16 @@ class Leading:
         return ring.text(x)
 
 
-_NOWHERE = Ring((), 0, spare=0)
-_ZERO = _NOWHERE, _NOWHERE.zero
+_CONSTANTS = Ring((), 0, spare=0)
+_ZERO_ELEMENT = _CONSTANTS, _CONSTANTS.zero
 VANISHES = Leading(None, Decision(True))
 
 
 class TaylorExpansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
-    An element with 1/h in it is multiplied by hᵐ first; the first m coefficients must then vanish.
+    An element with 1/h in it is first multiplied by hᵐ; then the first m coefficients must vanish,
+    or LimitError is raised.
     """
 
     def __init__(self, ring: Ring, x: Poly) -> None:
@@ -124,7 +126,7 @@ class TaylorExpansion:
         self._derivatives = [x]
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
-        """Return the coefficient of hⁿ, with the ring that it is an element of."""
+        """Return the coefficient of hⁿ, with its ring."""
         if not self._smooth:
             text = self.ring.text(self._derivatives[0])
             raise LimitError("map", f"({text})/h**{self.pole}", "is not smooth in h at h = 0")
@@ -153,27 +155,27 @@ class TaylorExpansion:
 
     @cached_property
     def _quotient(self) -> Series | None:
-        """The series of a quotient of polynomials in h, as far as it is used; None of others."""
+        """The series in h of a quotient of polynomials in h; None for other elements."""
         return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).expand(self._derivatives[0])
 
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
-    """Return m and hᵐ x, which has no 1/h in it."""
+    """Return (m, hᵐ x) with the least m for which hᵐ x has no 1/h."""
     h, gens = ring.variable("h"), ring.context.gens()
-    # 1/h is a generator w of its own. Σ c_n wⁿ times hᵐ, m the highest power, is Σ c_n h^(m−n).
+    # 1/h is a generator w. With m the highest power of w, hᵐ Σ c_n wⁿ = Σ c_n h^(m−n).
     pole = ring.find("inverse", h)
     parts = {0: x} if pole is None else split(x, gens.index(pole))
     most = max(parts, default=0)
     return most, ring.reduce(sum((c * h ** (most - n) for n, c in parts.items()), ring.zero))
 
 
-# -- of a map --------------------------------------------------------------------------------------
+# -- maps ------------------------------------------------------------------------------------------
 
 
 class ClosedSeries:
     """The series of z', S and det J − 1 of a map in closed form that is no polynomial in h.
 
-    Each coefficient is computed when it is used, and has a ring of its own.
+    Each coefficient is computed when it is used, and may have its own ring.
     """
 
     def __init__(self, closed: ClosedForm) -> None:
@@ -197,7 +199,7 @@ class ClosedSeries:
     def agrees(
         self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
     ) -> tuple[bool | None, Ring, Poly]:
-        """Compare the coefficients of hⁿ in z' with the exact flow, as `DefectSeries.agrees`."""
+        """Compare the coefficients of hⁿ in z' with the exact flow's, as `DefectSeries.agrees`."""
         flow_ring = self.flow.ring
         for k, expansion in enumerate(self._parts):
             ring, residual = self._difference(k, n)
@@ -230,12 +232,13 @@ class ClosedSeries:
     def in_one_field(
         self, hamiltonian: Hamiltonian, most: int, *extra: sympy.Expr
     ) -> tuple[CanonicalField, list[list[Poly]], list[Poly]]:
-        """Return the coefficients of h⁰ … h^most in each coordinate's new value, and the other
-        expressions, as elements of one ring."""
+        """Return a field, and over its ring the coefficients in z' and the expressions `extra`.
+
+        A row has the coefficients of h⁰ … h^most in one coordinate's new value.
+        """
         parts = [x.coefficient(n) for x in self._parts for n in range(most + 1)]
         field, elements = self.flow, [x for _, x in parts]
-        # Generators differ from ring to ring: only in a common ring can coefficients be compared or
-        # added.
+        # Generators differ from ring to ring: coefficients are added only in a common ring.
         if extra or not all(ring is field.ring for ring, _ in parts):
             expressions = (ring.expression(x) for ring, x in parts)
             field, elements = canonical_field(hamiltonian, *expressions, *extra)
@@ -258,7 +261,7 @@ class ClosedSeries:
 
 
 def _in_one_ring(parts: Sequence[tuple[Ring, Poly]], otherwise: Ring) -> tuple[Ring, list[Poly]]:
-    """Embed elements of several rings in one."""
+    """Embed elements of several rings in one; `otherwise`: the ring if there are none."""
     if not parts:
         return otherwise, []
     ring, _ = parts[0]
@@ -274,7 +277,7 @@ AnySeries: TypeAlias = "DefectSeries[CanonicalField] | ClosedSeries"
 def series_of(step_map: StepMap, first: int) -> AnySeries:
     """Return the series of a map in h, computed only as far as it is used.
 
-    `first`: the power up to which it is computed at once, for a map that is given by its step.
+    `first`: the power up to which a map that is given by its step is expanded at once.
     """
     initial = step_map.series(first)
     if initial is None:
@@ -282,7 +285,7 @@ def series_of(step_map: StepMap, first: int) -> AnySeries:
 
     def extend(most: int) -> tuple[CanonicalField, State]:
         longer = initial if most == first else step_map.series(most)
-        assert longer is not None  # noqa: S101 - it has had fewer terms
+        assert longer is not None  # noqa: S101 - `initial` is one
         return longer
 
     return DefectSeries(extend, first, step_map.flow_up_to)

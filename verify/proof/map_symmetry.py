@@ -1,7 +1,7 @@
 """A test of symmetry, Φ_(−h) ∘ Φ_h = id, by the Taylor series of a step for one H.
 
-An exact coefficient of Φ_(−h)(Φ_h(p, q)) − (p, q) that does not vanish shows that the step is not
-symmetric. Finitely many that vanish show nothing; the verdict is UNDECIDED then.
+If an exact coefficient of Φ_(−h)(Φ_h(p, q)) − (p, q) does not vanish, the step is not symmetric. If
+all examined coefficients vanish, nothing is proved, and the verdict is UNDECIDED.
 """
 
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from verify.verdict import Verdict
 class Symmetry:
     """A verdict on symmetry.
 
-    `power`: the first power of h in Φ_(−h) ∘ Φ_h − id that does not vanish; None if all looked
-    at vanish, or one is not decided.
+    `power`: the first power of h in Φ_(−h) ∘ Φ_h − id that does not vanish; None if all examined
+    ones vanish or one is not decided.
     """
 
     verdict: Verdict
@@ -30,7 +30,8 @@ class Symmetry:
 def judge_symmetry(step_map: StepMap, most: int) -> Symmetry:
     """Judge symmetry by the coefficients of Φ_(−h) ∘ Φ_h up to h^most, for one H."""
     decided_up_to = -1
-    for reach in dict.fromkeys([*range(2, most, 2), most]):  # terms multiply with every order
+    # Low powers come first, as terms multiply with every order.
+    for reach in dict.fromkeys([*range(2, most, 2), most]):
         expanded = step_map.series(reach)
         if expanded is None or not _begins_with_z(*expanded):
             return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
@@ -43,7 +44,7 @@ def judge_symmetry(step_map: StepMap, most: int) -> Symmetry:
                 differs = f" `Φ_(−h)` ∘ `Φ_h` differs from the identity by O(`h^{n}`)"
                 reason = prose("for H = ", hamiltonian, read_prose(differs))
                 return Symmetry(Verdict.REFUTED, reason, n)
-            # A later coefficient may be nonzero, but then the first power would not be decided.
+            # A later coefficient may be nonzero, but the first such power is then not known.
             if None in zero:
                 undecided = read_prose(f"the coefficient of `h^{n}` is not decided")
                 return Symmetry(Verdict.UNDECIDED, undecided)
@@ -58,10 +59,10 @@ def _begins_with_z(field: CanonicalField, step: State) -> bool:
 
 
 def step_back_residual(field: CanonicalField, x: Series, step: State) -> Series:
-    """Return a coordinate of Φ_(−h)(Φ_h(z)) less its value in z: Σ (−h)ⁿ xₙ(z') − x₀(z).
+    """Return the series of Σ (−h)ⁿ xₙ(z') − x₀(z), a coordinate of Φ_(−h)(Φ_h(z)) − z.
 
-    z' is given by its series. Where H depends on time, xₙ is taken at t + h, at which the step of
-    −h begins.
+    `x`: the series Σ hⁿ xₙ(z) of the coordinate in z'; `step`: that of z'. If H depends on time, xₙ
+    is taken at t + h, where the step of −h begins.
     """
     ring = field.ring
     moves = [

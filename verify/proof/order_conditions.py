@@ -1,7 +1,7 @@
 """Proofs for every H by conditions on a scheme's coefficients, evaluated exactly.
 
-The order is the largest r for which all conditions up to h^r hold. Where the conditions on area
-hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det J.
+The order is the largest r for which all conditions up to h^r hold. If the conditions on area hold,
+det J ≡ 1. They are sufficient only: if one fails, nothing follows for det J.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,28 +13,28 @@ from verify.schemes.conditions.condition import ByConditions, Condition, NearbyO
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
-_MORE = 2  # orders examined beyond the claimed one
+_EXTRA_ORDERS = 2  # orders examined beyond the claimed one
 
 
 def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -> ProofForEveryH:
     """Prove the order of the map, and det J ≡ 1, for every H that the scheme takes.
 
-    `conditions` of the result are those up to the claimed order and those on area. The verdict is
-    REFUTED if one of the former fails, and the reason names the first that does; UNDECIDED if
-    one of them, or det J, is not decided. `order` (of ΔJ) is always None.
+    `conditions` of the result are those up to the claimed order, then those on area. The verdict is
+    REFUTED if one up to the claimed order fails, and the reason names the first; UNDECIDED if one
+    of them, or det J, is not decided. If the coefficients are printed decimals, the verdict is that
+    on exact coefficients near them. `order` (of ΔJ) is always None.
     """
     least = max(scheme.order, least)
     agreed, wrong = agreed_order(every_h, least)
     near = nearby_order(every_h, least)
     claimed = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
-    # The conditions on area suffice for det J ≡ 1 and are not necessary: a failing one proves
-    # nothing.
+    # The conditions on area are sufficient, not necessary: a failing one proves nothing.
     area = every_h.area_conditions()
     verdict, reason = _verdict(scheme, claimed, area)
     summary = prose(f"order {agreed}, {_count(every_h, agreed)}")
     if near is None or near.order <= agreed:
         near = None
-    else:  # the digits of the coefficients leave residues: of a splitting, whose det J ≡ 1
+    else:  # only splittings have a `nearby`, and these have det J ≡ 1
         summary = describe_nearby(near)
         verdict = near.verdict if agreed < scheme.order else Verdict.PROVED
         reason = prose("det J ≡ 1, and ", summary)
@@ -58,31 +58,31 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
 def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
     """Return the order of exact coefficients near the printed ones, or None if there are none.
 
-    It is looked for as far as `agreed_order` looks.
+    Orders are examined as far as `agreed_order` does.
     """
     nearby: Callable[[int], NearbyOrder | None] | None = getattr(every_h, "nearby", None)
     if nearby is None or not isinstance(every_h, ByConditions):
         return None
-    return nearby(min(least + _MORE, every_h.most_order))
+    return nearby(min(least + _EXTRA_ORDERS, every_h.most_order))
 
 
 def describe_nearby(near: NearbyOrder) -> Prose:
-    """Say which coefficients have that order, and what the printed digits leave."""
+    """State the order of exact coefficients near the printed ones, and how near they are."""
     return prose(
         f"order {near.order} of exact coefficients near the printed ones: ", near.explanation
     )
 
 
 class AgreedOrder(NamedTuple):
-    """The order of a map, and the condition that ends it, if one was reached."""
+    """The order of a map, and the condition that ends it; None if none was reached."""
 
     order: int
     end: Condition | None
 
 
 def agreed_order(every_h: ByConditions, least: int) -> AgreedOrder:
-    """Return the order of the map, at most two beyond `least`, and the condition that ends it."""
-    most = min(least + _MORE, every_h.most_order)
+    """Return the order of the map, at most `least` + 2, and the condition that ends it."""
+    most = min(least + _EXTRA_ORDERS, every_h.most_order)
     for order in range(1, most + 1):
         conditions = [c for c in every_h.order_conditions(order) if c.order == order]
         wrong = first_wrong(conditions)
@@ -131,7 +131,7 @@ def _verdict(
 
 def first_wrong(conditions: Sequence[Condition]) -> Condition | None:
     """Return the failing condition of the lowest order, else the undecided one of the lowest."""
-    # A failing condition goes before an undecided one of lower order: it alone refutes.
+    # A failing condition comes before an undecided one of lower order: only a failing one refutes.
     ordered = sorted(conditions, key=lambda c: c.order)
     failing = (c for c in ordered if c.holds is False)
     return next(failing, next((c for c in ordered if c.holds is None), None))

@@ -1,35 +1,38 @@
 """Proofs for every smooth H (or every H = T(p) + V(q)): the order of ΔJ, of the map, telescoping.
 
-A coefficient is zero for every H if it is the zero polynomial in the jets, which the machine
-checks. If it is another polynomial, some polynomial H gives it a value other than 0.
+The jets are the derivatives of H at a point, as free variables. A coefficient is zero for every H
+if it is the zero polynomial in the jets, which the machine checks. If it is another polynomial,
+some polynomial H gives it a value other than 0.
 
-Two arguments on paper supplement the machine's, which checks one η at a time.
+The machine proves one η at a time. Two arguments on paper supplement it.
 
-`lieη`, any η. The exact flow φ_h has det φ_h' = 1, so every coefficient of h, h², … in
-det Σ hⁿ/n! (Xⁿz)' vanishes. The scheme has the same terms up to h^η; so has its determinant, whose
-coefficients of h … h^η therefore vanish. In that of h^(η+1) the exact flow has one term more, which
-is linear, tr (X^(η+1)z)'/(η+1)! = div(X^η f)/(η+1)!, f = (−H_q, H_p); so the scheme's
-coefficient is L = −div(X^η f)/(η+1)!. It is not zero for every H. Odd η: at an equilibrium with
-D = det Hess H ≠ 0 it is −2 (−D)^((η+1)/2)/(η+1)! (see `verify.proof.telescoping`). Even η: L = X·G,
-and G is −(−D)^(η/2)/η! at an equilibrium, as all η+1 terms of its sum are equal there. Were L zero
-for H = p²/2 + V(q), V with two maxima of one height and different V'', then G would be constant
-along the orbit that joins them, and yet has different values at its ends. ∎
+`lieη` (the Taylor polynomial of the flow), any η. The exact flow φ_h has det φ_h' = 1, so every
+coefficient of h, h², … in det Σ hⁿ/n! (Xⁿz)' vanishes. The scheme has the same terms up to h^η, and
+so has its determinant, whose coefficients of h … h^η therefore vanish. In that of h^(η+1) the exact
+flow has one more term, which is linear, tr (X^(η+1)z)'/(η+1)! = div(X^η f)/(η+1)!, f = (−H_q, H_p);
+so the scheme's coefficient is L = −div(X^η f)/(η+1)!. There are H for which L is not zero. Odd η:
+at an equilibrium with D = det Hess H ≠ 0 it is −2 (−D)^((η+1)/2)/(η+1)! (see
+`verify.proof.telescoping`). Even η: L = X·G, and G is −(−D)^(η/2)/η! at an equilibrium, as all η+1
+terms of its sum are equal there. If L were zero for H = p²/2 + V(q), V with two maxima of the same
+height and different V'', G would be constant along the orbit that joins them; but it has different
+values at the ends. ∎
 
-Where H depends on t both arguments hold in the jets of H(p, q, t) for D = ∂_t + X in place of X:
-the two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which is X in the extended phase
-space, commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient is
-D·G for no G in the jets: an H without t is one of these H, for which D·G is X·G. Splittings and
-stages are proved by conditions on sizes, coefficients and times, `verify.schemes.conditions`, which
-are necessary, too.
+If H depends on t, both arguments hold in the jets of H(p, q, t) for D = ∂_t + X in place of X: the
+two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which is X in the extended phase space,
+commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient is D·G
+for no G in the jets: an H without t is one of these H, and for it D·G is X·G. Splittings and stages
+are proved by conditions on sizes, coefficients and times (`verify.schemes.conditions`), which are
+also necessary.
 
-In n degrees of freedom S = JᵀΩJ − Ω stands for ΔJ; see `verify.proof.series_for_every_h`. The order
-of a splitting and that of a Gauss method follow from conditions on their coefficients. They suffice
-in any number of degrees of freedom; and H1(p1, q1) + H2(p2, q2) + … are such H, so that conditions
-that are necessary in the plane are necessary in n.
+In n degrees of freedom S = JᵀΩJ − Ω takes the place of ΔJ; see `verify.proof.series_for_every_h`.
+The orders of splittings and of Gauss methods follow from conditions on their coefficients. Those of
+splittings suffice in any number of degrees of freedom, and so do those of all trees. Conditions
+that are necessary in the plane are necessary in n degrees, as H1(p1, q1) + H2(p2, q2) + … is such
+an H.
 
-Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
+Stages: if A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
 
-Coefficients. Conditions on them, exact; see `verify.proof.order_conditions`.
+Coefficients: exact conditions on them; see `verify.proof.order_conditions`.
 """
 
 import math
@@ -62,11 +65,12 @@ from verify.schemes.scheme import Scheme
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-_MOST_ORDER = {AREA: 14, SYMPLECTIC: math.inf}  # L's terms double with each; lie14 takes 20 s
-_MOST_ETA = 8  # in time the terms triple with every order; lie8 takes 2 s
-# Polynomials, so that all is decided; with cubic terms, as a quadratic H makes too much vanish.
-_SEPARABLE = ("p**2/2 + q**2/2 + q**3/3", "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3")
-_MIXED = ("p**2/2 + q**2/2 + p*q**2 + q**3/3",)
+_MOST_ORDER = {AREA: 14, SYMPLECTIC: math.inf}  # L's terms double with each order: 20 s for lie14
+_MOST_ETA_IN_TIME = 8  # with time the terms triple with each order; lie8 takes 2 s
+# H for counterexamples: polynomials, so that all is decided, and not quadratic, as for a quadratic
+# H too many terms vanish.
+_SEPARABLE_EXAMPLES = ("p**2/2 + q**2/2 + q**3/3", "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3")
+_MIXED_EXAMPLES = ("p**2/2 + q**2/2 + p*q**2 + q**3/3",)
 
 
 def prove_for_every_h(
@@ -74,11 +78,11 @@ def prove_for_every_h(
 ) -> ProofForEveryH:
     """Prove the orders of ΔJ, or S, and of the map of a scheme, for every H that it takes.
 
-    `name`: the scheme's. `separable`: only for every H = T(p) + V(q), for which more may hold.
-    `least`: the order up to which a scheme given by coefficients is examined at least, as it may
-    state none itself. `timed`: for every such H that depends on t. `degrees`: of freedom.
-    Raises InputError for a scheme that is defined for one H at a time or in the plane only, or of
-    too high an order; LimitError for polynomials that are too long.
+    `name`: the scheme's name. `separable`: True for H = T(p) + V(q) only, for which more may hold.
+    `least`: the order up to which a scheme by coefficients is at least examined, as it may claim
+    none itself. `timed`: True for H that depend on t. `degrees`: the degrees of freedom. Raises
+    InputError for a scheme that is defined for one H at a time or in the plane only, or of too high
+    an order; LimitError for polynomials that are too long.
     """
     check_degrees(degrees)
     scheme = get(name)
@@ -95,7 +99,7 @@ def prove_for_every_h(
         scheme.name, separable, Verdict.UNDECIDED, NONE, timed=timed, degrees=degrees
     )
     _check_length(blank, scheme, every_h)
-    # Where H depends on time the stages' times enter conditions; else their series decides alone.
+    # If H depends on time, the stages' times enter conditions; otherwise the series decides.
     by_coefficients = isinstance(every_h, ByConditions) or (
         timed and not isinstance(every_h, TaylorSeries)
     )
@@ -106,7 +110,7 @@ def prove_for_every_h(
 
 
 def _check_length(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByConditions) -> None:
-    """Refuse polynomials that would be too long, with an InputError or a LimitError."""
+    """Raise InputError or LimitError if the polynomials would be too long."""
     name, order, taylor = scheme.name, scheme.order, isinstance(every_h, TaylorSeries)
     if isinstance(every_h, BySeries) and is_long(blank, order):
         problem = f"are too many for {name}: its polynomials are too long"
@@ -114,8 +118,8 @@ def _check_length(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByC
     if not blank.timed and order > _MOST_ORDER[blank.structure]:
         problem = f"of order {_MOST_ORDER[AREA]} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
-    if blank.timed and taylor and order > _MOST_ETA:
-        limit = f"up to lie{_MOST_ETA}: its polynomials are too long"
+    if blank.timed and taylor and order > _MOST_ETA_IN_TIME:
+        limit = f"up to lie{_MOST_ETA_IN_TIME}: its polynomials are too long"
         raise InputError("scheme", name, f"is proved for every H in t {limit}")
 
 
@@ -123,7 +127,7 @@ def _check_length(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByC
 
 
 def _conditions(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> ByConditions:
-    """Return the conditions on coefficients, and on times where H depends on time."""
+    """Return the conditions on coefficients, and on times if H depends on time."""
     if blank.timed or not isinstance(every_h, ByConditions):
         return conditions_for(every_h)
     if blank.separable and isinstance(every_h, TreeConditions):
@@ -134,10 +138,10 @@ def _conditions(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> ByCo
 def _prove_by_coefficients(
     blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> ProofForEveryH:
-    """Prove by the scheme's coefficients, and if they leave det J open by its series.
+    """Prove by the scheme's coefficients, and if det J is then undecided by its series.
 
-    A scheme without a series is refuted by a counterexample, an H for which det J is not 1; also
-    where H depends on time, since an H without t is one of these.
+    A scheme without a series may be refuted by a counterexample: an H, always without t, for which
+    det J is not 1.
     """
     conditions = _conditions(blank, every_h)
     proof = prove_by_conditions(scheme, conditions, least)
@@ -149,7 +153,7 @@ def _prove_by_coefficients(
         checked = (*proof.checked, *_higher_orders(scheme, conditions, agreed))
         return replace(proof, reason=reason, checked=checked)
     if proof.verdict is Verdict.REFUTED and blank.separable and not conditions.separable:
-        alone = "; of H = T(p) + V(q) alone nothing is said"  # the H that it fails for may be none
+        alone = "; of H = T(p) + V(q) alone nothing is said"  # the refuting H may not be separable
         reason = prose("of every smooth H: ", proof.reason, alone)
         return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
     if proof.verdict is not Verdict.UNDECIDED:
@@ -174,7 +178,7 @@ class RefutingHamiltonian(NamedTuple):
 
 def counterexample(scheme: Scheme, separable: bool) -> RefutingHamiltonian | None:
     """Find an H with ΔJ ≠ 0; None if none is found."""
-    for text in (*_SEPARABLE, *(() if separable else _MIXED)):
+    for text in (*_SEPARABLE_EXAMPLES, *(() if separable else _MIXED_EXAMPLES)):
         try:
             step_map = scheme.step_map(Hamiltonian.parse(text))
         except InputError:
@@ -186,7 +190,7 @@ def counterexample(scheme: Scheme, separable: bool) -> RefutingHamiltonian | Non
 
 
 def _higher_orders(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]:
-    """Yield the classes of fewer H for which the map has a higher order, as sentences."""
+    """Yield sentences on the smaller classes of H for which the map has a higher order."""
     for kinetic in Kinetic:
         order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)
         if order > general:
@@ -199,7 +203,7 @@ def _higher_orders(scheme: Scheme, timed: Splitting, general: int) -> Iterator[P
 def _prove_in_degrees(
     blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> ProofForEveryH:
-    """Prove the order by the plane's proof, and S ≡ 0 by the conditions that suffice for it."""
+    """Prove the order as in the plane, and S ≡ 0 by conditions that suffice for it."""
     planar = _prove_by_coefficients(blank, scheme, every_h, least)
     conditions = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     verdict, reason = planar.verdict, planar.reason
@@ -231,5 +235,5 @@ def _prove_in_degrees(
 
 
 def _suffices(every_h: object, order: int) -> bool:
-    """Return True if the conditions that hold in the plane suffice in n degrees of freedom."""
+    """Return True if the order proved in the plane holds in n degrees of freedom."""
     return not isinstance(every_h, TreeConditions) or holds_for_all_trees(every_h.tableau, order)

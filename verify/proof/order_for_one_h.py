@@ -1,7 +1,7 @@
 """The order in h of S = JᵀΩJ − Ω for one Hamiltonian, and the order of the map itself.
 
-In the plane S is ΔJ dp∧dq; in more degrees of freedom det J ≡ 1 is the weaker statement, so both
-are examined. A map that does nothing is symplectic, so symplecticity alone proves no scheme: the
+In the plane S is ΔJ dp∧dq. In more degrees of freedom det J ≡ 1 is weaker than S ≡ 0, and both are
+examined. A map that does nothing is symplectic, so that the order of the map is proved too: the
 Taylor coefficients of z' in h are compared with those of the exact flow, Xⁿz/n!.
 """
 
@@ -29,17 +29,17 @@ from verify.schemes.splitting import splitting
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-RESIDUAL = Fraction(1, 2**100)  # relative; the residuals of exact coefficients lie below it
-_FIRST_ORDERS = 6  # powers of h that are expanded at once where no order is claimed
-_MOST = 8  # powers of h examined beyond the plane; more where a higher order is claimed
+RESIDUAL = Fraction(1, 2**100)  # a smaller relative residual is that of 90-digit coefficients
+_FIRST_ORDERS = 6  # the power of h up to which a map is expanded at once, if no order is claimed
+_MOST_IN_DEGREES = 8  # the power of h examined in n degrees, if the claimed order is below
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """Prove the orders of S and of the map by exact algebra, and judge what `scheme` claims."""
     claimed = SchemeClaims.from_scheme(scheme) if scheme else SchemeClaims()
     first = scheme.order + 1 if scheme else _FIRST_ORDERS
-    planar = step_map.hamiltonian.planar  # where S is det J − 1, and conditions stand in the reason
-    most = MOST_ORDERS if planar else max(_MOST, claimed.order + 1)
+    planar = step_map.hamiltonian.planar
+    most = MOST_ORDERS if planar else max(_MOST_IN_DEGREES, claimed.order + 1)
     convergence, near = convergence_of_scheme(step_map, scheme, first, most)
     leading, domain = leading_of(step_map, first, most), step_map.domain
     leading_inside = leading.restrict_to(domain)
@@ -67,7 +67,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
 
 
 def _with_conditions(reason: Prose, verdict: Verdict, leading: Leading, step_map: StepMap) -> Prose:
-    """Add to the reason the conditions by which ΔJ vanishes, or the parameters for which not."""
+    """Add to the reason the conditions by which ΔJ ≡ 0, or the parameters for which ΔJ ≢ 0."""
     if leading.decision.zero is True and step_map.implicit and step_map.conditions:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     if verdict is Verdict.PROVED and leading.domain:
@@ -84,14 +84,14 @@ def _by_conditions(conditions: Sequence[Condition]) -> Prose:
     )
 
 
-# -- S, and what goes with it ---------------------------------------------------------------------
+# -- S, det J and telescoping ---------------------------------------------------------------------
 
 
 def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS, most: int = MOST_ORDERS) -> Leading:
     """Return the leading coefficient of S: the first in h that is not shown to vanish.
 
-    It is sought up to h^most where S is no polynomial in h. `first`: the power of h up to which
-    the map is expanded at once.
+    `first`: the power of h up to which the map is expanded at once. `most`: the last power examined
+    if S is no polynomial in h.
     """
     if step_map.preserves_area:
         return VANISHES
@@ -117,8 +117,8 @@ def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS, most: int = MOST_O
 
 
 def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leading:
-    """Return the leading coefficient of det J − 1, if it is decided and no earlier one is open."""
-    # det J − 1 vanishes to the order of S at least: its terms below that order need no look.
+    """Return the leading coefficient of det J − 1, undecided if an earlier one is undecided."""
+    # det J − 1 has no terms below the order of S.
     if defect.decision.zero is not False:
         return Leading(None, defect.decision)
     series = series_of(step_map, first)
@@ -134,10 +134,10 @@ def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leadin
 
 
 def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool | None, str]:
-    """Decide whether the leading coefficient of S telescopes, and give its potential as a formula.
+    """Decide whether the leading coefficient of S telescopes; return its potential as a formula.
 
-    That is decided for lieη in several degrees of freedom, and undecided for other maps; for the
-    plane see `verify.proof.plane.potential`.
+    It is decided for lieη in several degrees of freedom and for S ≡ 0, and undecided otherwise; for
+    the plane see `verify.proof.plane.potential`.
     """
     eta = step_map.flow_up_to
     if step_map.hamiltonian.planar or eta < 1 or defect.power != eta + 1 or defect.form is None:
@@ -157,11 +157,11 @@ def convergence_of(
 ) -> Convergence:
     """Return the order to which the map agrees with the exact flow.
 
-    `residues`: differences as small as those of rounded coefficients count as 0.
+    `residues`: True if differences as small as those of 90-digit coefficients count as 0.
     """
     order = step_map.known_order()
     if order is not None:
-        # Shown at a point, without its coefficient.
+        # The next coefficient is shown to differ at a point, and is not computed.
         hamiltonian, difference = step_map.hamiltonian, f"the difference at h^{order + 1}"
         almost = (
             almost_all(hamiltonian.symbols, difference, hamiltonian.time_dependent)
@@ -175,13 +175,13 @@ def convergence_of(
         )
     series = series_of(step_map, first)
     closed = step_map.closed if step_map.formulas is not None and step_map.expand is None else None
-    if closed is not None:  # all of a polynomial, and one more
+    if closed is not None:  # all powers of a polynomial, and one more
         most = max(most, (most if closed.degree is None else closed.degree) + 1)
     return convergence_by(series, step_map.flow_up_to + 1, most, residues)
 
 
 def convergence_by(series: AnySeries, begin: int, most: int, residues: bool = False) -> Convergence:
-    """Return the order to which a map agrees with the exact flow, by h^begin … h^most alone."""
+    """Return the order to which a map agrees with the exact flow, from h^begin … h^most."""
     for n in range(begin, most + 1):
         agrees, ring, residual = series.agrees(n, is_rounding_residual if residues else None)
         if agrees is not True:
@@ -198,14 +198,14 @@ def convergence_of_scheme(
 ) -> tuple[Convergence, NearbyOrder | None]:
     """Return the order of the map, as `convergence_of`, and that of exact coefficients near it.
 
-    Where exact coefficients near those that a scheme prints have a higher order, it is theirs.
+    If exact coefficients near those that a scheme prints have a higher order, it is their order.
     """
     printed = convergence_of(step_map, first, most)
     hamiltonian = step_map.hamiltonian
     near = nearby_of_scheme(scheme, hamiltonian) if scheme else None
     if scheme is None or near is None or printed.order is None or near.order <= printed.order:
         return printed, None
-    # What none near the printed ones satisfy is of this H where the scheme is known for one alone.
+    # A scheme without `every_h` is judged for this H, and so is the condition that ends its order.
     result = Convergence(near.order, scheme.every_h is None and near.wrong is not None)
     if near.parts:
         nearest = splitting(
@@ -226,7 +226,7 @@ def convergence_of_scheme(
 def nearby_of_scheme(scheme: Scheme, hamiltonian: Hamiltonian) -> NearbyOrder | None:
     """Return the order of exact coefficients near those that the scheme prints.
 
-    None if it prints none, or none near them make a scheme.
+    None if it prints none, or if exact ones near them have no order.
     """
     if scheme.formulas:
         return nearby_of_formulas(tuple(scheme.formulas.items()), hamiltonian)
@@ -241,7 +241,7 @@ def nearby_defect_of(
     """Return the power of h up to which exact coefficients have no term in ΔJ, or S.
 
     They are near those printed in a user's formulas. None unless the term of h^power vanishes with
-    them, being only what the printed digits leave.
+    them, so that it is caused by the rounding of the printed digits.
     """
     if scheme is None or not scheme.formulas or power is None:
         return None
@@ -255,9 +255,10 @@ def with_nearby(
     without: NearbyOrder | None,
     form: str,
 ) -> tuple[Verdict, Prose]:
-    """Add to a verdict what exact coefficients near the printed ones have.
+    """Add to a verdict and its reason the properties of exact coefficients near printed ones.
 
-    That is a higher order (`near`), or no such term in the defect (`without`, called `form`).
+    `near`: their higher order. `without`: the power of h up to which the defect, called `form`, has
+    no term with them.
     """
     verdict, reason = judgement
     if near is not None and verdict is Verdict.PROVED:
@@ -268,7 +269,7 @@ def with_nearby(
 
 
 def is_rounding_residual(residual: Poly, term: Poly) -> bool:
-    """Return True if the residual is as small as coefficients right to some 90 digits leave it."""
+    """Return True if the residual is as small as that of coefficients right to 90 digits."""
     return size_of(residual) < RESIDUAL * max(size_of(term), size_of(term - residual))
 
 

@@ -1,7 +1,7 @@
 """The parameter values for which a coefficient is not the zero function of p and q (and t).
 
-A point where it is not zero says nothing about other values of a parameter: 12 δ p q is zero at
-δ = 0.
+A witness proves this only for its own values of the parameters: 12 δ p q is not zero at δ = 1, and
+is the zero function for δ = 0.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ from verify.lazy_sympy import sympy
 
 _Point: TypeAlias = "tuple[sympy.Expr, ...]"
 _STEP_AND_TIME = ("h", "t")
-_AT = (0, 1, 2)  # coordinates at which functions of p and q have simple values
-_MOST_POINTS, _FEWEST_POINTS = 81, 9
-_LONG = 300  # terms, from which on an element is evaluated at few points only
-_MOST_PARTS = 12  # coefficients in a condition that not all of them vanish
+_SIMPLE_COORDINATES = (0, 1, 2)  # functions of p and q have simple values at them
+_MOST_POINTS, _FEWEST_POINTS = 81, 9  # limits of the points tried for short and long elements
+_MANY_TERMS = 300  # terms; an element of as many or more is long
+_MOST_PARTS = 12  # limit of the coefficients in the condition that not all of them vanish
 
 
 def not_zero_for(ring: Ring, x: Poly, what: str) -> FormulaDomain:
     """Return the parameters for which x, as a function of p and q alone, is not zero.
 
-    x is not the zero function of coordinates and parameters. `what` names x in the sentence for
-    the case that only almost all parameters are shown to be such.
+    x must not be the zero function of coordinates and parameters. `what` names x in the sentence
+    that is returned if the exceptional parameters are not determined, but only have measure 0.
     """
     parameters = [name for name in ring.variables if name not in _coordinates(ring)]
     if not any(ring.depends(x, name) for name in parameters):
         return FormulaDomain()
     x = clear_inverses(ring, x)  # a denominator is not 0 where x is defined
     inner = _state_dependent(ring, x)
-    # x is the zero function of p and q where all its coefficients by their monomials vanish. A
-    # common factor of these has to be nonzero, and the rests must not vanish together.
+    # As a polynomial in the parts that depend on p and q, x is zero if all its coefficients vanish:
+    # their common factors must not be 0, and the remaining factors must not vanish together.
     parts = list(map(ring.context.from_dict, split_by_monomials(x, inner).values()))
     common = reduce(lambda a, b: a.gcd(b), parts)
     factors = [factor for factor, _ in common.factor()[1]]
@@ -54,7 +54,7 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> FormulaDomain:
                 [*requirements, *_not_all_zero([ring.expression(r) for r in rests])]
             )
     expression = ring.expression(x)
-    # A point at which only the common factors are left shows that they are the sole condition.
+    # If x at some point is a product of the common factors, these are the only condition.
     if any(_is_product_at(ring, expression, factors, point) for point in _points(ring, x, factors)):
         return FormulaDomain.from_requirements(requirements)
     names = [name for name in parameters if ring.depends(x, name)] or parameters
@@ -66,7 +66,7 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> FormulaDomain:
 def almost_all(parameters: Sequence[str], what: str, timed: bool) -> str:
     """Format the condition that the parameters are outside the set on which `what` is zero.
 
-    It is used where that set is shown to have measure 0 and is not determined any further.
+    It is used if that set is shown to have measure 0, and is not known otherwise.
     """
     names = parameters[0] if len(parameters) == 1 else f"({', '.join(parameters)})"
     everywhere = "at every point and time" if timed else "at every point"
@@ -78,7 +78,7 @@ def _coordinates(ring: Ring) -> tuple[str, ...]:
 
 
 def _state_dependent(ring: Ring, x: Poly) -> list[int]:
-    """Return the places of the variables and generators in x that depend on p or q."""
+    """Return the indices of the variables and generators in x that depend on p, q, h or t."""
     degrees, places, state = x.degrees(), list[int](), _coordinates(ring)
     for g in ring.generators_in(x):
         inside = ring.variable(g.name) if g.kind == "variable" else g.argument
@@ -88,7 +88,7 @@ def _state_dependent(ring: Ring, x: Poly) -> list[int]:
     return places
 
 
-# -- of a polynomial in p and q -------------------------------------------------------------------
+# -- polynomials in p and q -----------------------------------------------------------------------
 
 
 def _radical(x: Poly, factors: Sequence[Poly]) -> Poly:
@@ -107,18 +107,18 @@ def _without_multiples(parts: Sequence[Poly]) -> list[Poly]:
 
 
 def _not_all_zero(parts: Sequence[sympy.Expr]) -> list[Requirement]:
-    """Require that not all of them are 0, as a sum of squares that is not 0."""
+    """Return the requirement that not all parts are 0: the sum of their squares is not 0."""
     together = parts[0] if len(parts) == 1 else sympy.Add(*(part**2 for part in parts))
     return [Requirement(together, "!=")]
 
 
-# -- of functions ---------------------------------------------------------------------------------
+# -- functions ------------------------------------------------------------------------------------
 
 
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
-    """Yield values of p and q, some of which make a function's argument 1: q = 1/a for sin(a q)."""
-    simple, names = [sympy.Integer(n) for n in _AT], coordinates_of(ring.variables)
-    most = _MOST_POINTS if len(x) < _LONG else _FEWEST_POINTS
+    """Yield points; some make the argument of a function 1, such as q = 1/a for sin(a q)."""
+    simple, names = [sympy.Integer(n) for n in _SIMPLE_COORDINATES], coordinates_of(ring.variables)
+    most = _MOST_POINTS if len(x) < _MANY_TERMS else _FEWEST_POINTS
     yield from islice(product(simple, repeat=len(names)), most)
     for g in ring.generators_in(x) if names == PLANE else ():
         for name in PLANE:

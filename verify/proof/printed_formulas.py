@@ -1,11 +1,12 @@
 """A user's formulas with decimals of eight digits and more, which stand for numbers near them.
 
-`p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, has a lower order, since its digits are
-rounded. So each such decimal becomes a variable. The difference from the exact flow at hⁿ is then,
-for each monomial in everything else, a polynomial in these variables. Where exact numbers near the
-printed ones make all of them 0, as `verify.schemes.printed.judgement` decides, the map has the
-order with these numbers. The order is said to end where, at some point, an enclosure of the
-difference for all numbers within ten units of the last digits excludes 0.
+`p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, has a lower order than meant, since its
+digits are rounded. So each such decimal becomes a variable. The difference from the exact flow at
+hⁿ is a polynomial in all other variables, whose coefficients are polynomials in these. If exact
+numbers near the printed ones make all coefficients 0, as `verify.schemes.printed.judgement`
+decides, the map has the order with these numbers. The order is shown to end at hⁿ if, at some
+point, an enclosure of the difference for all numbers within ten units of the last digits excludes
+0.
 """
 
 import re
@@ -41,19 +42,19 @@ from verify.schemes.printed.sentences import ruling_on_order
 
 _MOST_NUMBERS, _MOST_CONDITIONS = 24, 600
 MOST_ORDER = 8  # the highest power of h examined by default
-_POINTS = 8
-_DIGITS = 12  # of a residue
+_TESTED_POINTS = 8
+_RESIDUE_DIGITS = 12
 
 Elements: TypeAlias = tuple[Ring, list[Poly]]
 Polynomial: TypeAlias = tuple[tuple[Fraction, tuple[int, ...]], ...]  # coefficients and exponents
-Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what they are
+Formulas: TypeAlias = tuple[tuple[str, str], ...]  # pairs such as ("p_next", its formula)
 
 
 @lru_cache(maxsize=16)
 def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
     """Return the highest order of the map with exact numbers near those printed in its formulas.
 
-    None if they print none, or none near them is seen to make it a scheme.
+    None if they print none, or if no numbers near them are seen to give the order 1.
     """
     return _highest_order(formulas, hamiltonian, lambda series, n: series.differences(n))
 
@@ -87,7 +88,7 @@ def formulas_moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> lis
 
 
 def describe_nearby_defect(near: NearbyOrder, form: str) -> Prose:
-    """Say up to which power `form`, ΔJ or S, has no term with exact coefficients."""
+    """State the power of h up to which `form`, ΔJ or S, has no term with exact coefficients."""
     power = Formula(f"h^{near.order}")
     return prose(
         f"{form} has no term up to ", power, " with exact coefficients near the printed ones: ",
@@ -109,7 +110,7 @@ def _highest_order(
             step_map = step_map_from_formulas(hamiltonian, parsed.with_names, tuple(parsed.numbers))
             printed = _PrintedMap(tuple(parsed.numbers), parsed.readings)
             return printed.order(partial(elements, series_of(step_map, 2)), most)
-    except InputError:  # no polynomial in its decimals, or too long
+    except InputError:  # the map is no polynomial in its decimals, or too long
         return None
 
 
@@ -117,8 +118,9 @@ def _highest_order(
 class _NamedFormulas:
     """A user's formulas with names for the long decimals.
 
-    `named`: the formulas with a name in place of each long decimal; `numbers`: these decimals as
-    printed; `readings`: the ways to read them, the preferred one first; empty without decimals.
+    `with_names`: the formulas with a name in place of each long decimal. `numbers`: these decimals
+    as printed. `readings`: the readings of the decimals, the preferred one first; empty without
+    decimals.
     """
 
     with_names: Mapping[str, str]
@@ -143,7 +145,7 @@ def _read(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> _NamedFormul
     formulas_with_names = {
         side: naming.entry(right, f"{label}{k}") for k, (side, right) in enumerate(formulas.items())
     }
-    # What H has too is a parameter, and exact.
+    # A number that occurs in H as well is a parameter, and exact.
     parameters = {abs(x) for x in hamiltonian.exact.atoms(sympy.Rational)}
     numbers = {name: _exact_or_printed(text, parameters) for name, text in naming.numbers.items()}
     readings = tuple(x for x in PrintedNumbers(numbers).of_a_method() if x.units)
@@ -154,7 +156,7 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
     if "/" in text:
         return text
     value = rational(text)
-    # In brackets, as a long quotient may be read as another rounded number.
+    # The brackets keep a long quotient from being read as a rounded number.
     return f"({value})" if abs(sympy.sympify(value)) in parameters else text
 
 
@@ -162,17 +164,18 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
 class _PrintedMap:
     """A map over a ring in which the printed numbers are variables, called `names`.
 
-    `readings`: the ways to read the numbers, the preferred one first.
+    `readings`: the readings of the numbers, the preferred one first.
     """
 
     names: tuple[str, ...]
     readings: tuple[PrintedNumbers, ...]
 
     def order(self, elements: Callable[[int], Elements], most: int) -> NearbyOrder | None:
-        """Return the power of h, at most `most`, up to which exact numbers near the printed ones
-        make the elements 0."""
-        # The conditions are polynomials in the printed numbers, so they are the same for every
-        # reading.
+        """Return the highest power of h up to which exact numbers make all elements 0.
+
+        The numbers are near the printed ones. `most`: the last power examined.
+        """
+        # The conditions are polynomials in the printed numbers, the same for every reading.
         conditions = _Conditions(self.names, elements)
         best, _ = find_highest_order(self.readings, most, conditions.judge)
         if best is None:
@@ -187,23 +190,23 @@ class _PrintedMap:
     ) -> Condition | None:
         """Find an element of hⁿ that is not 0 for any numbers near the printed ones.
 
-        That is shown by an enclosure at a point; None if no such element is seen.
+        An enclosure at a point shows it; None if no such element is found.
         """
         ring, coefficients = elements(n)
         others = [name for name in ring.variables if name not in self.names]
-        for point in islice(points(others), _POINTS):
+        for point in islice(points(others), _TESTED_POINTS):
             with working_precision(BITS):
                 point_balls = {name: rational_ball(value) for name, value in point.items()}
                 box = point_balls | self._box(numbers)
                 for x in coefficients:
                     enclosure = enclose_over(ring, x, box)
                     if enclosure is not None and not enclosure.contains(0):
-                        size = decimal(midpoint_and_radius(enclosure)[0], _DIGITS)
+                        size = decimal(midpoint_and_radius(enclosure)[0], _RESIDUE_DIGITS)
                         return Condition(f"the coefficient of h^{n} = 0", n, size, False)
         return None
 
     def _box(self, numbers: PrintedNumbers) -> dict[str, Ball]:
-        """Enclose all values near the printed ones in balls."""
+        """Return balls that contain all numbers within ten units of the printed ones."""
         exact = {
             name: ball_of(numbers.entry(name)) for name in self.names if name not in numbers.units
         }
@@ -214,14 +217,14 @@ class _PrintedMap:
 
 
 class _Conditions:
-    """The conditions at each power of h: polynomials in the printed numbers that must be 0."""
+    """The conditions at each power of h: polynomials in the numbers that must be 0."""
 
     def __init__(self, names: tuple[str, ...], elements: Callable[[int], Elements]) -> None:
         self.names, self.elements = names, elements
         self._cache: list[list[Polynomial]] = []
 
     def judge(self, numbers: PrintedNumbers, order: int) -> Judgement:
-        """Judge whether numbers near the printed ones make all of them 0 up to h^order."""
+        """Judge whether numbers near the printed ones satisfy all conditions up to h^order."""
         while len(self._cache) <= order:
             self._cache.append(self._of_power(len(self._cache)))
         rows = [
@@ -241,14 +244,14 @@ class _Conditions:
 
 
 def _by_monomials(ring: Ring, x: Poly, names: Sequence[str]) -> list[Polynomial]:
-    """Return the coefficient of each monomial in all other variables, as a polynomial in the names.
+    """Return for each monomial in the other variables its coefficient, a polynomial in `names`.
 
     Raises LimitError if one of the names occurs within a function.
     """
-    indices = [ring.places.get(name) for name in names]  # None of one that it does not hold
+    indices = [ring.places.get(name) for name in names]  # None for a name that the ring lacks
     for name, index in zip(names, indices, strict=True):
-        # The derivative in the ring follows functions, the polynomial's own does not: they differ
-        # exactly where the name occurs within a function.
+        # The ring's derivative applies the chain rule, the polynomial's does not: they differ if
+        # the name occurs within a function.
         if index is not None and ring.diff(x, name) != ring.reduce(x.derivative(index)):
             raise LimitError("scheme", name, "stands within a function")
     other_indices = {index for index in range(len(x.degrees())) if index not in indices}
@@ -270,7 +273,7 @@ def _residues(
 def _value(row: Polynomial, entries: Sequence[E], one: E, bound: bool) -> E:
     total = one * 0
     for number, powers in row:
-        # A bound of the rounding error takes the absolute value of every coefficient.
+        # A bound takes the absolute value of every coefficient.
         size = abs(number) if bound else number
         term = one * size.numerator / size.denominator
         for x, n in zip(entries, powers, strict=True):

@@ -1,8 +1,8 @@
 """The result of a proof about one scheme for every H; see `verify.proof.order_for_every_h`.
 
-For `lieη` an argument on paper accompanies it, step by step, which is for every η and every H at
-once: the machine's own proof is for one η at a time. Each step names the theorems of the shipped
-theory for Rocq that state it, by file and name; one step has none.
+For `lieη` an argument on paper accompanies the proof in steps. It is for every η at once, while the
+machine's proof is for one η. Each step names the theorems of the shipped theory for Rocq that state
+it, by file and name; one step has none.
 """
 
 from dataclasses import dataclass, field
@@ -54,21 +54,23 @@ STEPS: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 @dataclass(frozen=True)
 class ProofForEveryH:
-    """A proof about one scheme for every H (`separable`: every H = T(p) + V(q)).
+    """A proof about one scheme for every H, if `separable` for every H = T(p) + V(q).
 
-    `order`, `area_preserving`, `convergence_order` as in `verify.proof.proof_for_one_h.Proof`, for
-    a generic H, and `convergence_decided`: of some H it is no higher; `leading` is the coefficient
-    of h^order, a polynomial in H_p, H_q, H_pp, …, empty if it is not written out, and `formula`
-    its closed form, where there is one. `telescopes`: whether it is X·`potential` for every H;
-    `why` says how that is shown.
-    `checked` names the identities that were checked, `conditions` those on the coefficients, of a
-    scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
-    place of X. `nearby`: the exact coefficients that have this order, where those of the scheme are
-    printed, rounded.
+    - `order`, `area_preserving`, `convergence_order`: as in `verify.proof.proof_for_one_h.Proof`,
+      for a generic H; `convergence_decided`: True if for some H the order is no higher.
+    - `leading`: the coefficient of h^order, a polynomial in H_p, H_q, H_pp, …; `formula`: its
+    closed
+      form, if there is one.
+    - `telescopes`: True if it is X·`potential` for every H; `why` says how that is shown.
+    - `checked`: the identities that were checked; `conditions`: the conditions on the coefficients
+      of a scheme that is given by them.
+    - `timed`: True for H that depend on t, with D = ∂_t + X in place of X.
+    - `nearby`: if the scheme's coefficients are printed decimals, the order of exact ones near
+    them.
 
-    In several `degrees` of freedom order, leading coefficient and potential are those of S, and
-    `leading` is the formula where it has too many terms; `entry` is one of S that is not 0,
-    `volume_order` and `volume_leading` are of det J − 1. `form` and `potential_form` are the
+    In several `degrees` of freedom order, leading coefficient and potential are those of S;
+    `leading` is the formula if there are too many terms; `entry` is an entry of S that is not 0;
+    `volume_order` and `volume_leading` are those of det J − 1. `form` and `potential_form` are the
     leading coefficient and its potential as 2-forms.
     """
 
@@ -112,7 +114,7 @@ class ProofForEveryH:
         return structure_in(self.degrees)
 
     def format_form(self, form: TwoForm, formula: str = "") -> str:
-        """Format a 2-form, in the plane its one entry; `formula` where it has too many terms."""
+        """Format a 2-form, in the plane its one entry; return `formula` if it is too long."""
         if self.planar:
             return str(form.ring.text(form.divergence))
         return formula if formula and form.length > MOST_TERMS else form.text
@@ -125,14 +127,13 @@ class ProofForEveryH:
     @property
     def argument(self) -> Prose:
         """The argument on paper for every η; empty if there is none for this scheme."""
-        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)  # the argument is of p and q
-        # The argument on paper speaks of X and of dp∧dq; it is not given for D or n degrees of
-        # freedom.
+        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)
+        # The argument is about X and dp∧dq, and not about D or n degrees of freedom.
         return _paragraph() if taylor and self.planar and not self.timed else NONE
 
     @property
     def domain(self) -> FormulaDomain:
-        """The domain where it holds, H being smooth at every point and time where it is taken."""
+        """The domain of the statement, for an H that is smooth wherever the step evaluates it."""
         explicit = get(self.scheme).explicit
         # The equations of an implicit step need a smooth solution, which is a condition of its own.
         return (
@@ -143,7 +144,7 @@ class ProofForEveryH:
 
     @property
     def quantifier(self) -> str:
-        """The class of H for which it is proved, in words."""
+        """The class of H that the proof is about, in words."""
         t = ", t" * self.timed
         general, degrees = {
             AREA: ("H(p, q, t)" if self.timed else "H", ""),

@@ -1,6 +1,6 @@
-"""The result of a proof about one step map, and its verdict on what the scheme claims.
+"""The result of a proof about one step map, and its verdict on the claims of the scheme.
 
-See `verify.proof.order_for_one_h`, which makes it.
+`verify.proof.order_for_one_h` makes such proofs.
 """
 
 from collections.abc import Callable
@@ -25,16 +25,17 @@ from verify.verdict import Verdict
 class Proof:
     """A proof about one step map.
 
-    `first`: the leading coefficient of S; in the plane that is of ΔJ. `volume`: that of det J − 1,
-    which is the same in the plane; `decision.zero` says whether det J ≡ 1, which every symplectic
-    map fulfils and some others do.
-    `convergence_order`: z' agrees with the exact flow up to h to this power; None if all
-    coefficients looked at agree. `convergence_decided`: whether it is shown to agree no further.
-    `nearby`: the exact coefficients that have this order, where the scheme's are printed, rounded.
-    `telescopes`: whether the leading coefficient of S is the Lie derivative of a 2-form,
-    `potential`; None if that is not known.
-    `verdict` is REFUTED for a map that is not a scheme for H at all, or misses the order its
-    scheme claims; `reason` gives the result in one line.
+    - `verdict`: REFUTED for a map that is not a scheme for H at all, and if the scheme claims more
+      than the map has; `reason` gives the result in one line.
+    - `first`: the leading coefficient of S; in the plane that of ΔJ.
+    - `volume`: that of det J − 1, in the plane the same; its `decision.zero` is True if det J ≡ 1,
+      as for every symplectic map and some others.
+    - `convergence_order`: z' agrees with the exact flow up to this power of h; None if all examined
+      coefficients agree. `convergence_decided`: True if it is shown to agree no further.
+    - `nearby`: if the scheme's coefficients are printed decimals, the order of exact ones near
+    them.
+    - `telescopes`: True if the leading coefficient of S is the Lie derivative of the 2-form
+      `potential`; None if undecided.
     """
 
     verdict: Verdict
@@ -73,7 +74,7 @@ class Proof:
 
         S = `leading`·h^order + O(h^(order+1)), with `leading` not zero.
         """
-        # A power without a proved nonzero coefficient is only where the search stopped.
+        # If the coefficient is not proved to be nonzero, `power` is only where the search stopped.
         return self.first.power if self.first.decision.zero is False else None
 
     @property
@@ -103,7 +104,7 @@ class Proof:
 
     @property
     def volume_order(self) -> int | None:
-        """The order in h of det J − 1, or None if that is not shown to be nonzero."""
+        """The order in h of det J − 1; None if no coefficient is shown to be nonzero."""
         return self.volume.power if self.volume.decision.zero is False else None
 
     @property
@@ -118,7 +119,7 @@ class Proof:
 
     @property
     def leading(self) -> sympy.Expr:
-        """The leading coefficient as an expression, of ΔJ in the plane; 0 where it vanishes."""
+        """The coefficient in `first` as an expression; 0 if there is none."""
         return self.first.coefficient
 
     @property
@@ -133,9 +134,8 @@ class Proof:
 
     @property
     def domain(self) -> FormulaDomain:
-        """The domain where it holds: the map is defined, and `leading` is no zero function of z."""
-        # The order needs `leading` ≠ 0 as a function of z, which may fail for single parameter
-        # values.
+        """The domain where the map is smooth and `leading` is not the zero function of z."""
+        # As a function of z, `leading` may be 0 for single values of the parameters.
         return self.step_map.domain & self.first.domain
 
     @property
@@ -191,16 +191,16 @@ def _latex_lines(proof: Proof) -> list[str]:
     return lines
 
 
-# -- the verdict on what a scheme claims ----------------------------------------------------------
+# -- the verdict on a scheme's claims -------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Convergence:
     """The power of h up to which p' and q' agree with the exact flow, shown by algebra.
 
-    `order` is None if all coefficients looked at agree, and −1 if they differ at h⁰.
-    `decided`: the next coefficient is shown to differ (or there is none), for the parameters in
-    `exact_for`.
+    `order` is None if all examined coefficients agree, and −1 if they differ at h⁰. `decided`: True
+    if the next coefficient is shown to differ, or all are shown to agree; `exact_for()`: the
+    parameters for which it differs.
     """
 
     order: int | None
@@ -213,9 +213,9 @@ class Convergence:
 
 @dataclass(frozen=True)
 class SchemeClaims:
-    """The claims about a map: its order, and that it is symplectic.
+    """The claims about a map: its order, and whether it is symplectic.
 
-    `name` is empty for a map that is no named scheme.
+    `name`: the scheme's name; empty for a map without a scheme.
     """
 
     name: str = ""
@@ -224,7 +224,7 @@ class SchemeClaims:
 
     @classmethod
     def from_scheme(cls, scheme: Scheme) -> "SchemeClaims":
-        """Return the claims of a scheme; a name that is a user's formulas is quoted."""
+        """Return the claims of a scheme; backquotes surround a name that is a user's formulas."""
         name = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
         return cls(name, scheme.order, scheme.area_preserving)
 
@@ -238,8 +238,8 @@ def judge_claims(
 ) -> tuple[Verdict, Prose]:
     """Return the verdict on the claims, and the reason for it.
 
-    `defect`: the power of h in the first coefficient of the defect that is not shown to vanish,
-    up to h^`most`, and whether the defect is zero.
+    `defect`: the power of h, up to h^`most`, in the first coefficient of the defect that is not
+    shown to vanish; and True if the defect is zero, False if not, None if undecided.
     """
     verdict, reason = _judge_order(claimed, convergence) or _judge_defect(
         claimed, *defect, most, structure
@@ -248,7 +248,7 @@ def judge_claims(
 
 
 def _judge_order(claimed: SchemeClaims, convergence: Convergence) -> tuple[Verdict, str] | None:
-    """Return the verdict on the order, or None if the map has the order that is claimed."""
+    """Return the verdict if the map is not shown to have the claimed order; else None."""
     if not convergence.misses(claimed.order):
         return None
     agreement = f"agrees with the exact flow up to `h^{convergence.order}`"
@@ -259,8 +259,7 @@ def _judge_order(claimed: SchemeClaims, convergence: Convergence) -> tuple[Verdi
     if claimed.name:
         claims = f"{claimed.name} claims order {claimed.order}"
         return Verdict.REFUTED, f"{claims}; the map {agreement} only"
-    # A map without a scheme claims order 1: one that misses it does not approximate the flow at
-    # all.
+    # A map without a scheme claims order 1: a map that misses it does not approximate the flow.
     only = "" if convergence.order == -1 else " only"
     return Verdict.REFUTED, f"not a scheme for this H: the map {agreement}{only}"
 

@@ -1,12 +1,12 @@
 """Proofs for every smooth H by the series of a step in H's derivatives: orders, S, telescoping.
 
-In the plane S = JᵀΩJ − Ω is ΔJ dp∧dq, and its one entry represents it. A coefficient is zero for
-every H if it is the zero polynomial in H's derivatives, which the machine checks. If it is another
+In the plane S = JᵀΩJ − Ω is ΔJ dp∧dq, with ΔJ as its one entry. A coefficient is zero for every H
+if it is the zero polynomial in H's derivatives, which the machine checks. If it is another
 polynomial, some polynomial H gives it a value other than 0.
 
-lieη, of any η and in n degrees of freedom: the exact flow preserves Ω, and lieη shares its terms up
-to h^η, so that S begins with −h^(η+1)/(η+1)! ([η+1, 0] + [0, η+1]); see
-`verify.proof.telescoping`.
+lieη, for any η and in n degrees of freedom: the exact flow preserves Ω, and lieη shares its terms
+up to h^η, so that S begins with −h^(η+1)/(η+1)! ([η+1, 0] + [0, η+1]), where [a, b] is the 2-form
+of `verify.proof.telescoping`.
 """
 
 import math
@@ -31,9 +31,10 @@ from verify.schemes.steps.two_form import TwoForm, lie_derivative
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-_MORE = {AREA: 3, SYMPLECTIC: 0}  # powers of h examined beyond the first possible one of S
-_SAME = "A J = B with det A = det B = "  # the beginning of each condition on stages in the plane
-_MOST_TERMS = {AREA: math.inf, SYMPLECTIC: 5000}  # (2n)^order, about those of X^order z
+_EXTRA_ORDERS = {AREA: 3, SYMPLECTIC: 0}  # powers of h tried for S beyond the first possible one
+# A condition on a stage in the plane begins so.
+_STAGE_CONDITION = "A J = B with det A = det B = "
+_MOST_TERMS = {AREA: math.inf, SYMPLECTIC: 5000}  # limit of (2n)^order ≈ the terms of X^order z
 
 
 def is_long(proof: ProofForEveryH, order: int) -> bool:
@@ -51,12 +52,12 @@ def series_in_jets(proof: ProofForEveryH, every_h: BySeries, most: int) -> Defec
 
 
 def prove_by_series(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries) -> ProofForEveryH:
-    """Prove what `blank` asks by the series of the step; REFUTED if the scheme claims more."""
-    most, last = scheme.order + 1, scheme.order + 1 + _MORE[blank.structure]
+    """Complete the proof `blank` by the series of the step; REFUTED if the scheme claims more."""
+    most, last = scheme.order + 1, scheme.order + 1 + _EXTRA_ORDERS[blank.structure]
     conditions = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     preserved = bool(conditions) and first_wrong(conditions) is None
-    # S may begin later than the order suggests, so a few powers more are tried before giving up.
-    # Each further power multiplies the number of terms.
+    # S may begin later than the order suggests: a few more powers are tried, each of which
+    # multiplies the number of terms.
     while True:
         series = series_in_jets(blank, every_h, most)
         order = next((m for m in range(1, most + 1) if series.form(m).entries), None)
@@ -76,7 +77,7 @@ def prove_by_series(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries) ->
 
 
 def _judge_claims(scheme: Scheme, proof: ProofForEveryH) -> ProofForEveryH:
-    """Return the proof with the verdict REFUTED if the scheme claims more than it shows."""
+    """Return the proof; its verdict becomes REFUTED if it contradicts the scheme's claims."""
     agreed = proof.convergence_order
     if agreed is not None and agreed < scheme.order:
         return replace(proof, verdict=Verdict.REFUTED, reason=describe_missed_order(scheme, agreed))
@@ -90,29 +91,31 @@ def _judge_claims(scheme: Scheme, proof: ProofForEveryH) -> ProofForEveryH:
 
 
 def describe_missed_order(scheme: Scheme, agreed: int) -> Prose:
-    """Say that the scheme claims a higher order than the map has for a generic H."""
+    """State that the scheme claims a higher order than the map has for a generic H."""
     return read_prose(
         f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
         f"flow up to `h^{agreed}` only"
     )
 
 
-# -- where S vanishes -----------------------------------------------------------------------------
+# -- if S vanishes --------------------------------------------------------------------------------
 
 
 def _with_symplecticity(proof: ProofForEveryH, conditions: tuple[Condition, ...]) -> ProofForEveryH:
-    """Return the proof that S ≡ 0, by the conditions that the stages' coefficients fulfil."""
+    """Return the proof that S ≡ 0, by the conditions on the stages' coefficients."""
     reason = prose(f"{proof.structure.vanishes}, stage by stage")
     proof = replace(proof, verdict=Verdict.PROVED, reason=reason, area_preserving=True)
-    if not proof.planar:  # where a condition is no identity in H_pp, H_pq and H_qq
+    if not proof.planar:  # the conditions are on coefficients, and not on H_pp, H_pq and H_qq
         return replace(proof, telescopes=True, potential="0", conditions=conditions)
     names = (condition.name for condition in conditions)
-    ratios = join_prose(", ", dict.fromkeys(Formula(name.removeprefix(_SAME)) for name in names))
+    ratios = join_prose(
+        ", ", dict.fromkeys(Formula(name.removeprefix(_STAGE_CONDITION)) for name in names)
+    )
     explanation = read_prose(" (a, b, c = `H_pp`, `H_pq`, `H_qq`)")
-    return replace(proof, checked=(prose(_SAME, ratios, explanation),))
+    return replace(proof, checked=(prose(_STAGE_CONDITION, ratios, explanation),))
 
 
-# -- where it does not ----------------------------------------------------------------------------
+# -- if S does not vanish -------------------------------------------------------------------------
 
 
 def _with_leading(
@@ -154,7 +157,7 @@ def _with_telescoping(
     if proof.telescopes:
         return proof
     ring = flow.ring
-    if isinstance(ring, Jets):  # of the plane
+    if isinstance(ring, Jets):  # the plane
         telescoping = telescopes(ring, form.entry(0, 1))
         proof = replace(proof, telescopes=telescoping.holds, why=telescoping.reason)
         if telescoping.potential is None:
@@ -168,7 +171,11 @@ def _with_telescoping(
 
 
 class _LieTexts(NamedTuple):
-    """The texts about lieη: its leading coefficient, its potential, and the identities checked."""
+    """The texts about lieη.
+
+    `formula`: the leading coefficient; `first`: the statement that it is. `potential`: the formula
+    of the potential; `second`: the statement that it is.
+    """
 
     formula: str
     first: Prose
@@ -210,8 +217,7 @@ def _with_lie_formulas(
     if eta % 2:
         return proof
     potential = potential_of_lie(flow, eta)
-    # The formula for β holds for every even η on paper; the machine checks the identity for this
-    # one.
+    # On paper the formula for β holds for every even η; the machine checks it for this η.
     if (lie_derivative(flow, potential) - form).entries:
         return proof
     return replace(

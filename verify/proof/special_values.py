@@ -1,4 +1,4 @@
-"""Proofs at the parameter values that a proof excludes, where these are rational numbers."""
+"""Proofs at the rational parameter values that a proof excludes."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,7 +15,7 @@ from verify.schemes.scheme import Scheme
 
 @dataclass(frozen=True)
 class SpecialValue:
-    """The proof for a parameter that has this value."""
+    """A value of a parameter, and the proof for it."""
 
     parameter: str
     value: Fraction
@@ -23,7 +23,10 @@ class SpecialValue:
 
 
 def special_values(proof: Proof, scheme: Scheme) -> list[SpecialValue]:
-    """Prove the scheme at each value that the proof excludes for a single parameter."""
+    """Prove the scheme at the values that the proof excludes for a single parameter.
+
+    Only values that a linear condition excludes are found; H must be defined at them.
+    """
     values, hamiltonian = [], proof.step_map.hamiltonian
     for requirement in proof.first.domain.requirements:
         names = requirement.expression.free_symbols

@@ -1,23 +1,24 @@
 """The test whether the leading coefficient of ΔJ, or of S, is a derivative along the flow.
 
-Such a coefficient telescopes. In the plane it is X·G, whose sum along an orbit is G at the end
-minus G at the start. In n degrees of freedom it is the Lie derivative of a 2-form, and the sum of
-M_kᵀ (S_k/h) M_k is the difference of that form between the ends; M_k is the product of the
-Jacobians of the first k steps.
+Such a coefficient telescopes. In the plane it is X·G: h times its sum along an orbit is G at the
+end minus G at the start, up to a higher power of h. In n degrees of freedom it is the Lie
+derivative of a 2-form. With C_k the coefficient at z_k and M_k the product of the Jacobians of the
+first k steps, h Σ M_kᵀ C_k M_k is the difference of that form between the ends, up to a higher
+power of h.
 
 Let [a, b] = Σ_i d(Xᵃp_i)∧d(X^b q_i). The Lie derivative L commutes with d, so that L[a, b] =
 [a+1, b] + [a, b+1], and L[0, 0] = LΩ = 0. S of `lieη` begins with −h^(η+1)/(η+1)! ([η+1, 0] +
 [0, η+1]), which in the plane is −div(X^η f)/(η + 1)! dp∧dq, f = (−H_q, H_p).
 
-Even η: it is Lβ for every smooth H, β = −1/(η+1)! Σ_k (−1)^k [η−k, k], k = 0 … η: all terms of the
-alternating sum Lβ cancel but the first and the last. In the plane β = G dp∧dq, and L(G dp∧dq) =
-(X G) dp∧dq, since the flow preserves dp∧dq. ∎
+Even η: the coefficient is Lβ for every smooth H, with β = −1/(η+1)! Σ_k (−1)^k [η−k, k], k = 0 … η:
+all terms of the alternating sum Lβ cancel but the first and the last. In the plane β = G dp∧dq, and
+L(G dp∧dq) = (X G) dp∧dq, since the flow preserves dp∧dq. ∎
 
-Odd η: if H has an equilibrium at which the coefficient has a divergence other than 0, then it is
-the Lie derivative of no smooth form. Where f vanishes, L of a form B is AᵀB + BA, A = f'. From
-AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any B. For a coefficient of S that trace is twice its
-divergence. In the plane X·G vanishes where f does, and there div(X^η f) = tr A^(η+1) =
-2 (−det Hess H)^((η+1)/2). ∎
+Odd η: if H has an equilibrium at which the divergence Σ c_(p_i q_i) of the coefficient is not 0,
+the coefficient is the Lie derivative of no smooth form. Where f vanishes, L of a form B is AᵀB +
+BA, A = f'. From AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any B. For a coefficient of S that trace is
+twice its divergence. In the plane X·G vanishes where f does, and there div(X^η f) = tr A^(η+1) = 2
+(−det Hess H)^((η+1)/2). ∎
 """
 
 import math
@@ -61,8 +62,7 @@ def potential_of_lie(flow: VectorField, eta: int) -> TwoForm:
 def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
     """Decide whether the leading coefficient of lieη's S is a Lie derivative, with β as a formula.
 
-    The decision is None if neither answer can be proved; the formula is empty but where it is
-    True.
+    The decision is None if neither answer is proved. The formula is empty unless it is True.
     """
     if eta % 2 == 0:
         potential = potential_of_lie(flow, eta)
@@ -72,9 +72,9 @@ def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple
 
 
 def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
-    """Return True if the origin is an equilibrium at which the divergence is not 0."""
+    """Return True if the origin is shown to be an equilibrium with a divergence other than 0."""
     ring = flow.ring
-    if flow.timed:  # the argument is made for equilibria of an H without t
+    if flow.timed:  # the argument is about equilibria of an H without t
         return False
     origin = {symbol(name): sympy.S.Zero for name in flow.names}
     elements = [*flow.slopes, leading.divergence]
@@ -88,14 +88,14 @@ def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
     return all(x is True for x in slopes) and divergence is False
 
 
-# -- for a leading coefficient in the jets of the plane -------------------------------------------
+# -- a leading coefficient in the jets of the plane -----------------------------------------------
 
 
 @dataclass(frozen=True)
 class Telescoping:
     """The answer whether L = X·G for every H.
 
-    If it `holds`, `potential` is G; else there is an H without such a G, as `reason` says.
+    If it `holds`, `potential` is G; otherwise some H has no such G. `reason` says why.
     """
 
     holds: bool
@@ -129,7 +129,7 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
         grade = _grade(jets, monomial)
         graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient
     total = jets.zero
-    # X maps each grade into one other, so L is X·G exactly where each of its graded parts is.
+    # X maps each grade into one grade, so that L is X·G if and only if each graded part is.
     for grade, part in graded.items():
         solution, rank, unknowns = _solve_for_potential(jets, grade, jets.context.from_dict(part))
         if solution is None:
@@ -145,7 +145,7 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
 
 
 def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
-    """Return (number of factors H_ij, derivatives by p, by q); X raises each by one."""
+    """Return (number of factors H_ij, total of i, total of j); X raises each by one."""
     powers = [int(n) for n in monomial[2:]]
     return (
         sum(powers),
@@ -159,10 +159,11 @@ def _solve_for_potential(
 ) -> tuple[Poly | None, int, int]:
     """Return (G with X·G = x, or None; the rank of X on such G; their number of monomials).
 
-    x has all its monomials of one grade, and so may G have: X respects grades. G contains neither p
-    nor q nor H itself, as X takes none of them away. And its derivatives have lower orders than
-    those of x: with G_ij = ∂G/∂H_ij, i + j = k highest, the coefficient of H_ij, i + j = k + 1, in
-    X·G is H_p G_i(j−1) − H_q G_(i−1)j, and were all of them 0, so were G_0k, G_1(k−1), … in turn.
+    All monomials of x have one grade, and so may those of G, as X maps grades to grades. G contains
+    neither p nor q nor H itself, as X removes none of them. G has only derivatives of lower orders
+    than x: with G_ij = ∂G/∂H_ij and k the highest i + j in G, the coefficient of H_ij, i + j = k +
+    1, in X·G is H_p G_i(j−1) − H_q G_(i−1)j; if all of these were 0, so would be G_0k, G_1(k−1), …
+    in turn.
     """
     factors, by_p, by_q = (n - 1 for n in grade)
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
@@ -182,7 +183,7 @@ def multisets(
 ) -> Iterator[list[tuple[int, int]]]:
     """Yield all products of `factors` derivatives H_ij with these totals of i and of j.
 
-    Only indices from `first` on are used, so that each product comes once.
+    Only indices from `first` on are used, so that each product occurs once.
     """
     if factors == 0:
         if by_p == by_q == 0:
@@ -190,7 +191,7 @@ def multisets(
         return
     for k in range(first, len(indices)):
         i, j = indices[k]
-        # Each factor that remains needs one derivative at least; else the branch yields nothing.
+        # Each remaining factor needs at least one derivative; otherwise the branch yields nothing.
         if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
             for remaining in multisets(indices, factors - 1, by_p - i, by_q - j, k):
                 yield [(i, j), *remaining]

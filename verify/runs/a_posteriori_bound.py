@@ -1,8 +1,8 @@
-"""A rigorous bound for a long run, from what was carried along with it, in any number of degrees.
+"""A rigorous bound for a long run, from its tangent map and records, in n degrees of freedom.
 
 Let z_{k+1} = Φ(z_k) be the exact orbit of the exact step map, ẑ_k the computed one, and
 e_k = ẑ_k − z_k, A_k = DΦ(ẑ_k). Then ẑ_{k+1} = Φ(ẑ_k) + r_k with ‖r_k‖ ≤ ε, the rounding of one
-step, counted from the kernel's operations over the box that the orbit has visited
+step, a bound counted from the kernel's operations over the box that the orbit has visited
 (`verify.runs.step_bounds`), and by Taylor's theorem
 
     e_{k+1} = A_k e_k + s_k,   ‖s_k‖ ≤ ε + ½ B ‖e_k‖²,
@@ -45,13 +45,13 @@ from verify import observables
 from verify.arithmetic.arb import bounds, is_representable, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import PRECISION, Ball
+from verify.kernels.rounding import PRECISION_BITS, Ball
 from verify.kernels.statements import needs_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import matrix_growth
 from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
 
-_MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
+_LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 METHOD = "a-posteriori bound with the tangent map carried along"
 
 
@@ -64,12 +64,15 @@ def certify(
     tangent map. Errors are measured from the exact orbit of the exact map for the exact h,
     parameters and initial values.
     """
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         return _Certificate(run, arithmetic, outcome, note).bounds()
 
 
 class _Certificate:
-    """The quantities that bound observables; see `verify.observables.observable.Certificate`."""
+    """The quantities that bound observables; see `verify.observables.observable.Certificate`.
+
+    `error` is E of the module's text, and `error_sum` a bound of Σ ‖e_k‖.
+    """
 
     rounded: StepErrors
     derivatives: StepDerivatives
@@ -88,7 +91,7 @@ class _Certificate:
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        """Return the bound of each value that has one; None if the orbit has none."""
+        """Return the bounds by name, of each value that has one; None if the orbit has none."""
         derivatives, rounding_errors = self._derivatives(), self.rounding.errors()
         if derivatives is None or rounding_errors is None:
             return None
@@ -118,15 +121,15 @@ class _Certificate:
     def motion(self) -> matrix_growth.MatrixGrowth | None:
         """The growth of M along the run; None if no bound follows from it."""
         records, count, size = self.records, self.steps, len(self.names)
-        # Of float64's own sums, over the steps and in each sum of squares.
+        # The rounding of float64's sums, over the steps and in each sum of squares.
         slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
         growth, highest = records["growth"] * slack, records["growth_top"] * slack
         least = matrix_growth.least_of(size, records)
         if not (growth.is_finite() and least > 0):
             return None
-        # Q: it multiplies every bound by e^Q, so that a large one says nothing.
+        # This is Q of the module's text.
         rate = self.rounded.tangent * growth / least
-        if not rate < _MOST_GROWTH:
+        if not rate < _LARGEST_Q:
             return None
         top = matrix_growth.square_of_norm(size, highest, least).sqrt()
         mean = matrix_growth.square_of_norm(size, growth / (count + 1), least)
@@ -140,7 +143,8 @@ class _Certificate:
         if motion is None:
             return None
         least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
-        # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
+        # `linear_bound` is X without its quadratic term. E* is twice the error that it gives, and B
+        # is taken over the box widened by E*.
         linear_bound = rate.exp() * (self.first_error() + path / least * self.rounded.state)
         error = (2 * top * linear_bound).abs_upper()
         second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
@@ -160,17 +164,17 @@ class _Certificate:
 
     @cached_property
     def _box(self) -> tuple[dict[str, Ball], dict[str, Ball]]:
-        """The constants of the run, and the states that it visited, widened by the error."""
+        """The constants of the run, and the box of the states it visited, widened by the error."""
         return self.rounding.constants(), self.rounding.box(self.error)
 
     @cached_property
     def slope(self) -> Ball:
-        """A bound of the gradient of D."""
+        """A bound of the gradient of D = 2^s ΔJ, where `scale` is 2^−s."""
         return self.derivatives.gradient(*self._box) / self.scale
 
     @cached_property
     def size(self) -> Ball:
-        """A bound of |D|, computed or true."""
+        """A bound of |D|, at computed and at true states."""
         return self.rounded.size + self.slope * self.error
 
     @cached_property
@@ -179,11 +183,11 @@ class _Certificate:
         return self.slope * self.error_sum + self.steps * self.rounded.delta_j
 
     def total(self, name: str) -> Ball:
-        """Return an observable as it was computed."""
+        """Return the computed value of an observable."""
         return rational_ball(self.values[name])
 
     def adding(self, total: Ball, term: Ball) -> Ball:
-        """Return the rounding of one term and of its addition to a sum of non-negative terms."""
+        """Return a bound of the rounding of a term ≥ 0 and of its addition to a sum ≥ 0."""
         return self.unit if self.arithmetic.absolute else self.unit * (total + term) * 2
 
     # -- S and W: see `verify.runs.matrix_growth` ---------------------------------------------
@@ -240,12 +244,13 @@ class _Certificate:
         scale, count = self.scale, self.steps
         low, high = self.records["least"], self.records["most"]
         largest, jump = abs(low).max(abs(high)), scale * self.size
-        # Logarithms of the factors and of the product are taken: both must stay positive.
+        # The bound takes logarithms of the factors and of the product: both must be positive.
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         drift = count * self.of_product(scale, jump, largest) / (1 + low)
         shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
-        apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
+        # The distance of 1 + Λ from the product of the computed factors.
+        apart = drift.expm1() * (1 + high)
         if self.arithmetic.absolute:
             return shift + scale * count * (self.size * apart + self.unit)
         return shift + apart
@@ -253,6 +258,6 @@ class _Certificate:
     def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
         """Return the rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""
         if self.arithmetic.absolute:
-            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
+            # Two roundings: of D Λ in the sum D + D Λ, and of 2^−s (D + D Λ), which is added to Λ.
             return self.unit * (1 + scale)
         return self.unit * (1 + self.unit) * (largest + 2 * jump * (1 + largest))

@@ -1,15 +1,16 @@
 """Digits on demand: the choice of arithmetic and precision, with rigorous bounds where possible.
 
-A run that carries the tangent map is certified (`verify.runs.a_posteriori_bound`); where digits are
-missing it is done again at the precision that gives them. How many will be missing is foreseen at
-the first of its checkpoints, so that little is run in vain: where the tangent map grows linearly,
-the bound grows like N³, and that of Λ like N⁴. Where there is no certificate the bound is estimated
-(`verify.runs.estimates`).
+A run that carries the tangent map is certified (`verify.runs.a_posteriori_bound`); if digits are
+missing, it is done again at the precision that gives them. The first checkpoint of a long run
+forecasts how many will be missing, so that few steps are made in vain: where the tangent map grows
+linearly, the bound grows like N³, and that of Λ like N⁴. Without a certificate the bound is
+estimated (`verify.runs.estimates`).
 
-The certificate of W grows like N⁹ and is 10⁵ to 10¹⁷ times its error, since it takes the worst of
-every step for all of them. So the W of a short run, whose steps cost less than its certificate, is
-compared with that of a run with 20 more digits: their difference and the certificate of the second
-bound its error, which their difference nearly equals.
+W is the symplectic defect MᵀΩM − Ω of all steps. Its certified bound grows like N⁹ and is 10⁵ to
+10¹⁷ times its error, since it takes the worst step for all steps. So the W of a short run, whose
+steps cost less than its certificate, is compared with that of a run with 20 more digits. Their
+difference plus the certified bound of the second is a bound of the error of the first; it is nearly
+the difference alone.
 """
 
 from dataclasses import dataclass, replace
@@ -33,15 +34,15 @@ from verify.runs.estimates import (
 
 _ATTEMPTS = 5
 _BALL_ATTEMPTS = 6
-_MOST_TIMES = 64  # the first attempt's digits, beyond which a ball is given up
-WORTH_COMPILING = (
-    60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
-)
-_MOST_DEGREES = 8  # beyond, the Pfaffian of a certificate's matrices is too long
-_SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
-_MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
+_LARGEST_PRECISION_RATIO = 64  # digits in balls, over those of the first attempt; then it ends
+# The least number of steps that repay a compiled kernel: compiling takes 0.2–0.8 s, and a step in
+# mpfr 3–8 µs.
+WORTH_COMPILING = 60_000
+_MOST_CERTIFIED_DEGREES = 8  # beyond, the Pfaffian of a certificate's matrices has too many terms
+_SHORT_RUN_STEPS = 1000  # a shorter run takes less time than a certificate, and has no forecast
+_EXTRA_DIGITS = 20  # they cost a short run next to nothing, and a small observable needs them
 _W = "symplectic_defect"
-METHOD_OF_W = f"{METHOD}; W held against a run with {_MORE} more digits"
+METHOD_OF_W = f"{METHOD}; W held against a run with {_EXTRA_DIGITS} more digits"
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,9 @@ class Measurement:
 
 
 def choose(kernel_run: KernelRun, digits: int) -> str:
-    """Return the fastest arithmetic with rigorous bounds for these digits, steps and functions.
+    """Return the name of the fastest arithmetic with rigorous bounds that suits the run.
 
-    float64 is not among them: it is under test itself, and its bounds are estimates.
+    float64 is not among them: it is itself under test.
     """
     *faster, last = number_systems.automatic()
     for system in faster:
@@ -70,12 +71,12 @@ def choose(kernel_run: KernelRun, digits: int) -> str:
 
 
 def worth_compiling(system: NumberSystem, steps: int) -> bool:
-    """Return True if so many steps repay the time in which the number system compiles a kernel."""
+    """Return True if the number system compiles nothing, or if the steps repay compiling."""
     return steps >= WORTH_COMPILING or not system.compiles
 
 
 def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
-    """Return True if it has the functions, and a step from the start stays within its range."""
+    """Return True if the arithmetic has H's functions, and holds a step from the start."""
     try:
         return kernel_run.fits(arithmetic)
     except UnsupportedError:
@@ -85,10 +86,10 @@ def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
 def measure(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
 ) -> Course[Measurement]:
-    """Measure the run's values to so many digits in the arithmetic of that name, or its fallback.
+    """Measure the run's values to `digits` digits in the arithmetic `name`, or in its fallback.
 
-    The fallback is the arithmetic of unlimited range. It is taken where a fixed-point run leaves
-    its range, where a function is missing, and where equations cannot be solved.
+    The fallback is the arithmetic of unlimited range. It is taken if a fixed-point run leaves its
+    range or has no confirmed values, if a function is missing, and if equations cannot be solved.
     """
     try:
         if number_systems.get(name, digits).radius is not None:
@@ -113,13 +114,14 @@ def run_in_balls(
 ) -> tuple[Bounds, RunOutcome]:
     """Do the run in ball arithmetic; return its values with the radii of their balls, and the run.
 
-    Where requested digits are missing, it is done again with so many more. Where the balls have
-    grown so wide that no digit is left, it is done again with twice the digits, and then with as
-    many as all steps cost at the rate of those done so far. Where twice the digits end at the same
-    step, the orbit has left the range or the domain there. Where too many digits or attempts would
-    be needed, the run is "unresolved".
+    - If digits are missing at the end, the run is done again with these and 5 more.
+    - If the balls grow too wide on the way, it is done again with twice the digits; after that with
+      as many as all steps cost at the rate of those done so far, and at least twice.
+    - If a run ends at the same step as the one before it, the orbit has left the range or the
+      domain there.
+    - If too many digits or attempts would be needed, the run is "unresolved".
     """
-    most, last = _MOST_TIMES * digits_of(arithmetic), None
+    most, last = _LARGEST_PRECISION_RATIO * digits_of(arithmetic), None
     for attempt in range(1, _BALL_ATTEMPTS + 1):
         run = kernel_run.run(arithmetic, progress=progress)
         has, next_digits = digits_of(arithmetic), 2 * digits_of(arithmetic)
@@ -130,9 +132,9 @@ def run_in_balls(
                 return Bounds(values, f"ball arithmetic with {has} digits", rigorous=True), run
             next_digits = has + missing + 5
         elif last and last[1] == run.done:
-            # Twice as many digits would have carried a ball that had only grown too wide further.
+            # Twice the digits would have carried a ball further if it had only grown too wide.
             return Bounds({}, "ball arithmetic", "left range", run.done + 1), run
-        elif last:  # about evenly, steps cost digits
+        elif last:  # steps lose digits at about an even rate
             steps, spent = run.done - last[1], has - last[0]
             next_digits = max(next_digits, has + (kernel_run.steps - run.done) * spent // steps)
         if next_digits > most or attempt == _BALL_ATTEMPTS:
@@ -146,16 +148,20 @@ def run_in_balls(
 def certify_run(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
 ) -> Course[Measurement | Arithmetic]:
-    """Return the run's values to so many digits with rigorous bounds.
+    """Return the run's values to `digits` digits with rigorous bounds.
 
-    Where there are no such bounds, the arithmetic at the precision that was reached is returned
-    instead. Raises UnsupportedError.
+    If there are no such bounds, returns instead the arithmetic at the precision that was reached.
+    Raises UnsupportedError.
     """
     arithmetic = number_systems.get(name, _first_digits(name, digits, kernel_run))
-    if kernel_run.implicit or kernel_run.hamiltonian.degrees > _MOST_DEGREES:
+    if kernel_run.implicit or kernel_run.hamiltonian.degrees > _MOST_CERTIFIED_DEGREES:
         return arithmetic
     for _ in range(_ATTEMPTS):
-        foreseen = _Foresight(kernel_run, arithmetic, digits) if kernel_run.steps > _SHORT else None
+        foreseen = (
+            _Foresight(kernel_run, arithmetic, digits)
+            if kernel_run.steps > _SHORT_RUN_STEPS
+            else None
+        )
         outcome = yield from kernel_run.run_in_turn(
             arithmetic, tangent=True, progress=progress, enough=foreseen
         )
@@ -167,7 +173,7 @@ def certify_run(
         )
         if errors is None or len(errors) < len(outcome.values):
             break
-        # The certificate of W is far too wide: for a short run a second one gives a better bound.
+        # The certified bound of W is far too wide: a second run of a short run gives a better one.
         bound_of_w = yield from difference_of_w(kernel_run, arithmetic, outcome)
         if bound_of_w is not None:
             errors[_W] = min(errors[_W], bound_of_w)
@@ -183,13 +189,13 @@ def certify_run(
 def difference_of_w(
     kernel_run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome
 ) -> Course[Fraction | None]:
-    """Return a bound of W's error by a run with more digits and its certificate.
+    """Return a bound of W's error from a run with more digits and its certificate.
 
     None for a long run, for one without W, and if the finer run has no certificate.
     """
-    if kernel_run.steps > _SHORT or _W not in outcome.values:
+    if kernel_run.steps > _SHORT_RUN_STEPS or _W not in outcome.values:
         return None
-    finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE)
+    finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _EXTRA_DIGITS)
     second = yield from kernel_run.run_in_turn(finer, tangent=True)
     errors = certify(kernel_run, finer, second) if second.done == kernel_run.steps else None
     if errors is None or _W not in errors:
@@ -211,9 +217,10 @@ def _estimate(
 def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
     if not number_systems.about(name).compiles:
         return working_digits(digits, kernel_run.steps) + (
-            _MORE if kernel_run.steps <= _SHORT else 0
+            _EXTRA_DIGITS if kernel_run.steps <= _SHORT_RUN_STEPS else 0
         )
-    # Formats come in steps of 8 to 20 digits, and foresight costs a sixteenth of the run.
+    # Few digits are tried first: a forecast of too few costs only a sixteenth of the run, and
+    # formats come in steps of 8 to 20 digits.
     time = kernel_run.steps * kernel_run.start["h"]
     return digits + 3 + len(str(kernel_run.steps)) + len(str(int(time)))
 
@@ -231,7 +238,8 @@ def power_of(name: str) -> int:
 class _Foresight:
     """A forecast, at a run's first checkpoint, of whether its digits suffice.
 
-    It returns True where they do; `missing` is the number of digits that will be missing.
+    A call returns True, and the run goes on, if they do or if there is no certificate. `missing` is
+    the number of digits that will be missing.
     """
 
     def __init__(self, kernel_run: KernelRun, arithmetic: Arithmetic, digits: int) -> None:
@@ -242,10 +250,9 @@ class _Foresight:
 
     def __call__(self, outcome: RunOutcome) -> bool:
         errors = certify(self.kernel_run, self.arithmetic, outcome, 0)
-        if errors is None:  # let it run: what follows is for estimates
+        if errors is None:  # there is no forecast: the run goes on to its end
             return True
-        # The checkpoint has seen 1/growth of the steps; its bounds are scaled by the power of N of
-        # each value.
+        # The checkpoint comes after 1/growth of the steps; each bound is scaled by its power of N.
         growth = Fraction(self.kernel_run.steps, int(outcome.tangents[0]["done"]))
         note, records = outcome.trail[0], outcome.tangents[0]
         sizes = {n: abs(x) for n, x in note.items()}

@@ -25,7 +25,7 @@ Status = Literal["finished", "left range", "unresolved"]
 
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
-LINEAR = Fraction(1, 100)
+LINEAR = Fraction(1, 100)  # largest difference, in orbit sizes, by which a rerun confirms a run
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,15 @@ class Bounds:
 
 def working_digits(digits: int, steps: int) -> int:
     """Return enough digits to keep rounding, which grows at most like N² if bounded, below them."""
-    # N² has twice as many digits as N.
+    # N² has twice as many digits as N; the other 10 are a reserve.
     return digits + 10 + 2 * len(str(steps))
 
 
 def spread(first: RunOutcome, second: RunOutcome, least: Fraction = Fraction(0)) -> Fraction:
-    """Return the greatest difference of a coordinate at any checkpoint, by the orbit's size.
+    """Return the greatest relative difference of a coordinate at any checkpoint.
 
-    The size is that in all coordinates of its kind, momenta or positions, and at least `least`.
+    It is relative to the greatest |coordinate| of the same letter, p or q, or to `least` if that is
+    greater.
     """
     spread, notes = Fraction(0), (*first.trail, *second.trail)
     for letter in PLANE:
@@ -62,7 +63,7 @@ def spread(first: RunOutcome, second: RunOutcome, least: Fraction = Fraction(0))
 
 
 def _noise(arithmetic: Arithmetic, *runs: RunOutcome) -> Fraction:
-    """Return the size below which p or q may be nothing but rounding, as p at an equilibrium.
+    """Return the size below which a coordinate may be nothing but rounding, as p at an equilibrium.
 
     Such a coordinate has no digit that a higher precision confirms.
     """
@@ -73,7 +74,7 @@ def _noise(arithmetic: Arithmetic, *runs: RunOutcome) -> Fraction:
 def resolve(
     kernel_run: KernelRun, arithmetic: Arithmetic, first: RunOutcome, digits: int
 ) -> Course[Bounds]:
-    """Return the values to so many digits, raising the precision until a rerun confirms them."""
+    """Return the values to `digits` digits; raise the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):
         finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE_DIGITS)
         second = yield from kernel_run.run_in_turn(finer)
@@ -87,7 +88,8 @@ def resolve(
             continue
         if second.done < kernel_run.steps:
             return Bounds({}, method, "left range", second.done + 1)
-        # Both runs round their last values: the difference may be 0 by chance, the error is not.
+        # Both runs round their last values: their difference may be 0 by chance while the error is
+        # not.
         unit = Fraction(1, 2 ** (arithmetic.bits - 2))
         values = {
             n: (second.values[n], abs(x - second.values[n]) + unit * _rounded_size(n, x))
@@ -97,8 +99,9 @@ def resolve(
             missing_of(name, *value, digits)
             for name, value in values.items()
             if not (
+                # Such a coordinate is 0 as far as the runs tell.
                 name in first.coordinates and abs(value[0]) <= value[1] <= noise
-            )  # 0, as far as is known
+            )
         )
         missing = max(lacking, default=0)
         if missing <= 0:
@@ -109,12 +112,12 @@ def resolve(
 
 
 def _rounded_size(name: str, value: Fraction) -> Fraction:
-    """Return the size of the number that was rounded on the way to a value."""
+    """Return the size of the number whose rounding a value has: 1 + Λ for Λ by the product."""
     return abs(value) + _initial_offset(name)
 
 
 def _initial_offset(name: str) -> int:
-    """Return the number subtracted from it in the end: Λ by the plain product is that less 1."""
+    """Return the number that the run subtracts in the end: 1 for Λ by the plain product, else 0."""
     observable = observables.by_name().get(name)
     return observable.begins if observable else 0
 
@@ -126,15 +129,15 @@ def digits_of(arithmetic: Arithmetic) -> int:
 
 
 def missing_digits(value: Fraction, bound: Fraction, digits: int) -> int:
-    """Return the number of requested digits that are missing; none are of a value of 0."""
+    """Return the number of requested digits that are missing; 0 for a value or bound of 0."""
     if bound == 0 or value == 0:
         return 0
-    # The digits known are those between the value's and twice the bound's first.
+    # The digits between the first of the value and the first of twice the bound are certain.
     return digits - (magnitude(value) - magnitude(2 * bound))
 
 
 def missing_of(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
-    """Return the number of missing digits of an observable of that name."""
+    """Return the number of missing digits of the observable `name`."""
     if _initial_offset(name) and abs(value) <= bound:
         value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
     return missing_digits(value, bound, digits)

@@ -4,14 +4,14 @@ Up to `DIRECT_STEPS` steps float64 is compared with a certified run (`verify.run
 from the exact inputs: the bound is rigorous. Where there is no certificate, and the orbit is short,
 it is compared with an mpfr rerun whose precision is itself confirmed, an estimate.
 
-Beyond: against a compensated run (see `verify.kernels.statements`), by four times the greatest
-difference at any of the checkpoints on the way, p and q taken together, since a single difference
-may be small by chance. That leaves the rounding of h, the parameters and the initial values aside.
-Where errors grow linearly in time it shifts the phase by about T·2⁻⁵³, while the rounding of N ≥
-20,000 states shifts it by about √N·T·2⁻⁵³/5; where they grow exponentially, as near a separatrix,
-every rounding counts alike, and the states' are N to one. Where the two orbits differ by more than
-their size no value is given. (`verify separate` has rigorous bounds at full length, at twenty times
-the price.)
+Longer runs are compared with a compensated run (see `verify.kernels.statements`). The bound is four
+times the greatest difference at any checkpoint, of all coordinates together, since a single
+difference may be small by chance. It leaves out the rounding of h, the parameters and the initial
+values. Where errors grow linearly in time, that rounding shifts the phase by about T·2⁻⁵³, and the
+rounding of N ≥ 20,000 states by about √N·T·2⁻⁵³/5. Where they grow exponentially, as near a
+separatrix, every rounding counts alike, and there are N times as many of the states. If the two
+orbits differ by more than their size, no value is given. (`verify separate` has rigorous bounds at
+full length, in twenty times the time.)
 """
 
 from collections.abc import Mapping
@@ -25,11 +25,11 @@ from verify.runs.digits_on_demand import Measurement, certify_run, choose
 from verify.runs.estimates import LINEAR, BoundedValues, Bounds, resolve, spread, working_digits
 
 DIRECT_STEPS = 200_000
-REFERENCE = "mpfr"  # mpmath finds the same, and takes five to ten times as long
+REFERENCE = "mpfr"  # mpmath gives the same and takes five to ten times as long
 _CERTIFIED_DIGITS = 20
 _REFERENCE_DIGITS = 40
-_FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at every step
-_RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
+_FOLLOWED_STEPS = 1000  # limit for a chaotic orbit, which loses digits at every step
+_RERUN_STEPS = 20_000  # limit for a rerun in mpfr, where there is no certificate
 
 
 def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues) -> Course[Bounds]:
@@ -39,7 +39,7 @@ def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues
     """
     if first.done < run.steps:
         return Bounds({}, "none", "left range", first.done + 1)
-    # A compensated run has the same clock, whose rounding it would not see.
+    # A compensated run has the same clock, so that the difference would not show its rounding.
     direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
     bounds = (
         (yield from _compare_with_certified(run, first))
@@ -49,7 +49,7 @@ def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues
     values = dict(bounds.values)
     better = (proved_values | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:
-        # The closed form is the better value of the same product, up to its own error.
+        # Λ by the closed form is the more accurate value of the same product.
         plain, (closed_value, bound) = first.values["lambda_plain"], better
         values["lambda_plain"] = plain, abs(plain - closed_value) + bound
     return replace(bounds, values={n: x for n, x in values.items() if n in first.values})
@@ -69,7 +69,7 @@ def _compare_with_certified(run: KernelRun, first: RunOutcome) -> Course[Bounds]
 
 
 def _comparable_observables(observables: frozenset[str]) -> frozenset[str]:
-    """Return the observables whose true values are needed: for the plain product it is Λ."""
+    """Return the observables whose true values are needed: Λ in place of the plain product."""
     plain = {"lambda"} if "lambda_plain" in observables else set()
     return (observables - {"lambda_plain", "extremes"}) | plain
 
@@ -85,11 +85,11 @@ def _compare_with_rerun(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
     reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
     second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
-    # The rerun agrees to a hundredth: rounding is still small against the orbit, and the rerun's
-    # far smaller.
+    # If the two agree to a hundredth, float64's rounding is still small against the orbit, and
+    # the rerun's is far smaller.
     if second.done == run.steps and spread(first, second) < LINEAR:
         return Bounds(_distances(first, _add_floor(second.values, run.steps)), method)
-    # float64 has lost every digit, so the reference has lost many: is it good for the rest?
+    # float64 has lost its digits, so the reference has lost many too: it needs a confirmation.
     if run.steps > _FOLLOWED_STEPS:
         return _compare_with_compensated(run, first)
     true = yield from resolve(run, reference, second, 1)
@@ -110,7 +110,7 @@ def _compare_with_compensated(run: KernelRun, first: RunOutcome) -> Bounds:
     distance *= 4
     values = {}
     for name, x in first.values.items():
-        # p and q share one relative distance: that of one coordinate alone may be small by chance.
+        # All coordinates share one relative distance, as that of one may be small by chance.
         largest = max(abs(a[name]) for a in (*first.trail, *second.trail))
         if name in first.coordinates:
             difference = distance * largest
@@ -126,5 +126,5 @@ def _add_floor(true: Mapping[str, Fraction], steps: int) -> BoundedValues:
 
 
 def _floor(x: Fraction, steps: int) -> Fraction:
-    """Return the error that no comparison shows: float64's last bits, and underflow of steps."""
+    """Return a bound of what no comparison shows: float64's last bits, and underflow in steps."""
     return abs(x) / 2**51 + Fraction(steps, 2**1060)

@@ -1,6 +1,6 @@
 """The growth of a run's tangent maps M, and the bound of W that follows from it.
 
-How large the inverse of a tangent map may be follows from what was noted of M in float64. For
+A bound of the inverse of a tangent map follows from the records of M in float64. For
 2 × 2, ‖M⁻¹‖ = ‖M‖/|det M|. In n degrees of freedom M⁻¹ = B⁻¹ MᵀΩ with B = MᵀΩM, which is
 antisymmetric: its singular values come in pairs, |Pf B| is the product of one of each, and det M is
 Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of the squares of its entries
@@ -31,31 +31,33 @@ import flint
 
 from verify.kernels.rounding import Ball
 
-MOST = 3  # times max ‖M‖: the entries of Ĵ
-_ROUNDED = flint.arb(2) ** -48  # of an entry of MᵀΩM or of det M, relative to ‖M‖²
+MOST = 3  # units of max ‖M‖; the entries of Ĵ are taken to be within it
+# A bound of the rounding of an entry of MᵀΩM, and of det M in the plane, relative to ‖M‖².
+_RELATIVE_ROUNDING = flint.arb(2) ** -48
 
 
 def least_of(size: int, records: Mapping[str, Ball]) -> Ball:
-    """Return d > 0 with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; at most 0 if there is none."""
-    lost = _ROUNDED * records["growth_top"]
+    """Return d with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; it is useless unless d > 0."""
+    lost = _RELATIVE_ROUNDING * records["growth_top"]
     if size == 2:
         return records["det_low"] - lost
     n = size // 2
-    largest = records["form_top"].abs_upper().sqrt() * (1 + _ROUNDED)  # entry of the computed B
+    # A bound of the entries of the computed B.
+    largest = records["form_top"].abs_upper().sqrt() * (1 + _RELATIVE_ROUNDING)
     terms = flint.arb(1)
     for k in range(1, n + 1):
-        terms *= 2 * k - 1  # so many products in a Pfaffian
-    # Each product of n entries, computed from entries that are off by `lost`.
+        terms *= 2 * k - 1  # in the end the number of products in a Pfaffian
+    # A bound of the error of each product of n entries, each of which is off by at most `lost`.
     product = (largest + lost) ** n
-    error = terms * (product - largest**n + _ROUNDED * n * product)
+    error = terms * (product - largest**n + _RELATIVE_ROUNDING * n * product)
     norm = largest + size * lost
     return (records["det_low"] - error) / norm ** (n - 1)
 
 
 def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
-    """Return a bound of ‖M‖², from bounds of its entries' sum of squares and of its determinant.
+    """Return a bound of ‖M‖² from `squares`, a bound of the sum of M's squared entries, and d.
 
-    From a bound of the mean of such sums over several M it is one of the mean of ‖M‖².
+    If `squares` bounds the mean of such sums over several M, the result bounds the mean of ‖M‖².
     """
     if size > 2:
         return squares.abs_upper()
@@ -64,7 +66,7 @@ def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
 
 @dataclass(frozen=True)
 class MatrixGrowth:
-    """The growth of a run's matrices M: `steps`, d, Q, max ‖M‖ and S of the module's text."""
+    """The growth of a run's matrices M: N, d, Q, max ‖M‖ and S of `a_posteriori_bound`'s text."""
 
     steps: int
     least: Ball
@@ -86,7 +88,8 @@ def bound_total_defect(
     """Return a bound of the error of each entry of W; not finite if there is none.
 
     `error_sum`: Σ ‖e_k‖. `second`: B. `size`, `slope`: bounds of S and of its gradient.
-    `matrix_rounding`: of one step of Ĵ. `entry_rounding`: of one term of W and its addition.
+    `matrix_rounding`: a bound of the rounding of one step of Ĵ. `entry_rounding`: one of the
+    rounding of one term of W and its addition.
     """
     # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
     top, growth = motion.top, motion.rate.exp()
@@ -98,5 +101,5 @@ def bound_total_defect(
         return flint.arb.nan()
     terms = motion.steps * (2 * top + MOST * top) * size * error
     bound = terms + 4 * top * top * slope * error_sum + motion.steps * entry_rounding
-    # The computed W was taken to be below 9 max ‖M‖² where its rounding was counted.
+    # Where the rounding was counted, the computed W was taken to be below 9 max ‖M‖².
     return bound.abs_upper() if bound <= 3 * top * top else flint.arb.nan()

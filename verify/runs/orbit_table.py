@@ -1,12 +1,12 @@
-"""The states of a run, at every step or thinned: t, p, q, H − H₀, ΔJ, Λ and, where it is more, W.
+"""The states of a run, at every step or thinned: t, p, q, H − H₀, ΔJ, Λ, and W in n degrees.
 
-A float64 run's p, q and Λ are the numbers of that run, whole: it is what is under test. In any
-other arithmetic the states of exact arithmetic are wanted: the run is done twice, with 15 more
-digits the second time, at a precision that is raised until the two agree to the requested digits,
-and a row holds the digits in which they do. That is an estimate, as in `verify.runs.estimates`.
+A float64 run is itself under test, so that its p, q and Λ are printed as the run has them. In any
+other arithmetic the states stand for those of exact arithmetic. The run is done twice, with 15 more
+digits the second time, at a precision that is raised until the two agree to the requested digits;
+a row holds the digits in which they agree. That is an estimate, as in `verify.runs.estimates`.
 
-H − H₀ and ΔJ are those of exact arithmetic at the state in the row, enclosed by balls; where a step
-solves equations ΔJ is found with mpfr at twice the digits.
+H − H₀ and ΔJ are those of exact arithmetic at the state in the row, enclosed by balls; if a step
+solves equations, ΔJ is computed in mpfr at twice the digits.
 """
 
 from collections.abc import Iterator, Mapping
@@ -39,16 +39,16 @@ from verify.scenes.results.run import OrbitTable, RunResult
 
 _ATTEMPTS = 6
 _MORE_DIGITS = 15
-_GUARD = 60  # bits, of what cancels in H − H₀; beyond, twice as many are tried
-_BINARY = "p, q and Λ are the numbers of the float64 run, whole"
-_AGREED = "the digits in which two runs agree"
+_GUARD_BITS = 60  # bits that may cancel in H − H₀; if more do, the precision is doubled
+_BINARY_NOTE = "p, q and Λ are the numbers of the float64 run, whole"
+_AGREEMENT_NOTE = "the digits in which two runs agree"
 _ZERO = Fraction(0)
-Box = Mapping[str, tuple[Fraction, Fraction]]  # p and q, each with how far it may be off
+Box = Mapping[str, tuple[Fraction, Fraction]]  # each coordinate's value with a bound of its error
 
 
 @dataclass(frozen=True)
 class _States:
-    """The carried values at `steps`, with the radii of their errors, 0 where a value is exact."""
+    """The values after each of `steps` steps, with the radii of their errors, 0 if exact."""
 
     steps: tuple[int, ...]
     notes: tuple[Note, ...]
@@ -56,7 +56,7 @@ class _States:
 
 
 class _RunStates(NamedTuple):
-    """The states that a run noted in so many steps, with the radii of their errors."""
+    """The states that a run of `done` steps noted, with the radii of their errors."""
 
     arithmetic: Arithmetic
     done: int
@@ -67,12 +67,12 @@ class _RunStates(NamedTuple):
 def orbit_of(
     result: RunResult, points: int = MOST_POINTS, progress: Progress | None = None
 ) -> OrbitTable:
-    """Return the states of a run: every step up to `points` of them, then every second, third, …
+    """Return the states of a run: at every step, or at every second, third, … if it is long.
 
-    `points`: so many states after the initial one at most, 1 … 10,000; the last state is always
-    among them. Of a run that left the arithmetic's range: the states up to its last finite one.
-    The run is done again, or twice; `progress` is called with the number of steps done. Raises
-    InputError if no digits of it can be confirmed.
+    `points`: the limit of the number of states after the initial one, 1 … 10,000; the last state is
+    always among them. If the run left the arithmetic's range, the last finite state is the last.
+    The run is done again, in float64 once and else at least twice; `progress` is called with the
+    number of steps done. Raises InputError if the digits cannot be confirmed.
     """
     whole("points", points, 1, MOST_POINTS)
     start = Start.from_result(result)
@@ -80,7 +80,7 @@ def orbit_of(
     states = _collect_states(start, result.steps, points, 0 if binary else result.digits, progress)
     rows = _Rows(start, float64.NUMBER_SYSTEM.digits or 17 if binary else result.digits)
     stride = states.steps[1] if len(states.steps) > 1 else 1
-    digits = _BINARY if binary else _AGREED
+    digits = _BINARY_NOTE if binary else _AGREEMENT_NOTE
     columns = {"lambda": ("delta_j", "lambda")}
     observables = tuple(x for name in rows.observables for x in columns.get(name, (name,)))
     names = tuple(start.point)
@@ -93,7 +93,7 @@ def orbit_of(
 def _collect_states(
     start: Start, steps: int, points: int, digits: int, progress: Progress | None
 ) -> _States:
-    """Return the states of the run; in float64 if `digits` is 0."""
+    """Return the states of the run to `digits` digits; 0 stands for the run in float64 itself."""
     inputs = start.inputs
     preserves_area = step_map_of(start.hamiltonian, start.scheme).preserves_area
     observables = (
@@ -110,9 +110,10 @@ def _collect_states(
         )
         if states.done == steps or not states.done:
             break
-        steps = states.done  # it left the range; so that its last finite state is noted as well
+        # The run left the range: a run of fewer steps notes its last finite state as well.
+        steps = states.done
     first = start.point if digits else _rounded_start(states.arithmetic, start.point)
-    # Rounded up, so that at most `points` states are noted.
+    # The stride is rounded up, so that at most `points` states are noted.
     stride = -(-steps // points)
     indices = (0, *(min(k * stride, steps) for k in range(1, len(states.notes) + 1)))
     zeros = dict.fromkeys((*start.point, *accumulated_observables(start.hamiltonian)), _ZERO)
@@ -131,7 +132,7 @@ def _rounded_start(arithmetic: Arithmetic, point: Note) -> Note:
 
 
 def _confirm_states(run: KernelRun, digits: int, progress: Progress | None) -> _RunStates:
-    """Return the run's states, and their differences from those of a run with fewer digits."""
+    """Return the run's states, with their differences from a run with 15 digits fewer."""
     name, precision = choose(run, digits), working_digits(digits, run.steps)
     for _ in range(_ATTEMPTS):
         arithmetic = number_systems.get(name, precision)
@@ -141,14 +142,14 @@ def _confirm_states(run: KernelRun, digits: int, progress: Progress | None) -> _
         except UnsupportedError:
             name = number_systems.automatic()[-1].name
             continue
-        if arithmetic.absolute and second.done < run.steps:  # of a limited range
+        if arithmetic.absolute and second.done < run.steps:  # the range of fixed point is limited
             name = number_systems.automatic()[-1].name
             continue
         difference = _difference(first, second)
         if difference is not None and difference <= Fraction(1, 10**digits):
             radii = tuple(_differences(first, second))
             return _RunStates(arithmetic, second.done, second.trail, radii)
-        # Two orbits, and not one with errors: nothing tells how many digits are lost.
+        # If the runs follow two orbits, nothing tells how many digits are lost.
         precision = (
             2 * precision if difference is None or difference > LINEAR else precision + digits
         )
@@ -171,7 +172,7 @@ def _differences(first: RunOutcome, second: RunOutcome) -> Iterator[Note]:
 
 
 class _Rows:
-    """A writer of the rows of one orbit with so many digits."""
+    """A writer of the rows of one orbit with `digits` digits."""
 
     def __init__(self, start: Start, digits: int) -> None:
         self.start, self.digits = start, digits
@@ -182,9 +183,9 @@ class _Rows:
         self.delta_j = _DeltaJ(start, digits) if "lambda" in self.observables else None
 
     def format_rows(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
-        """Yield the rows; with `binary` every number reads back as the same double."""
+        """Yield the rows; if `binary`, the states are printed so that they read back unchanged."""
         z_0 = {name: make_ball(states.notes[0][name], _ZERO) for name in self.names}
-        # H − H₀ takes each state at its own time, where H depends on it.
+        # If H depends on time, H − H₀ takes each state at its own time.
         z_0 |= self._time_input(0)
         for k, note, radii in zip(states.steps, states.notes, states.radii, strict=True):
             pairs = {
@@ -207,7 +208,7 @@ class _Rows:
         return self.start.t0 + k * self.start.step_size
 
     def _time_input(self, k: int) -> dict[str, flint.arb]:
-        """Return the time of step k as an input, for an H that depends on it."""
+        """Return the time of step k as an input, if H depends on time."""
         return (
             {"t": rational_ball(self._time_of_step(k))}
             if self.start.hamiltonian.time_dependent
@@ -215,9 +216,9 @@ class _Rows:
         )
 
     def _energy_error(self, box: Box, start: Mapping[str, flint.arb], k: int) -> str:
-        """Return H − H₀ in the box, with more bits as long as they give digits that are missing."""
+        """Format H − H₀ in the box; for an exact state the bits double until it has its digits."""
         is_exact = not any(radius for _, radius in box.values())
-        bits = 4 * self.digits + _GUARD
+        bits = 4 * self.digits + _GUARD_BITS
         for _ in range(_ATTEMPTS if is_exact else 1):
             with working_precision(bits):
                 point = {name: make_ball(*pair) for name, pair in box.items()} | self._time_input(k)
@@ -227,8 +228,7 @@ class _Rows:
                 difference = enclosures[0][0] - enclosures[1][0]
             if difference == 0 or difference.rel_accuracy_bits() >= bits_for(self.digits):
                 break
-            # Digits of H − H₀ cancel where the drift is small: more bits bring them back, if the
-            # state is exact.
+            # Digits of H − H₀ cancel where the drift is small: more bits bring them back.
             bits *= 2
         return self._text(difference)
 
@@ -244,7 +244,7 @@ class _Rows:
 
 
 class _DeltaJ:
-    """ΔJ at states, by one step of a kernel from Λ = 0: Λ is ΔJ after it."""
+    """ΔJ as a function of states: the Λ of one step of a kernel that begins at Λ = 0."""
 
     def __init__(self, start: Start, digits: int) -> None:
         step_map = step_map_of(start.hamiltonian, start.scheme)
@@ -258,9 +258,10 @@ class _DeltaJ:
         self.inputs = [self.arithmetic.number(x) for x in arguments.values()]
 
     def __call__(self, box: Box, k: int) -> flint.arb | None:
-        """Return a ball with the ΔJ of step k from all states in the box.
+        """Return a ball that contains the ΔJ of step k from all states in the box.
 
-        None if it may not be defined at one of them.
+        A step that solves equations takes the middle of the box alone, and the radius is 0. None if
+        ΔJ may be undefined at a state in the box.
         """
         if self.vanishes:
             return flint.arb(0)
@@ -272,7 +273,7 @@ class _DeltaJ:
                 _, *after = self.kernel.function(1, *self.inputs, *state, arithmetic.number(_ZERO))
                 delta_j: Any = after[-1]
                 return delta_j if arithmetic.radius else make_ball(arithmetic.exact(delta_j), _ZERO)
-        except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
+        except (ArithmeticError, ValueError):  # a pole, or the log or root of a negative number
             return None
 
 

@@ -6,9 +6,10 @@ others, and `verify.runs.float64_bounds` those of float64, which is under test.
 A value that a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ
 does not depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 
-A run may leave the domain of H, as a scheme may step over a pole, or beyond it. Störmer-Verlet of
-log(q) evaluates 1/q, which is defined for q < 0 as well; no solution goes there. Only the states
-that the run has noted are checked, so that a departure between two of them is not seen.
+A run may leave the domain of H, as a scheme may step over a pole or past an end of the domain.
+Störmer–Verlet of log(q) evaluates 1/q, which is defined for q < 0 as well; no solution goes there.
+At most 64 of the states that the run has noted are checked, so that a departure between two of them
+is not seen.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -28,7 +29,7 @@ from verify.execution.keeper import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.run_domain import check_times, point_of
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.run_inputs import SECTIONS
+from verify.kernels.run_inputs import DEFAULT_SECTIONS
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course, run_alone
@@ -43,13 +44,13 @@ from verify.scenes.values import AUTO, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
 from verify.schemes.maps.step_map import StepMap
 
-_MOST = 64  # states that are checked
+_CHECKED_STATES = 64  # a run's noted states that are checked against H's domain, at most
 
 
 def describe_departure(hamiltonian: Hamiltonian, run: KernelRun, outcome: RunOutcome) -> str:
-    """Describe by which step a run has left H's domain, and what then no longer holds.
+    """Describe by which step a run has left H's domain, and which conditions no longer hold.
 
-    Empty where no noted state is outside the domain.
+    The text is empty if no checked state is outside the domain.
     """
     domain, start, count = hamiltonian.domain, run.start, len(outcome.trail)
     if not domain.requirements or not count:
@@ -66,8 +67,8 @@ def describe_departure(hamiltonian: Hamiltonian, run: KernelRun, outcome: RunOut
 
 
 def _select_notes(count: int) -> list[int]:
-    """Select the numbers of some notes, the last among them."""
-    return sorted({-(-count * k // _MOST) for k in range(1, _MOST + 1)})
+    """Select the numbers, from 1, of at most 64 notes, evenly spaced, the last among them."""
+    return sorted({-(-count * k // _CHECKED_STATES) for k in range(1, _CHECKED_STATES + 1)})
 
 
 class RequestedRun:
@@ -87,7 +88,7 @@ class RequestedRun:
         digits: int = 17,
         observables: Sequence[str] | None = None,
         points: int = 0,
-        sections: int = SECTIONS,
+        sections: int = DEFAULT_SECTIONS,
         shares_kernel: bool = False,
         keeper: Keeper = NOTHING,
     ) -> None:
@@ -100,7 +101,7 @@ class RequestedRun:
         check(hamiltonian, steps, digits, self.observables)
         whole("points", points, 0)
         step_map = step_map_of(hamiltonian, scheme)
-        # A thinned series shows Λ, so that a proof of Λ is needed for it, too.
+        # A thinned series shows Λ: it takes Λ from a proof or from the run.
         looked_at = {*self.observables, *(("lambda",) if points else ())}
         self.proved_values = prove_observables(step_map, looked_at, h, steps, digits)
         needs = frozenset(o for o in self.observables if o not in self.proved_values)
@@ -125,7 +126,7 @@ class RequestedRun:
         return choose(self.kernel_run, self.digits) if request == AUTO else request
 
     def take_measurement(self, progress: Progress | None = None) -> Course[Measurement]:
-        """Do all steps, once; `progress` is called with the number of those done."""
+        """Do all steps on the first call; `progress` is called with the number of steps done."""
         if self._measurement is None:
             self._measurement = yield from self._step(progress)
         return self._measurement
@@ -142,7 +143,7 @@ class RequestedRun:
 
     @property
     def done(self) -> bool:
-        """True if its steps were done."""
+        """True if the steps of the run were done."""
         return self._measurement is not None
 
     def result(self, progress: Progress | None = None) -> Course[RunResult]:
@@ -154,7 +155,7 @@ class RequestedRun:
     def prove_result(self) -> RunResult | None:
         """Return the observables by proof, without a step and without p and q.
 
-        None if a proof does not give all of them, and of a run for p and q alone.
+        None if a proof does not give all of them, and for a run that requests only p and q.
         """
         if not self.observables or not set(self.observables) <= set(self.proved_values):
             return None
@@ -201,21 +202,26 @@ def run(
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
-    `q`, `p`: a number each; in n degrees of freedom a list each. `t0`: when it starts, of an H that
-    depends on time. `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest
-    with rigorous bounds. `digits`: significant digits of the values (float64 may give fewer).
-    `observables`: where they are left out, those of `verify.scenes.observables` for so many
-    degrees. `points`: at most so many points of a thinned series are kept. `sections`: else the
-    state is noted so often. `progress` is called with the number of steps done. `keeper` keeps
-    checkpoints, from which an interrupted run goes on. `shares_kernel`: see
-    `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
-    unknown names, lists of another length.
+    - `q`, `p`: a number each; in n degrees of freedom a list each.
+    - `t0`: the time of the start, for an H that depends on time.
+    - `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest with rigorous
+      bounds.
+    - `digits`: significant digits of the values (float64 may give fewer).
+    - `observables`: if left out, all of `verify.scenes.observables` for H's degrees of freedom.
+    - `points`: the limit of the points of a thinned series; 0 for no series.
+    - `sections`: without a series, how many states are noted on the way.
+    - `progress`: is called with the number of steps done.
+    - `keeper`: keeps checkpoints, from which an interrupted run goes on.
+    - `shares_kernel`: see `verify.kernels.run_inputs`.
+
+    Raises InputError for h ≤ 0, N < 1, a parameter without a value, unknown names and lists of
+    another length.
     """
     return run_alone(RequestedRun(hamiltonian, scheme, **arguments).result(progress))
 
 
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
-    """Raise InputError for inputs that allow no run: a parameter without value, out of range."""
+    """Raise InputError for a parameter without a value, and for inputs out of range."""
     if hamiltonian.symbols:
         name = hamiltonian.symbols[0]
         raise InputError("parameter", name, f"has no value; a run needs one, as {name}=1")
@@ -228,13 +234,13 @@ def _series_needs(proved_values: Mapping[str, object], points: int) -> frozenset
     return frozenset({"extremes"}) if points and "lambda" not in proved_values else frozenset()
 
 
-# -- what a proof gives ---------------------------------------------------------------------------
+# -- values by proof ------------------------------------------------------------------------------
 
 
 def prove_observables(
     step_map: StepMap, names: Iterable[str], h: Fraction, steps: int, digits: int
 ) -> BoundedValues:
-    """Return those of the observables, with their bounds, that need no run."""
+    """Return the values, with bounds, of those of the named observables that need no run."""
     selected = {name: kinds.by_name()[name] for name in names}
     zero = Fraction(0), Fraction(0)
     values = {name: zero for name, observable in selected.items() if observable.vanishes(step_map)}
@@ -243,7 +249,7 @@ def prove_observables(
     }
     if step_map.preserves_area or not constant or step_map.uniform_delta_j is None:
         return values
-    # 4 bits for each digit; log2(N) doubled for the power N, in which errors grow with N.
+    # 4 bits for each digit, 64 in reserve, and 2 log2(N), as the power N multiplies errors by N.
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
     delta_j = enclose(step_map.flat.ring, step_map.uniform_delta_j, {"h": h}, bits)
     if delta_j is None:

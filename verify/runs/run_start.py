@@ -12,8 +12,10 @@ from verify.scenes.results.run import RunResult
 
 @dataclass(frozen=True)
 class Start:
-    """A scheme's step of one size, from `point`, each coordinate's value by its name, at t0 where H
-    depends on time."""
+    """A scheme with its H, its step size and its initial values.
+
+    `point` has each coordinate by its name; t0 is the initial time if H depends on time.
+    """
 
     hamiltonian: Hamiltonian
     scheme: str
@@ -35,7 +37,7 @@ class Start:
 
     @property
     def run_arguments(self) -> dict[str, Any]:
-        """The keyword arguments that request a run from there, without its number of steps."""
+        """The keyword arguments of a run from this start, without its number of steps."""
         fields = {name: x for name, x in vars(self).items() if name != "point"}
         return {**fields, "q": self.text("q"), "p": self.text("p")}
 

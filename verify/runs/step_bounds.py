@@ -1,9 +1,9 @@
-"""Bounds of one step over the box that a run has visited: of its derivatives and its rounding.
+"""Bounds of the derivatives and of the rounding of one step, over the box that a run has visited.
 
-By interval arithmetic: z', det J − 1 and the entries of S are differentiated operation by operation
-(`verify.kernels.step.program_algebra`), and enclosed over the box. The rounding of a step is
-counted by the rules in `verify.kernels.rounding`. `verify.runs.a_posteriori_bound` defines the
-quantities, B, ε and ρ among them, and derives bounds of a run from them.
+The new state z', det J − 1 and the entries of S = JᵀΩJ − Ω are differentiated operation by
+operation (`verify.kernels.step.program_algebra`), and enclosed over the box by interval arithmetic.
+The rounding of a step is counted by the rules in `verify.kernels.rounding`.
+`verify.runs.a_posteriori_bound` defines B, ε and ρ, and derives bounds of a run from them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,8 +19,8 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import error_of_time
-from verify.kernels.rounding import FLOAT, Ball, RoundedValue, analyse, rounding_of
+from verify.kernels.kernel import bound_time_error
+from verify.kernels.rounding import FLOAT64_ROUNDING, Ball, RoundedValue, analyse, rounding_of
 from verify.kernels.step.computation import StepRequest, computation_of, step_map_of
 from verify.kernels.step.operations import StepProgram
 from verify.kernels.step.partials import Partials
@@ -43,8 +43,9 @@ def norm(values: Iterable[Ball]) -> Ball:
 class StepDerivatives:
     """Derivatives of a step, by their indices in `program`.
 
-    `values` are z' and det J − 1; `hessians` the second derivatives of z'; `of_volume` and
-    `of_defect` the gradients of det J − 1 and of S's entries, one after the other.
+    `values` are the increments z' − z and det J − 1, `defect` the entries of S; `hessians` are the
+    second derivatives of z'. `of_volume` and `of_defect` are the gradients of det J − 1 and of the
+    entries of S, one after the other.
     """
 
     hamiltonian: Hamiltonian
@@ -63,8 +64,9 @@ class StepDerivatives:
     ) -> "StepDerivatives | None":
         """Return the derivatives of a scheme's step.
 
-        None for a scheme that does not take this H, or is given by equations for it. `volume`,
-        `form`: True if det J and S are needed; otherwise their derivatives are 0 and none.
+        None for a scheme that does not take this H, and for one that solves equations for it.
+        `volume`: True if det J is needed; otherwise its gradient is 0. `form`: True if S is needed;
+        otherwise there are no entries of it.
         """
         try:
             step = step_map_of(hamiltonian, scheme)
@@ -81,8 +83,7 @@ class StepDerivatives:
         )
         computation = computation_of(step, request)
         program = computation.program.copy()
-        # Slopes are the entries of DΦ; their gradients by the coordinates are the second
-        # derivatives.
+        # `computation.slopes` are the entries of DΦ, and their gradients the second derivatives.
         partials = Partials(
             program, [program.input(n, static=False) for n in computation.coordinates]
         )
@@ -107,7 +108,7 @@ class StepDerivatives:
     def second(self, constants: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
         """Return B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box, a bound of ‖D²Φ‖.
 
-        Then ‖DΦ(z + e) − DΦ(z)‖ ≤ B ‖e‖, too. Not finite where Φ may be undefined in the box.
+        Then ‖DΦ(z + e) − DΦ(z)‖ ≤ B ‖e‖, too. B is not finite if Φ may be undefined in the box.
         """
         values = self._enclose((*self.hessians, *self.values), constants, box)
         return flint.arb.nan() if values is None else norm(values[: len(self.hessians)])
@@ -123,11 +124,11 @@ class StepDerivatives:
         return flint.arb.nan() if values is None else norm(values)
 
     def form(self, constants: Mapping[str, Ball], box: Mapping[str, Ball]) -> tuple[Ball, Ball]:
-        """Return bounds in the box of the Frobenius norm of S, and of that of its gradients."""
+        """Return bounds in the box of the Frobenius norms of S and of its gradient."""
         values = self._enclose((*self.defect, *self.of_defect), constants, box)
         if values is None:
             return flint.arb.nan(), flint.arb.nan()
-        count, twice = len(self.defect), flint.arb(2).sqrt()  # an entry stands in S twice
+        count, twice = len(self.defect), flint.arb(2).sqrt()  # each entry stands in S twice
         return twice * norm(values[:count]), twice * norm(values[count:])
 
     def _enclose(
@@ -153,13 +154,13 @@ def _gradient_of_energy(hamiltonian: Hamiltonian) -> Enclosures:
 
 @dataclass(frozen=True)
 class StepErrors:
-    """The rounding of one step: of the state, of D, of the tangent map relative to its size."""
+    """Bounds of the rounding of one step: of the state (ε), of D, and of the tangent map (ρ)."""
 
     state: Ball
     delta_j: Ball
     tangent: Ball
     size: Ball  # a bound of |D|
-    defect: Ball  # of an entry of S
+    defect: Ball  # the rounding of an entry of S
     values: Mapping[str, RoundedValue]  # the kernel's outputs
 
 
@@ -182,12 +183,12 @@ class StepRounding:
         self.unit = flint.arb(2) ** -arithmetic.bits
         self.names = self.kernel.coordinates
 
-    # -- where the run has been -----------------------------------------------------------------
+    # -- the box of the run ---------------------------------------------------------------------
 
     def box(self, margin: Ball, *, last: bool = False) -> dict[str, Ball]:
-        """Return the states at which a step was made, and with `last` the last one, all widened.
+        """Return a box of the states before each step, and if `last` of the last one, widened.
 
-        float64's rounding of the recorded states is within 2^−50.
+        The box is widened by `margin`, and by 2^−50 for the recorded states, which are float64s.
         """
         around = flint.arb(0, 1)
         intervals = {}
@@ -200,7 +201,7 @@ class StepRounding:
         return intervals
 
     def times(self) -> Ball:
-        """Return all times at which a step is made."""
+        """Return an interval that contains the time of each step."""
         turns = self.run.turns(self.arithmetic)
         if turns:
             first, last = map(rational_ball, turns.times)
@@ -209,7 +210,7 @@ class StepRounding:
         return start.union(start + self.steps * self.h)
 
     def constants(self) -> dict[str, Ball]:
-        """Return h, the parameters, and all times if the kernel has a clock."""
+        """Return h and the parameters, and if the kernel has a clock the interval of its times."""
         parameters = {n: rational_ball(x) for n, x in self.run.parameters.items()}
         time = {"t": self.times()} if self.kernel.timed else {}
         return {"h": self.h, **parameters, **time}
@@ -217,7 +218,7 @@ class StepRounding:
     # -- the rounding of a step -----------------------------------------------------------------
 
     def errors(self) -> StepErrors | None:
-        """Return the rounding of one step; None if this kernel or arithmetic has no count."""
+        """Return bounds of the rounding of one step; None if none is known for this kernel."""
         kernel, program = self.kernel, self.kernel.lowering.program
         if kernel.tangent is None or self.arithmetic.rounding is None:
             return None
@@ -231,7 +232,7 @@ class StepRounding:
         tangent = self.tangent_error(enclosures)
         if tangent is None:
             return None
-        # ε is Euclid's norm of what both components lose.
+        # ε is the Euclidean norm of the roundings of all coordinates.
         sizes = self.box(flint.arb(0))
         state_error = norm(
             self.error_of_addition(sizes[n].abs_upper(), values[f"d{n}"]) for n in self.names
@@ -242,38 +243,37 @@ class StepRounding:
         return StepErrors(state_error, delta_j.error, tangent, delta_j.magnitude, defect, values)
 
     def matrix(self) -> dict[str, RoundedValue]:
-        """Return the entries of a carried M: data too, within the box of `matrix_growth`."""
+        """Return the entries of a carried Ĵ as exact inputs, in the box of `matrix_growth`."""
         most = matrix_growth.MOST * self.records["growth_top"].abs_upper().sqrt()
         box = flint.arb(0, 1) * most * (1 + flint.arb(2) ** -10)
         return {name: RoundedValue(box, flint.arb(0)) for name in self.kernel.matrix}
 
     def inputs(self) -> dict[str, RoundedValue]:
-        """Return the state, which is data without error, and h, t and the parameters as rounded."""
+        """Return the state as an exact input, and h, t and the parameters with their rounding."""
         inputs = {n: RoundedValue(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         for name, value in self.run.inputs(self.kernel, self.shift).items():
-            # The rounded input against the exact one, as a rational.
+            # The distance of the rounded input from the exact one, a rational.
             lost = self.arithmetic.exact(self.arithmetic.number(value)) - value
             inputs[name] = RoundedValue(rational_ball(value), rational_ball(abs(lost)))
         if self.kernel.timed:
-            # The clock's error grows with the number of additions and is greatest at the largest
-            # time.
+            # The clock's error is largest at the largest time.
             latest = abs(self.run.start["t"]) + self.steps * self.run.start["h"]
             inputs["t"] = RoundedValue(
-                self.times(), rational_ball(error_of_time(self.arithmetic, latest))
+                self.times(), rational_ball(bound_time_error(self.arithmetic, latest))
             )
         return inputs
 
     def error_of_addition(self, size: Ball, increment: RoundedValue) -> Ball:
-        """Return the error of an increment, and of its addition to a number of that size."""
+        """Return a bound of the error of an increment and of its addition to a number of `size`."""
         if self.arithmetic.absolute:
             return increment.error
         return increment.error + (size + increment.magnitude) * self.unit
 
     def tangent_error(self, main: Mapping[int, RoundedValue]) -> Ball | None:
-        """Return ρ, the error of one step of the tangent map, relative to ‖M‖."""
+        """Return ρ, a bound of the error of one step of the tangent map, relative to ‖M‖."""
         tangent = self.kernel.tangent
         assert tangent is not None  # noqa: S101 - the caller's condition
-        # A's entries come from wide numbers turned into float64, each with an error of its own.
+        # A's entries come from wide numbers that are rounded to float64, each with its own error.
         unit = flint.arb(2) ** -52
         inputs = {}
         for entry in tangent.main_values:
@@ -281,12 +281,12 @@ class StepRounding:
             lost = x.magnitude * unit + flint.arb(2) ** -96
             inputs[f"approx(v{entry})"] = RoundedValue(x.interval, x.error + lost)
         live = tangent.lowering.live(tangent.change)
-        values = analyse(tangent.program, live, inputs, FLOAT)
+        values = analyse(tangent.program, live, inputs, FLOAT64_ROUNDING)
         if values is None:
             return None
         entries = [values[index] for index in tangent.change]
         size, error = norm(x.magnitude for x in entries), norm(x.error for x in entries)
-        # 2n products, their sum, and its sum with M's rest are rounded; the rest is left out of the
-        # products. That is 2n + 2 times half a unit, and terms of second order.
+        # 2n products, their sum, and its sum with M's low part are rounded; the low part is left
+        # out of the products. That is 2n + 2 times half a unit, and terms of second order.
         units = len(self.names) // 2 + 2
         return ((error + units * unit * size) * (1 + unit) + unit * unit).abs_upper()

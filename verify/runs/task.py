@@ -7,7 +7,7 @@ from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeper import NOTHING, Keeper
 from verify.execution.task import StartTask
-from verify.kernels.run_inputs import SECTIONS
+from verify.kernels.run_inputs import DEFAULT_SECTIONS
 from verify.lockstep import Course, run_alone
 from verify.runs.float64_bounds import DIRECT_STEPS
 from verify.runs.requested_run import RequestedRun
@@ -15,8 +15,8 @@ from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import ExactNumber, StepSize
 
-# About the cost of any run, however short, and of one too long for a comparison with a certified
-# one.
+# The cost of any run beside its steps, and that of a run too long to be compared with a certified
+# one. Costs are in the unit of `step_cost`.
 _RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
 
 
@@ -32,19 +32,15 @@ class RunTask(StartTask):
     digits: int
     observables: tuple[str, ...] | None
     points: int
-    sections: int = SECTIONS
+    sections: int = DEFAULT_SECTIONS
     shares_kernel: bool = False
 
     @property
     def cost(self) -> int:
-        """The number of steps times the cost of one in this arithmetic, added to that of any run.
-
-        A short run in float64 is compared with another run, whose steps make up its cost.
-        """
+        """The fixed cost of a run, plus the number of steps times the cost of one."""
         if self.arithmetic != float64.NAME:
             return _RUN_COST + self.steps * step_cost(self.arithmetic)
-        # A short float64 run is compared with a certified one, which costs far more than its own
-        # steps.
+        # A short float64 run is compared with a certified one, whose steps cost far more.
         if self.steps <= DIRECT_STEPS:
             reference = AUTO if self.shares_kernel else mpfr.NAME
             return _RUN_COST + self.steps * step_cost(reference)
@@ -52,7 +48,7 @@ class RunTask(StartTask):
 
     @property
     def ensemble(self) -> str | None:
-        """A key of the runs of one kernel, where its number system steps several together."""
+        """A key shared by the runs of one kernel, if its number system steps several together."""
         if not in_lanes(self.arithmetic):
             return None
         series = "with" if self.points else "without"
@@ -63,11 +59,11 @@ class RunTask(StartTask):
         return self.requested_run().prove_result()
 
     def requested_run(self, keeper: Keeper = NOTHING) -> RequestedRun:
-        """Return the run that `compute` does."""
+        """Return the run of this task."""
         return RequestedRun(self.exact_hamiltonian(), **self.other_fields(), keeper=keeper)
 
     def compute(self, keeper: Keeper) -> RunResult:
-        """Do the run, from its last checkpoint where there is one."""
+        """Do the run, from its last checkpoint if there is one."""
         return run_alone(self.requested_run(keeper).result())
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:

@@ -174,7 +174,7 @@ class Scene(Frozen):
 
     def _check_degrees(self, hamiltonian: Hamiltonian) -> None:
         """Raise InputError if a start or a section does not fit H's degrees of freedom."""
-        if not hamiltonian.planar:
+        if not hamiltonian.planar:  # criteria, growth laws and others are of the plane alone
             self._check_no_plane(hamiltonian)
         for surface in self.poincare:
             surface.check_hamiltonian(hamiltonian)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from verify.errors import CONTROL, InputError
+from verify.errors import CONTROL_CHARACTERS, InputError
 from verify.files import read_text
 
 MAX_DEPTH = 12
@@ -207,7 +207,7 @@ def check_depth(data: Any, name: str, source: str) -> None:
 def _check_texts(data: Any, source: str, path: str = "") -> None:
     """Raise InputError if a key or a text holds a control character of terminals."""
     if isinstance(data, str):
-        if control := CONTROL.search(data):
+        if control := CONTROL_CHARACTERS.search(data):
             instead = "write a text with a \\ in it between '…'"
             problem = f"holds U+{ord(control[0]):04X}, a control character; {instead}"
             raise InputError(f"{source}: {path}", data, problem)

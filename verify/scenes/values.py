@@ -12,7 +12,7 @@ from verify.arithmetic.exact import Number, positive, rational, text, whole
 from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians import systems
-from verify.hamiltonians.coordinates import MOST_DEGREES
+from verify.hamiltonians.coordinates import MAX_DEGREES
 from verify.scenes.frozen import Frozen
 
 MAX_STEPS = 10**12
@@ -24,7 +24,7 @@ OF_ONE, OF_SEVERAL = "«one»", "«several»"
 ExactNumber = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
 ]
-Several = Annotated[tuple[ExactNumber, ...], Field(min_length=1, max_length=MOST_DEGREES)]
+Several = Annotated[tuple[ExactNumber, ...], Field(min_length=1, max_length=MAX_DEGREES)]
 Coordinates = Annotated[  # of q or of p: a number, or in n degrees of freedom a list
     Annotated[ExactNumber, Tag(OF_ONE)] | Annotated[Several, Tag(OF_SEVERAL)],
     Discriminator(lambda x: OF_SEVERAL if isinstance(x, list | tuple) else OF_ONE),

@@ -1,10 +1,9 @@
 """Schemes: step maps, tableaux, splittings, order conditions; `methods/` has one scheme a file.
 
-A file of `methods/` defines `SCHEME`, its one Scheme, whose name is the file's; or, for a family,
-`EXAMPLES`, some of the names it answers to, and `make(name)`, which returns the Scheme of that name
-or None. The name of a file is the beginning of the names it answers to; those in `methods/user/`
-answer to texts that users write. `ALIASES` are other names of the scheme. Adding a scheme is adding
-one file.
+A file of `methods/` defines `SCHEME`, the Scheme that has the file's name. For a family it defines
+`EXAMPLES`, some names of members, and `make(name)`, which returns the member of that name or None.
+The names of members begin with the file's name; the files in `methods/user/` take texts that users
+write. `ALIASES` are other names of the scheme. To add a scheme is to add one file.
 """
 
 from functools import cache
@@ -19,12 +18,12 @@ if TYPE_CHECKING:
     from verify.schemes.scheme import Scheme
 
 _FILES = Catalogue(f"{__name__}.methods", [f"{folder}/methods" for folder in __path__])
-_USERS = "user"
+_USER_FOLDER = "user"
 
 
 @cache
 def names() -> tuple[str, ...]:
-    """Return a name for each scheme; a family is represented by its first members."""
+    """Return the names of all schemes; a family stands with its `EXAMPLES`."""
     return tuple(
         name for file in _FILES.names for name in getattr(_FILES.module(file), "EXAMPLES", [file])
     )
@@ -32,14 +31,14 @@ def names() -> tuple[str, ...]:
 
 @cache
 def get(name: str) -> "Scheme":
-    """Return the scheme of that name, as `canonical` reads it.
+    """Return the scheme of that name, which is read as `canonical` reads it.
 
-    The name may be an alias, a member of a family such as `lie7`, or formulas or coefficients of
-    one's own. Raises InputError where there is none.
+    The name may be an alias, a member of a family such as `lie7`, or a user's own formulas or
+    coefficients. Raises InputError if it is none of these.
     """
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
-    # Importing every file would load sympy for each scheme: only those whose names fit are tried.
+    # Importing every file would load sympy: only files whose name begins the scheme's are tried.
     for file in _candidates(canonical(name)):
         scheme = _scheme_from_file(file, canonical(name))
         if scheme is not None:
@@ -50,9 +49,9 @@ def get(name: str) -> "Scheme":
 
 @cache
 def family(name: str) -> str:
-    """Return the family of the scheme of that name: the folder of `methods/` that its file lies in.
+    """Return the family of a scheme, which is the folder of its file in `methods/`.
 
-    Raises InputError where there is no such scheme.
+    Raises InputError if there is no such scheme.
 
     >>> family("leapfrog"), family("lie2")
     ('splitting', 'taylor')
@@ -71,14 +70,14 @@ def aliases() -> "Mapping[str, str]":
 
 @cache
 def canonical(name: str) -> str:
-    """Return the name of the scheme with this alias: in any case, with spaces.
+    """Return the name of the scheme that this name or alias means, in any case and spacing.
 
-    The name itself where there is none, and of a text of the users' own.
+    A name that is not known, and a text that a user wrote, is returned as it is.
 
     >>> canonical("RK4"), canonical("leapfrog"), canonical("kick 1; drift 1")
     ('rk4', 'stormer-verlet', 'kick 1; drift 1')
     """
-    if not isinstance(name, str):  # `get` says so
+    if not isinstance(name, str):  # `get` raises the error
         return name
     plain = plain_name(name)
     files = [file for file in _FILES.names if plain.startswith(file) and _is_ours(file)]
@@ -88,24 +87,24 @@ def canonical(name: str) -> str:
 
 
 def _is_ours(file: str) -> bool:
-    return _FILES.folder(file) != _USERS
+    return _FILES.folder(file) != _USER_FOLDER
 
 
 def _answers(file: str, name: str) -> bool:
     try:
         return _scheme_from_file(file, name) is not None
-    except InputError:  # a member of the family that it cannot make; it will say so
+    except InputError:  # a name of the family without a member; `get` raises the error
         return True
 
 
 def _candidates(name: str) -> list[str]:
-    """Return the files that may answer to the name: `lie2` imports `lie.py` and no other."""
+    """Return the files that may have the scheme: for `lie2` those are `lie.py` and the users'."""
     users = [file for file in _FILES.names if not _is_ours(file)]
     return [*(f for f in _FILES.names if name.startswith(f) and _is_ours(f)), *users]
 
 
 def _scheme_from_file(file: str, name: str) -> "Scheme | None":
-    """Return the scheme that the file has for the name; None where it does not answer to it."""
+    """Return the file's scheme of that name; None if it has none."""
     module = _FILES.module(file)
     scheme: Scheme | None
     if hasattr(module, "SCHEME"):

@@ -1,4 +1,4 @@
-"""An integration scheme: a name, its claims as data, and the way it makes a step map."""
+"""An integration scheme: its name, its claims as data, and how its step map is built."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -16,15 +16,17 @@ from verify.schemes.maps.step_map import StepMap
 @drawn_by("schemes")
 @dataclass(frozen=True)
 class Scheme:
-    """A one-step scheme; tests hold its claims against proofs.
+    """A one-step scheme; tests compare its claims with proofs.
 
-    `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
-    that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
-    −h undoes that of h. `source`: where it is defined.
-    `every_h`: the scheme as it is for every H; None where it is known for one H at a time.
-    `formulas`: those of a user's own map, by names: p_next and q_next, or p1_next, ….
-    `build`: how its map is made, where that is not by `every_h` or by `formulas`; it raises
-    InputError for an H that the scheme does not take.
+    - `order`: the claimed order of convergence.
+    - `area_preserving`: the claim that det J ≡ 1 for every H that the scheme takes.
+    - `explicit`: True if no equation is solved.
+    - `symmetric`: the claim that a step of −h undoes a step of h.
+    - `source`: the publication that defines it.
+    - `every_h`: its coefficients, for every H; None if it is known for one H at a time.
+    - `formulas`: the formulas of a user's own map, by name: p_next and q_next, or p1_next, ….
+    - `build`: builds the map for an H if neither `every_h` nor `formulas` does; raises InputError
+      for an H that the scheme does not take.
     """
 
     name: str
@@ -48,20 +50,19 @@ class Scheme:
 
     @property
     def evaluations(self) -> dict[str, int] | None:
-        """The evaluations of H_p and of H_q in a step, of a scheme that is made of such."""
+        """The numbers of evaluations of H_p and of H_q in a step; None if not countable."""
         return getattr(self.every_h, "evaluations", None)
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
-        """Return the exact map of one step for H, in which h is a symbol, as are parameters that
-        have no value.
+        """Return the exact map of one step for H; h and parameters without a value are symbols.
 
         Raises InputError for an H that the scheme does not take, such as one that is not separable.
         """
         return _step_map(self, hamiltonian)
 
 
-# A scene needs the same map when it is read, proved and run, and results derived from a map are
-# cached by the map. The cache is small, since a map keeps all that was derived from it.
+# A scene needs the same map when it is read, proved and run, and derived results are cached with
+# the map. The cache is small, since a map keeps all that was derived from it.
 @lru_cache(maxsize=32)
 def _step_map(scheme: Scheme, hamiltonian: Hamiltonian) -> StepMap:
     if scheme.build is not None:

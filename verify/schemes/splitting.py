@@ -28,10 +28,9 @@ def splitting(
     nearby: Nearby | None = None,
     nearby_in_time: Nearby | None = None,
 ) -> Scheme:
-    """Return the scheme that kicks and drifts by these parts of h in turn; every one preserves
-    area.
+    """Return the scheme of these kicks and drifts; every such scheme preserves area.
 
-    `times`: that of each part, in parts of h; left out, the two clocks' own. `nearby`,
+    `times`: the time of each part, in parts of h; the right times if left out. `nearby`,
     `nearby_in_time`: see `verify.schemes.conditions.splitting_conditions.Splitting`.
     """
     clock_times = times if any(x is not None for x in times) else ()
@@ -48,7 +47,7 @@ def splitting(
 
 
 def alternating(first: str, sizes: Iterable[sympy.Expr | Fraction]) -> tuple[Part, ...]:
-    """Return kicks and drifts in turn, beginning with `first`, of these parts of h."""
+    """Return kicks and drifts in turn with these sizes, beginning with a `first`."""
     kinds = cycle([first, *(kind for kind in LETTERS if kind != first)])
     return tuple(zip(kinds, map(_exact, sizes), strict=False))
 
@@ -58,18 +57,16 @@ def _exact(size: sympy.Expr | Fraction) -> sympy.Expr | Fraction:
 
 
 def palindrome(first: str, half: Sequence[sympy.Expr | Fraction]) -> tuple[Part, ...]:
-    """Return `alternating`, forth and back again; the last of `half` stands once, in the middle."""
+    """Return the palindrome of kicks and drifts whose first half, with the middle, is `half`."""
     return alternating(first, [*half, *half[-2::-1]])
 
 
 def compose(first: str, steps: Sequence[sympy.Expr]) -> tuple[Part, ...]:
-    """Return Störmer–Verlet steps of these parts of h, each half a `first`, the other, half a
-    `first`.
+    """Return the composition of Störmer–Verlet steps of these sizes.
 
-    Neighbouring halves are one part.
+    Each step is half a `first`, a part of the other kind, and half a `first`.
     """
-    # The half parts of neighbouring steps a and b are of the same kind, and make one part (a +
-    # b)/2.
+    # The half parts between steps a and b are of one kind, and make one part (a + b)/2.
     inner = [
         size
         for step, after in zip(steps, [*steps[1:], None], strict=True)

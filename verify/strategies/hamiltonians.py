@@ -21,7 +21,7 @@ from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import MOST_DEGREES, yes_no, yes_no_either
 from verify.strategies.couplings import Coupling, couplings, number_variables, with_sign
-from verify.strategies.planar_formulas import DrawnFormula, formulas
+from verify.strategies.plane_formulas import DrawnFormula, formulas
 from verify.strategies.terms import KINDS, Drawer, FormulaLimits, TermSum
 
 _MOST_TERMS, _MOST_SIZE = 50, 10**9

@@ -19,7 +19,7 @@ from verify.schemes.scheme import Scheme
 from verify.strategies import exact_numbers
 from verify.strategies.arguments import MOST_DEGREES, yes_no
 from verify.strategies.hamiltonians import HamiltonianRequest
-from verify.strategies.planar_formulas import DrawnFormula
+from verify.strategies.plane_formulas import DrawnFormula
 from verify.strategies.schemes import schemes_taking, select_schemes
 from verify.strategies.terms import FormulaLimits
 

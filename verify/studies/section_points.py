@@ -37,13 +37,15 @@ from verify.studies.surface_passes import (
     long_double_digits,
 )
 
-_MORE = 20  # digits
+_EXTRA_DIGITS = 20  # the digits that the second, finer computation has more
 _FLOAT_DIGITS = 17
-_COLUMNS = 8, 7  # of the exact flow's two extrapolations
-_SAME = Fraction(1, 10**6)  # of 1 + the farthest that the points are from 0: one point
-_SEEN = Fraction(1, 10**3)  # of the same: one place in a picture
-_SHOWN = 7  # digits of a point
-_OF_ENERGY, _SPARE = 10, 20  # digits
+_COLUMNS = 8, 7  # the columns of the two extrapolations that the exact flow is computed by
+# Two computations have the same point if they differ by at most this, relative to 1 + the greatest
+# |coordinate| of the orbit's points; in a picture a greater difference is not seen.
+_POINT_TOLERANCE = Fraction(1, 10**6)
+_PICTURE_TOLERANCE = Fraction(1, 10**3)
+_POINT_DIGITS = 7  # printed digits of a point
+_ENERGY_DIGITS, _ENERGY_GUARD_DIGITS = 10, 20
 Start = Mapping[str, Fraction]
 
 
@@ -69,13 +71,13 @@ def sections_at_periods(
         )
         for start in starts
     ]  # fmt: skip
-    names = {choose(run, digits + _MORE) for run in runs}
+    names = {choose(run, digits + _EXTRA_DIGITS) for run in runs}
     # One arithmetic for all orbits, so that they share a kernel, and the result names one.
     name = names.pop() if len(names) == 1 else _last_system()
     orbits = []
     for run in runs:
         passes, finer_passes = (
-            _follow_by_periods(run, name, d, steps) for d in (digits, digits + _MORE)
+            _follow_by_periods(run, name, d, steps) for d in (digits, digits + _EXTRA_DIGITS)
         )
         float_passes = _follow_by_periods(run, float64.NAME, _FLOAT_DIGITS, steps)
         orbits.append(_build_stroboscopic_orbit(passes, finer_passes, float_passes))
@@ -94,12 +96,13 @@ def _follow_by_periods(run: KernelRun, name: str, digits: int, steps: int) -> Pa
     with contextlib.suppress(UnsupportedError):
         outcome = run.run(number_systems.get(name, digits))
     if outcome is None or (outcome.done < run.steps and name != float64.NAME):
-        outcome = run.run(number_systems.get(_last_system(), digits))  # which has every range
-    whole = outcome.done // steps
-    return Passes((run.start, *outcome.trail[:whole]), left=outcome.done < run.steps)
+        outcome = run.run(number_systems.get(_last_system(), digits))
+    finished_periods = outcome.done // steps
+    return Passes((run.start, *outcome.trail[:finished_periods]), left=outcome.done < run.steps)
 
 
 def _last_system() -> str:
+    """Return the name of the number system that has every range and function."""
     return number_systems.automatic()[-1].name
 
 
@@ -111,16 +114,21 @@ def _build_stroboscopic_orbit(
     return StroboscopicOrbit(
         q=text(start["q"]),
         p=text(start["p"]),
-        points=tuple((decimal(z["q"], _SHOWN), decimal(z["p"], _SHOWN)) for z in passes.states),
-        known=count_agreeing(passes.states, finer_passes.states, _SAME * size)[0] - 1,
-        in_float64=count_agreeing(finer_passes.states, float_passes.states, _SEEN * size)[0] - 1,
+        points=tuple(
+            (decimal(z["q"], _POINT_DIGITS), decimal(z["p"], _POINT_DIGITS)) for z in passes.states
+        ),
+        known=count_agreeing(passes.states, finer_passes.states, _POINT_TOLERANCE * size)[0] - 1,
+        in_float64=count_agreeing(
+            finer_passes.states, float_passes.states, _PICTURE_TOLERANCE * size
+        )[0]
+        - 1,
         left=passes.left,
     )
 
 
 @dataclass(frozen=True)
 class SectionRequest:
-    """A request to a map: passes of this surface within so many steps, and the axes to draw."""
+    """A request for passes of this surface within so many steps, and the two axes to draw."""
 
     hamiltonian: Hamiltonian
     surface: Surface
@@ -170,7 +178,7 @@ def _follow_scheme(request: SectionRequest, name: str, start: Start) -> tuple[Pa
             request.hamiltonian, name, start, request.surface,
             step_size=request.step_size, steps=request.steps, digits=request.digits + extra_digits,
         )
-        for extra_digits in (0, _MORE)
+        for extra_digits in (0, _EXTRA_DIGITS)
     )  # fmt: skip
     return passes, finer_passes
 
@@ -180,7 +188,7 @@ def _build_poincare_orbit(
 ) -> PoincareOrbit:
     # Points count as one where they agree to a part of the picture's extent.
     size = 1 + max((abs(z[n]) for z in passes.states for n in request.draw), default=Fraction(0))
-    agreeing, error = count_agreeing(passes.states, second_passes.states, _SAME * size)
+    agreeing, error = count_agreeing(passes.states, second_passes.states, _POINT_TOLERANCE * size)
     return PoincareOrbit(
         q=tuple(text(x) for name, x in start.items() if name[0] == "q"),
         p=tuple(text(x) for name, x in start.items() if name[0] == "p"),
@@ -193,12 +201,12 @@ def _build_poincare_orbit(
 
 
 def _format_point(z: Start, draw: tuple[str, str]) -> tuple[str, str]:
-    x, y = (decimal(z[name], _SHOWN) for name in draw)
+    x, y = (decimal(z[name], _POINT_DIGITS) for name in draw)
     return x, y
 
 
 def _energy(hamiltonian: Hamiltonian, start: Start) -> str:
     """Return H at the start, rounded for display."""
     columns = [[start[name]] for name in hamiltonian.coordinates]
-    (energy,) = energies_at(hamiltonian, _OF_ENERGY + _SPARE, columns)
-    return decimal(fraction(energy), _OF_ENERGY)
+    (energy,) = energies_at(hamiltonian, _ENERGY_DIGITS + _ENERGY_GUARD_DIGITS, columns)
+    return decimal(fraction(energy), _ENERGY_DIGITS)

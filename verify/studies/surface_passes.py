@@ -1,15 +1,14 @@
 """Passes of a surface by orbits, of a scheme in many digits or of the exact flow in long double.
 
-The states of a scheme are z_0, z_1, …; where the surface lies between z_k and z_(k+1) = Φ_h(z_k)
-the orbit is taken to pass it at Φ_θ(z_k), the scheme's own step of length θ ≤ h that ends on it.
-For the exact flow that is the true place. θ is found to all digits, so that nothing is
-interpolated; a pass that begins and ends within one step, by an orbit that touches the surface, is
-not seen.
+The states of a scheme are z_0, z_1, …; if the surface lies between z_k and z_(k+1) = Φ_h(z_k) the
+orbit is taken to pass it at Φ_θ(z_k), the scheme's own step of length θ ≤ h that ends on it. θ is
+computed to all digits but three: nothing is interpolated. If an orbit crosses the surface and comes
+back within one step, that is not seen.
 
-Orbits of the exact flow take common steps by an extrapolation
-(`verify.flows.extrapolation_of_many`), which are long. A pass within a step is detected by a cubic
-through its ends, sampled in parts, and then found by Newton's iteration on the length of the step
-itself. A pass that lasts less than a part is missed.
+Orbits of the exact flow are extrapolated in common steps (`verify.flows.extrapolation_of_many`),
+which are long. A pass within a step is detected by a cubic through its ends, sampled at 33 points,
+and then computed by Newton's iteration on the length of the step itself. If an orbit crosses the
+surface and comes back between two of these points, that is not seen.
 """
 
 import contextlib
@@ -30,21 +29,21 @@ from verify.lockstep import run_alone
 
 State = Sequence[Any]  # the numbers of p1 … pn, q1 … qn
 Array = Any  # numpy.ndarray, which is imported where it is used
-# By a scheme:
-_BLOCK = 1000  # steps between looks at them
-_MOST_TRIES = 200  # of θ: regula falsi with Illinois's halving takes some twelve
-_SPARE = 3  # of the digits, beyond which θ is not looked for
-# By the exact flow:
-_PARTS = 32  # of a step, in which a change of side is looked for
-_TRIES = 8  # of Newton's iteration, which begins at a cubic's root
-_CLOSE = 1e-15  # to the surface, relative to the orbit so far
+# For a scheme:
+_BLOCK = 1000  # steps that are done at once
+_MAX_TRIES = 200  # values of θ; regula falsi with Illinois's halving takes some twelve
+_SPARE_DIGITS = 3  # the last digits, to which θ is not computed
+# For the exact flow:
+_PARTS = 32  # parts of a step, at whose ends the cubic's sign is examined
+_NEWTON_STEPS = 8
+_HEIGHT_TOLERANCE = 1e-15  # relative to the greatest |coordinate|, or 1
 
 
 @dataclass(frozen=True)
 class Surface:
     """The surface `coordinate` = `value` among the coordinates `names`.
 
-    It is passed upwards where it is `rising`, else downwards.
+    Passes count at which the coordinate grows if `rising`, else those at which it falls.
     """
 
     names: tuple[str, ...]
@@ -58,9 +57,9 @@ class Surface:
         return self.names.index(self.coordinate)
 
     def height(self, z: State, value: Any) -> Any:
-        """Return z's height above the surface, in the direction that counts.
+        """Return z's signed distance from the surface, which grows at the passes that count.
 
-        `value` in z's numbers.
+        `value`: that of the surface, as a number of z's arithmetic.
         """
         distance = z[self.index] - value
         return distance if self.rising else -distance
@@ -68,7 +67,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Passes:
-    """States of an orbit at its passes, in their order; `left`: it did not reach its end."""
+    """States of an orbit at its passes, in their order; `left`: it ended before its time."""
 
     states: Sequence[Mapping[str, Fraction]]
     left: bool = False
@@ -79,7 +78,10 @@ def count_agreeing(
     second: Sequence[Mapping[str, Fraction]],
     tolerance: Fraction,
 ) -> tuple[int, Fraction]:
-    """Return the number of first states that agree within `tolerance`, and their difference."""
+    """Return how many states agree within `tolerance` up to the first that does not.
+
+    With the number is returned their greatest difference.
+    """
     largest = Fraction(0)
     for k, (x, y) in enumerate(zip(first, second, strict=False)):
         difference = max(abs(x[name] - y[name]) for name in x)
@@ -111,8 +113,7 @@ def find_passes_of_scheme(
     with arithmetic.context(), contextlib.suppress(OutOfRangeError):
         for before, after in pairwise(chain([z], scheme_steps.walk(z, steps))):
             done += 1
-            # A state on the surface itself counts with the step that ends there, not with the next
-            # one.
+            # A state on the surface counts with the step that ends there, not with the next one.
             if surface.height(before, value) < 0 <= surface.height(after, value):
                 state = scheme_steps.solve_on_surface(before, surface, value)
                 states.append(
@@ -154,12 +155,13 @@ class _SchemeSteps:
     def solve_on_surface(self, z: State, surface: Surface, value: Any) -> State:
         """Return Φ_θ(z) on the surface, which lies between z and the end of its step."""
         low, high = self.arithmetic.number(Fraction(0)), self.inputs[0]
-        near = high * self.arithmetic.number(Fraction(1, 10 ** (self.digits - _SPARE)))
+        near = high * self.arithmetic.number(Fraction(1, 10 ** (self.digits - _SPARE_DIGITS)))
         end = self.step_from(z, high)
         below, above = surface.height(z, value), surface.height(end, value)
-        # The end that has stayed: its height is halved (Illinois), lest it stay for ever.
+        # The side, −1 or 1, of the end that was replaced last. If the same end is replaced twice,
+        # the other end's height is halved (Illinois), lest that end stay for ever.
         last_side = 0
-        for _ in range(_MOST_TRIES):
+        for _ in range(_MAX_TRIES):
             time = high - above * (high - low) / (above - below)
             state = self.step_from(z, time)
             height = surface.height(state, value)
@@ -188,8 +190,8 @@ def find_passes_of_exact_flow(
 ) -> list[Passes]:
     """Find all passes of each orbit until the time, by so many columns of the extrapolation.
 
-    Two different numbers of columns have independent errors. An orbit that cannot be followed to
-    the end ends the common steps; then each is followed alone.
+    The errors of two numbers of columns are taken to be independent. If one orbit cannot be
+    followed to the end, each is followed alone.
     """
     import numpy as np
 
@@ -247,23 +249,25 @@ class _StepWatch:
         return [(int(orbits[k]), self._state(z[:, k])) for k in order if good[k]]
 
     def solve_on_surface(self, before: Array, time: Array, step: Any) -> tuple[Array, Array]:
-        """Return the points on the surface, each after its own time near `time`.
+        """Return the states on the surface, each after its own time near `time`.
 
-        With them is returned which of them Newton's iteration has brought there.
+        With the states is returned, for each of them, if Newton's iteration has converged.
         """
         import numpy as np
 
-        for _ in range(_TRIES):
+        for _ in range(_NEWTON_STEPS):
             z = before + self.walk.change_over(before, time)
             height, speed = self.heights(z)
             last, time = time, time - height / speed
-            if np.array_equal(time, last):  # the other tries would give the same
+            if np.array_equal(time, last):  # further iterations would change nothing
                 break
         size = np.maximum(np.abs(z).max(axis=0), WIDE.mpf(1))
-        # Newton's iteration may leave the step by a rounding or more; beyond one part the pass
-        # belongs to another step.
+        # Newton's iteration may leave the step by rounding; beyond one part of it the pass belongs
+        # to another step.
         room = step / _PARTS
-        good = (np.abs(height) <= _CLOSE * size) & (time >= -room) & (time <= step + room)
+        good = (
+            (np.abs(height) <= _HEIGHT_TOLERANCE * size) & (time >= -room) & (time <= step + room)
+        )
         return z, good
 
     def _state(self, z: Array) -> Mapping[str, Fraction]:

@@ -9,9 +9,10 @@ from verify.studies.kinds import studies
 
 
 def plan_scenes(scenes: list[Scene]) -> Plan:
-    """Plan the tasks of all scenes; a task that several request is done once.
+    """Plan the tasks of all scenes; a task that several scenes request is done once.
 
-    What a proof makes needless, and what the scenes do not ask for, is left out with its reason.
+    The plan lists, each with its reason, the tasks that a proof makes needless and the sections
+    that a scene does not request.
     """
     return plan_of(scenes, _plan_scene)
 
@@ -27,7 +28,7 @@ def collect_findings(scene: Scene, results: Results) -> dict[str, Any]:
 def _plan_scene(plan: Plan, scene: Scene) -> None:
     every_study = studies()
     for scheme in scene.schemes:
-        # Decided once for each scheme: every study asks for it.
+        # Proved once for each scheme: every study needs it.
         preserves_area = step_map_of(scene.exact_hamiltonian(), scheme).preserves_area
         for study in every_study:
             if study.need_of_scheme:

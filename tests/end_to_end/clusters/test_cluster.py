@@ -216,9 +216,9 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
 def test_a_cluster_that_ends_is_told_and_not_waited_for(
     monkeypatch: pytest.MonkeyPatch, gone: str, said: str
 ) -> None:
-    monkeypatch.setattr(clusters, "_LOOK", 0.1)
-    monkeypatch.setattr(clusters, "_FORSAKEN", 0.3)
-    monkeypatch.setattr(executors, "_LOOK", 0.1)
+    monkeypatch.setattr(clusters, "_CHECK_SECONDS", 0.1)
+    monkeypatch.setattr(clusters, "_MAX_SECONDS_WITHOUT_WORKER", 0.3)
+    monkeypatch.setattr(executors, "_CHECK_SECONDS", 0.1)
     found: list[tuple[str, int]] = []
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
@@ -246,7 +246,7 @@ def _ending(cluster: Any, gone: str, found: list[Any]) -> Iterator[tuple[str, fl
 
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clusters, "_PATIENCE", 1.0)
+    monkeypatch.setattr(clusters, "_CONNECT_SECONDS", 1.0)
 
 
 def refused(address: str) -> str:

@@ -51,7 +51,7 @@ def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(exploring, "_STRETCH", 7)  # four stretches
+    monkeypatch.setattr(exploring, "_MIN_SCENES_OF_TASK", 7)  # four stretches
     asked = (*ASKED, "--examples", "28")
     alone = here(capsys, *asked, "--workers", "1")
     folder = tmp_path / "kept"
@@ -74,8 +74,8 @@ def test_a_hunt_finds_the_same_on_a_cluster(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(hunting, "_ISLAND", 2)  # three islands, two of them at a time
-    monkeypatch.setattr(gallery, "_LONGER", 10)
+    monkeypatch.setattr(hunting, "_SCENES_OF_ISLAND", 2)  # three islands, two of them at a time
+    monkeypatch.setattr(gallery, "_LONGER_FACTOR", 10)
     monkeypatch.setattr(page, "write", lambda *_: Path("index.html"))  # of what is found here
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)

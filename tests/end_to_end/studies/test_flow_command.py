@@ -58,6 +58,16 @@ def test_the_text_says_what_preserves_area_and_what_does_not(
     assert "NOT THE SAME" not in out
 
 
+def test_the_text_says_where_the_plane_of_a_pair_lies(capsys: pytest.CaptureFixture[str]) -> None:
+    region = "--system henon-heiles --q 0,1/10 --p 2/5,0 --scale 1/10 --plane 1"
+    steps = "--scheme lie2 --step-size 1/10 --steps 6"
+    status, out, _ = here(capsys, "flow", *region.split(), *steps.split())
+    assert status == 0
+    assert "circle at (q1, p1) = (0, 0.4), scale 0.1, p2 = 0, q2 = 0.1" in out
+    assert "∮ p·dq changes by" in out
+    assert "NOT THE SAME" not in out
+
+
 def test_a_map_whose_points_leave_has_status_1_and_says_so(
     capsys: pytest.CaptureFixture[str], scene: Path
 ) -> None:

@@ -9,6 +9,7 @@ from verify.scenes.results.regions import (
     DrawnOutline,
     FlowImage,
     FlowResult,
+    Projection,
 )
 
 
@@ -81,3 +82,19 @@ FAILED = image(
     mean_lambda_error=None, agree=None, distance=None, distance_error=None,
     problem="left the range of float64 at step 7",
 )  # fmt: skip
+
+
+def in_degrees(**changes: Any) -> FlowResult:
+    """A circle in two degrees of freedom, by the exact flow and lie2; seen in either plane."""
+    projections = tuple(
+        Projection(plane=k, area=area, area_error="1e-12", points=circle(1 + k))
+        for k, area in ((1, "0.75"), (2, "0.25"))
+    )
+    seen = (outline(circle(2), projections=projections),)
+    by_lie2 = {
+        "mean_lambda": None, "mean_lambda_error": None, "distance": None, "distance_error": None,
+        "mean_defect": "-1.234e-05", "mean_defect_error": "2.0e-08", **changes,
+    }  # fmt: skip
+    images = (exact(outlines=seen), image(outlines=seen, **by_lie2))
+    point = {"p1": "0", "p2": "0.5", "q1": "0", "q2": "0.1"}
+    return flow(*images, plane=1, point=point)

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measures.survey import NOWHERE, Request
-from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.measures.survey import NO_REQUEST, Request
+from verify.integrators.results import NO_CLAIMS, Claims, Finding
 from verify.integrators.step_check import check_integrator
 from verify.integrators.user_code.loading import callee_from, foreign_callee
 from verify.integrators.user_code.user_map import UserMap
@@ -15,10 +15,10 @@ PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 
 def judged(
     function: Callable[..., Any] | UserMap,
-    claims: Claims = NOTHING,
+    claims: Claims = NO_CLAIMS,
     limit: float = 20,
     hamiltonian: Hamiltonian | str = PENDULUM,
-    request: Request = NOWHERE,
+    request: Request = NO_REQUEST,
     arguments: str | None = None,
 ) -> Finding:
     """What `verify check-integrator` finds of the function, or of a library's or program's step."""

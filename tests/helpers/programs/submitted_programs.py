@@ -1,12 +1,15 @@
-"""Programs of other people: Duffing's oscillator in doubles, as they would write it; and mistakes.
+"""Programs of other people in doubles, as they would write them; and mistakes.
 
-Nothing here is taken from the toolkit: schemes are written out by hand, J is made of their four
-derivatives, and areas are a d − b c.
+One is of Duffing's oscillator, one of Hénon and Heiles' two degrees of freedom. Nothing here is
+taken from the toolkit: schemes are written out by hand, J is made of their derivatives, and areas
+are a d − b c.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 STEPS = (0, 1, 10, 100)
 State = tuple[Any, Any]
@@ -109,3 +112,57 @@ class Program:
 
     def table(self, steps: Sequence[int] = STEPS) -> str:
         return "\n".join(self.rows(steps)) + "\n"
+
+
+OMEGA = np.kron([[0, 1], [-1, 0]], np.eye(2))
+
+
+@dataclass(frozen=True)
+class HeilesProgram:
+    """lie2 for Hénon and Heiles, with W and Λ from the entries of its Jacobians.
+
+    `sign`: of p as it is printed. `off`: by what share the state is. `less`: what is taken away
+    from the product of the determinants.
+    """
+
+    columns: str = "p1,p2,q1,q2"
+    sign: int = 1
+    late: int = 0
+    off: float = 0.0
+    eta: int = 2
+    less: float = 1.0
+
+    def changed(self, **what: Any) -> "HeilesProgram":
+        return replace(self, **what)
+
+    def table(self, steps: Sequence[int] = range(22)) -> str:
+        z, m, largest, volume = np.array([0, 1 / 3, 0.3, 0.1]), np.eye(4), 0.0, 1.0
+        lines = [f"step,{self.columns},energy,symplectic_defect_max,symplectic_defect,lambda"]
+        for n in range(max(steps) + self.late + 1):
+            p1, p2, q1, q2 = z
+            energy = (p1**2 + p2**2 + q1**2 + q2**2) / 2 + q1**2 * q2 - q2**3 / 3
+            state = z * [self.sign, self.sign, 1, 1] * (1 + self.off)
+            shown = [*state, energy, largest, defect(m), volume - self.less]
+            cells = [f"{x:.17g}" for x in shown]
+            cells[5] = cells[5] if n else ""
+            if n - self.late in steps:
+                lines.append(",".join([str(n - self.late), *cells]))
+            z, j = self._step(z)
+            largest = max(largest, defect(j))
+            m, volume = j @ m, volume * np.linalg.det(j)
+        return "\n".join(lines) + "\n"
+
+    def _step(self, z: Any) -> tuple[Any, Any]:
+        h, (p1, p2, q1, q2) = 0.05, z
+        f = np.array([-(q1 + 2 * q1 * q2), -(q2 + q1**2 - q2**2), p1, p2])
+        a = np.array([[0, 0, -(1 + 2 * q2), -2 * q1], [0, 0, -2 * q1, -(1 - 2 * q2)],
+                      [1, 0, 0, 0], [0, 1, 0, 0]])  # fmt: skip
+        b = np.array([[0, 0, -2 * p2, -2 * p1], [0, 0, -2 * p1, 2 * p2],
+                      [0, 0, 0, 0], [0, 0, 0, 0]])  # fmt: skip
+        second = h * h / 2 if self.eta == 2 else 0.0
+        return z + h * f + second * (a @ f), np.eye(4) + h * a + second * (a @ a + b)
+
+
+def defect(j: Any) -> Any:
+    """The greatest |entry| of JᵀΩJ − Ω."""
+    return np.abs(j.T @ OMEGA @ j - OMEGA).max()

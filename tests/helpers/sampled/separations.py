@@ -48,6 +48,15 @@ def area_chains(*asked: Any, **more: Any) -> AreaChains:
     return AreaChains(plain, closed, chains.arithmetic, chains.seconds)
 
 
+def chain_of(
+    hamiltonian: Hamiltonian, scheme: str, steps: int = 300, name: str = "plain", **start: Any
+) -> Chain:
+    """That of one way in the plane, from (3/2, 1/3) and with h = 1/1000 where `start` says none."""
+    at = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000), **start}
+    chain: Chain = getattr(area_chains(hamiltonian, scheme, at, steps, 17, "mpfr"), name)
+    return chain
+
+
 class Remembering(Keeper):
     """Keeps every checkpoint, in memory."""
 

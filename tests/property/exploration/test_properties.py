@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import SearchStrategy
 
+from tests.campaigns.drawn_in_degrees import KINDS, looked
 from tests.examples import drawn
 from verify import strategies
 from verify.exploration import properties
@@ -29,3 +30,15 @@ def test_a_property_holds_of_drawn_scenes(name: str, scenes: SearchStrategy[Scen
         asked.holds(Sample.from_scene(scene))
 
     holds()
+
+
+@pytest.mark.left_to_ci
+@pytest.mark.parametrize(("degrees", "timed"), KINDS)
+def test_no_property_fails_of_a_sample_of_the_campaign_in_degrees(
+    degrees: int, timed: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    failed = looked(degrees, timed, 5, seed=20)
+    said = capsys.readouterr().out
+    assert not failed, said
+    assert f"5 scenes of {degrees} degrees of freedom" in said
+    assert "results-read-back: of 5" in said

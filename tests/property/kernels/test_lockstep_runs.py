@@ -168,7 +168,7 @@ def test_lanes_are_compiled_for_long_work_only(
     monkeypatch.setattr(paths, "forced_path", lambda: False)
     few = runs("duffing")
     steps = sum(run.steps for run in few)
-    monkeypatch.setattr(engine, "_WORTH_COMPILING", 3 * steps // 2)
+    monkeypatch.setattr(engine, "_MIN_STEPS_TO_COMPILE", 3 * steps // 2)
     with path(IN_LANES[0]):
         done(few, 33, in_lockstep=True)
         assert set(seen) == {1}

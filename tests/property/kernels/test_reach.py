@@ -285,5 +285,5 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
 
 def test_limits_beyond_the_format_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     anew(monkeypatch)
-    monkeypatch.setattr(stepping, "_TOP", Fraction(2**40))
+    monkeypatch.setattr(stepping, "_FORMAT_LIMIT", Fraction(2**40))
     assert wrong_kernel_runs()

@@ -23,7 +23,14 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.kernels.rounding import PRECISION, Ball, RoundedValue, Rounding, analyse, rounding_of
+from verify.kernels.rounding import (
+    PRECISION_BITS,
+    Ball,
+    RoundedValue,
+    Rounding,
+    analyse,
+    rounding_of,
+)
 from verify.kernels.step.kinds import Op
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.stepping import KernelRun
@@ -90,7 +97,7 @@ class Tried:
     def counted(self, width: Fraction) -> dict[int, Fraction] | None:
         """The bound of each operation's error, for all states so near; None where there is none."""
         exact, number = self.arithmetic.exact, self.arithmetic.number
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             around = rational_ball(width) * flint.arb(0, 1)
             given = {
                 n: RoundedValue(rational_ball(x), rational_ball(abs(exact(number(x)) - x)))

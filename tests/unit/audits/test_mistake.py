@@ -54,7 +54,7 @@ def test_every_description_is_read_and_has_plain_words() -> None:
 )
 def test_each_table_shows_the_mistake_and_the_mend(name: str, table: TableCorrection) -> None:
     shown = _confirm_table(table)
-    assert all(x.below(shown.claimed) for x in shown.printed)
+    assert all(x.is_below(shown.claimed) for x in shown.printed)
     assert bool(shown.mended) is bool(table.changes)
 
 
@@ -167,7 +167,7 @@ def test_changes_are_made_in_a_copy() -> None:
 def test_a_program_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     from verify.audits import mistake
 
-    monkeypatch.setattr(mistake, "_SECONDS", 0.5)
+    monkeypatch.setattr(mistake, "_PROGRAM_SECONDS", 0.5)
     assert "does not end" in run("while True:\n    pass\n").failed
 
 

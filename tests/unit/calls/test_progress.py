@@ -33,7 +33,7 @@ def notebook(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     monkeypatch.setitem(sys.modules, "IPython", ipython)
     monkeypatch.setitem(sys.modules, "tqdm", None)
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    monkeypatch.setattr(progress, "_SECONDS", 0)
+    monkeypatch.setattr(progress, "_SHOW_INTERVAL", 0)
     return shown
 
 
@@ -65,7 +65,7 @@ def test_what_adds_is_added(notebook: list[Any]) -> None:
 
 
 def test_a_short_run_shows_nothing(notebook: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(progress, "_SECONDS", 60)
+    monkeypatch.setattr(progress, "_SHOW_INTERVAL", 60)
     with progress_of(None, "steps", 10) as tell:
         assert tell
         tell(10)
@@ -120,7 +120,7 @@ def test_on_a_terminal_it_is_asked_for(
 ) -> None:
     monkeypatch.setitem(sys.modules, "tqdm", None)
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    monkeypatch.setattr(progress, "_SECONDS", 0)
+    monkeypatch.setattr(progress, "_SHOW_INTERVAL", 0)
     with progress_of(True, "steps", 10) as tell:
         assert tell
         tell(5)

@@ -3,6 +3,8 @@
 import math
 from pathlib import Path
 
+import pytest
+
 from verify.claims.claims_file import load_claims
 from verify.claims.verdicts import prepare
 from verify.execution.execute import Store
@@ -164,3 +166,33 @@ def test_more_digits_are_computed_where_more_are_printed(tmp_path: Path) -> None
     )
     found = check_file(tmp_path, content)
     assert (found["a"].verdict, found["b"].verdict) == (ENCLOSED, REFUTED)
+
+
+IN_DEGREES = """
+[[claim]]
+id = "a"
+scheme = "lie2"
+system = "henon-heiles"
+"""
+RUN = "step_size = 0.01\nsteps = 500\nq = [0.3, -0.1]\np = [0.1, 0.2]\n"
+
+
+@pytest.mark.parametrize(
+    ("claim", "verdict"),
+    [
+        ('kind = "order"\norder = 4', PROVED),  # of det J − 1, where S is of order 3
+        ('kind = "order"\norder = 3', REFUTED),
+        ('kind = "defect_order"\ndefect_order = 3', PROVED),
+        ('kind = "symplectic"\nsymplectic = true', REFUTED),
+        ('kind = "symplectic"\nsymplectic = false', PROVED),
+        (f'kind = "bounded"\nbound = 0.001\n{RUN}', ENCLOSED),
+        (f'kind = "bounded"\nbound = 1e-9\n{RUN}', REFUTED),
+        (f'kind = "magnitude"\nexponents = {{ symplectic_defect_max = -6 }}\n'
+         f'quantifier = "every"\n{RUN}', ENCLOSED),
+    ],
+)  # fmt: skip
+def test_a_claim_on_lists_in_degrees_is_judged(
+    tmp_path: Path, claim: str, verdict: Verdict
+) -> None:
+    found = check_file(tmp_path, IN_DEGREES + claim)["a"]
+    assert found.verdict is verdict, found.evidence

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from verify.commands.explore import _explore
-from verify.execution.executors import ANYWHERE
+from verify.execution.executors import LOCAL_DEFAULT
 from verify.exploration import exploring
 from verify.exploration.exploring import Exploration
 from verify.scenes.results.exploration import EarlierFailure, ExploreReport, ShrunkResult
@@ -39,5 +39,5 @@ def test_what_fails_now_or_still_is_the_exit_status(
 ) -> None:
     report = ExploreReport(seed=0, examples=1, properties=(), failures=failures, again=earlier)
     monkeypatch.setattr(exploring, "explore", lambda *_, **__: report)
-    answer = _explore(ASKED, {}, tmp_path, None, ANYWHERE)
+    answer = _explore(ASKED, {}, tmp_path, None, LOCAL_DEFAULT)
     assert (answer.failed, answer.problem) == (failed, None)

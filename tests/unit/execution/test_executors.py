@@ -29,7 +29,7 @@ from tests.helpers.processes.worker_functions import (
 from tests.paths import ROOT
 from verify.errors import InputError, PlaceError
 from verify.execution.executors import (
-    ANYWHERE,
+    LOCAL_DEFAULT,
     THIS_PROCESS,
     FunctionCall,
     Placement,
@@ -55,7 +55,7 @@ class Finished:
 
     def release(self, future: "Future[Any]") -> None: ...
 
-    def lost(self, error: BaseException) -> bool:
+    def is_worker_loss(self, error: BaseException) -> bool:
         return isinstance(error, ConnectionError)
 
     def check(self) -> None: ...
@@ -91,7 +91,7 @@ def test_a_place_that_cannot_be_is_bad_input(
 
 
 def test_a_place_that_can_be_is_none() -> None:
-    assert Placement() == ANYWHERE
+    assert Placement() == LOCAL_DEFAULT
     assert Placement(1) == THIS_PROCESS
     for address in ("tcp://10.0.0.1:8786", "tls://here.org:1", "tcp://[::1]:8786"):
         assert Placement(cluster=address).cluster == address

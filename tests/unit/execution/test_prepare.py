@@ -12,7 +12,13 @@ from tests.helpers.processes.timed_tasks import Noted, Other, Timed, lines_of
 from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute, prepare_task
-from verify.execution.executors import ANYWHERE, THIS_PROCESS, FunctionCall, Placement, open_place
+from verify.execution.executors import (
+    LOCAL_DEFAULT,
+    THIS_PROCESS,
+    FunctionCall,
+    Placement,
+    open_place,
+)
 from verify.execution.plan import Plan
 from verify.execution.task import Task
 
@@ -160,5 +166,5 @@ def test_processes_are_started_where_the_others_are_worth_it(
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     others = [Other(log=str(log), number=k, worth=worth) for k, worth in enumerate(costs)]
     alone = Timed(log=str(log), number=9, worth=LONG)
-    execute(plan_of(alone, *others), Store(None), where=ANYWHERE)
+    execute(plan_of(alone, *others), Store(None), where=LOCAL_DEFAULT)
     assert asked[0] == workers

@@ -85,7 +85,7 @@ def test_examples_are_counted_and_properties_hold() -> None:
 
 def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = explore(exploration(), Store(None), where=THIS_PROCESS)
-    monkeypatch.setattr("verify.exploration.exploring._STRETCH", 7)
+    monkeypatch.setattr("verify.exploration.exploring._MIN_SCENES_OF_TASK", 7)
     assert len(exploration().plan.tasks) == 5
     assert explore(exploration(), Store(None), where=THIS_PROCESS) == whole
 

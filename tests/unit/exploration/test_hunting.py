@@ -239,7 +239,7 @@ def test_the_check_sees_larger_coefficients(ranges: set[tuple[int | None, int | 
 
 
 def test_one_worker_and_two_find_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hunting, "_ISLAND", 8)
+    monkeypatch.setattr(hunting, "_SCENES_OF_ISLAND", 8)
     asked = Hunt(measure="growth", seed=5, examples=16, steps=2, drawn=POLYNOMIAL)
     assert len(asked.plan.tasks) == 2
     alone, two = (hunt(asked, Store(None), where=Placement(n)) for n in (1, 2))

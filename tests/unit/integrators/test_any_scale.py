@@ -80,7 +80,7 @@ def test_a_body_near_the_speed_of_light_has_a_unit_of_p_and_one_of_q_by_it(speed
     found = judged(step, BOTH, hamiltonian=energy)
     assert found.convergence_order == 2, found.reason
     assert found.symplectic
-    places = places_of_field(FloatField(Hamiltonian.parse(energy)), moving=False)
+    places = places_of_field(FloatField(Hamiltonian.parse(energy)), time_dependent=False)
     assert max(abs(x.z[0]) for x in places) < 10 * speed
     wrong = judged(step, BOTH, hamiltonian=energy.replace("+ q**2", "+ 1.001*q**2"))
     assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0)

@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.programs import remembering_steps
 from tests.helpers.programs import user_steps as own_steps
 from tests.helpers.programs.judged import judged as found_of
-from verify.integrators.results import NOTHING, Claims
+from verify.integrators.results import NO_CLAIMS, Claims
 
 Function = Callable[..., Any]
 
@@ -17,7 +17,7 @@ Function = Callable[..., Any]
 @pytest.mark.parametrize("function", [remembering_steps.nearly_the_force, own_steps.flipped])
 def test_area_is_not_refuted_where_the_order_is(function: Function) -> None:
     """An error of 10⁻¹¹ in the force shows at steps of 10⁻¹¹."""
-    for claims in (NOTHING, Claims(area_preserving=True), Claims(1, area_preserving=True)):
+    for claims in (NO_CLAIMS, Claims(area_preserving=True), Claims(1, area_preserving=True)):
         found = found_of(function, claims)
         assert (found.verdict, found.area_preserving) == ("REFUTED", True)
         assert "the order is refuted, not det J ≡ 1, which is proved: not a sch" in found.reason

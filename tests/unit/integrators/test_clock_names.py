@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import verify
+from tests.helpers.programs.blind import blind
 from tests.unit.integrators.test_in_time import (
     DRIVEN,
-    as_float,
     euler,
     four_stages_of_yoshida,
     rk4_at,
@@ -106,7 +106,7 @@ def test_a_measured_one_is_told_at_which_time_it_reads_in_the_mean(name: str) ->
     def compares(p: Any, q: Any, t: Any, h: Any) -> Any:
         return step(p, q, t, h) if q < 1e9 else (p, q)
 
-    for how, made in (("duals", compares), ("floats", as_float(step))):
+    for how, made in (("duals", compares), ("floats", blind(step))):
         found, said = notes(system, made)
         assert (found.how, found.convergence_order) == (how, 1)
         assert f"H is read at {mean} in the mean" in said
@@ -117,7 +117,7 @@ def test_a_measured_one_is_told_at_which_time_it_reads_in_the_mean(name: str) ->
 @pytest.mark.parametrize("name", RIGHT)
 def test_of_a_right_clock_nothing_is_said(name: str) -> None:
     system, step, order = RIGHT[name]
-    for made in (step, as_float(step)):
+    for made in (step, blind(step)):
         found, said = notes(system, made)
         assert found.convergence_order == order
         assert "read at" not in said
@@ -131,7 +131,7 @@ def test_of_another_mistake_nothing_is_said_of_the_clock() -> None:
         q = q + h * p
         return p + h * 2 / 3 * force(q, t + h), q
 
-    for made in (step, as_float(step)):
+    for made in (step, blind(step)):
         found, said = notes(FORCED, made)
         assert found.convergence_order == 1
         assert "read at" not in said

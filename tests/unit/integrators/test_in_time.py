@@ -1,13 +1,14 @@
 """Steps of one's own for H(p, q, t): right clocks, wrong ones, and t where it is not looked for."""
 
 import math
-import struct
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 import verify
+from tests.helpers.programs import henon_steps
+from tests.helpers.programs.blind import blind
 from verify.errors import InputError
 from verify.flows.extrapolation import NumericalFlow
 from verify.hamiltonians.canonical_field import canonical_field
@@ -15,6 +16,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.verdict import Verdict
 
+Step = Callable[..., Any]
 DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 
 
@@ -22,7 +24,7 @@ def force(q: Any, t: Any) -> Any:
     return -(1 + math.cos(2 * t) / 2) * math.sin(q)
 
 
-def verlet_at(first: float, last: float) -> Callable[..., Any]:
+def verlet_at(first: float, last: float) -> Step:
     def step(p: Any, q: Any, t: Any, h: Any) -> Any:
         p = p + h / 2 * force(q, t + first * h)
         q = q + h * p
@@ -31,7 +33,7 @@ def verlet_at(first: float, last: float) -> Callable[..., Any]:
     return step
 
 
-def rk4_at(middle: float, last: float) -> Callable[..., Any]:
+def rk4_at(middle: float, last: float) -> Step:
     def step(p: Any, q: Any, t: Any, h: Any) -> Any:
         def slope(p: Any, q: Any, t: Any) -> Any:
             return force(q, t), p
@@ -50,7 +52,7 @@ def euler(p: Any, q: Any, t: Any, h: Any) -> Any:
     return p, q + h * p
 
 
-def four_stages_of_yoshida(late: float) -> Callable[..., Any]:
+def four_stages_of_yoshida(late: float) -> Step:
     c = 2 ** (1 / 3)
     w, v = 1 / (2 - c), -c / (2 - c)
 
@@ -66,17 +68,19 @@ def four_stages_of_yoshida(late: float) -> Callable[..., Any]:
     return step
 
 
-def checked(step: Callable[..., Any], system: str = DRIVEN, **claims: Any) -> Finding:
+def checked(step: Step, system: str = DRIVEN, **claims: Any) -> Finding:
     found = verify.check(system, step, **claims)
     assert isinstance(found, Finding)
     return found
 
 
 RIGHT = {
-    "symplectic Euler": (euler, 1),
-    "Störmer–Verlet": (verlet_at(0, 1), 2),
-    "a midpoint's clock": (verlet_at(0.5, 0.5), 2),
-    "RK4": (rk4_at(0.5, 1), 4),
+    "symplectic Euler": (euler, 1, DRIVEN),
+    "Störmer–Verlet": (verlet_at(0, 1), 2, DRIVEN),
+    "a midpoint's clock": (verlet_at(0.5, 0.5), 2, DRIVEN),
+    "RK4": (rk4_at(0.5, 1), 4, DRIVEN),
+    "arrays": (henon_steps.driven_at(0, 1), 2, henon_steps.DRIVEN),
+    "arrays, one kick": (henon_steps.one_kick_at(0.5), 2, henon_steps.DRIVEN),
 }
 WRONG = {
     "a frozen clock": (verlet_at(0, 0), 2, "read at t in every stage"),
@@ -85,15 +89,16 @@ WRONG = {
     "RK4, all at the end": (rk4_at(1, 1), 4, ""),
     "the end's time at the middle": (rk4_at(0.5, 0.5), 4, ""),
 }
+SAMPLED = [pytest.param(name, marks=pytest.mark.sample(2)) for name in list(RIGHT)[:4]]
+IN_CI = pytest.mark.left_to_ci
 
 
-@pytest.mark.sample(2)
-@pytest.mark.parametrize("name", RIGHT)
+@pytest.mark.parametrize("name", [*SAMPLED, "arrays"])
 def test_a_right_clock_is_proved_at_its_order(name: str) -> None:
-    step, order = RIGHT[name]
-    found = checked(step, order=order)
+    step, order, system = RIGHT[name]
+    found = checked(step, system, order=order)
     assert (found.verdict, found.how, found.convergence_order) == (Verdict.PROVED, "proof", order)
-    assert found.area_preserving is (name != "RK4")
+    assert (found.area_preserving, found.symplectic) == (name != "RK4", name != "RK4")
     assert not any("stands still" in str(note) for note in found.notes)
 
 
@@ -154,16 +159,7 @@ def test_t_is_known_by_its_name_wherever_it_stands(swapped: bool) -> None:
         verify.check(DRIVEN, right, arguments="p,q,t")
 
 
-def as_float(step: Callable[..., Any]) -> Callable[..., Any]:
-    """The same through floats, as of a compiled integrator, which cannot be traced."""
-
-    def through(p: Any, q: Any, t: Any, h: Any) -> Any:
-        return step(*(struct.unpack("d", struct.pack("d", x))[0] for x in (p, q, t, h)))
-
-    return through
-
-
-def solved(middle: float) -> Callable[..., Any]:
+def solved(middle: float) -> Step:
     """The implicit midpoint rule by iteration, ended by a comparison: for dual numbers."""
 
     def step(p: Any, q: Any, t: Any, h: Any) -> Any:
@@ -191,7 +187,7 @@ def test_what_cannot_be_traced_is_measured_and_its_clock_is_named(
     how: str, middle: float, order: int, words: str
 ) -> None:
     step = solved(middle)
-    found = checked(as_float(step) if how == "floats" else step, order=2)
+    found = checked(blind(step) if how == "floats" else step, order=2)
     assert found.how == how
     assert found.convergence_order == order
     assert found.verdict is (Verdict.REFUTED if words else Verdict.MEASURED)
@@ -202,20 +198,30 @@ def test_what_cannot_be_traced_is_measured_and_its_clock_is_named(
     assert any("≤ t ≤" in text for text in found.domain)
 
 
-@pytest.mark.sample(2)
-@pytest.mark.parametrize("name", RIGHT)
+@pytest.mark.parametrize("name", [*SAMPLED, pytest.param("arrays, one kick", marks=IN_CI)])
 def test_in_floats_a_right_clock_is_measured_at_its_order(name: str) -> None:
-    step, order = RIGHT[name]
-    found = checked(as_float(step), order=order)
+    step, order, system = RIGHT[name]
+    found = checked(blind(step), system, order=order)
     assert (found.verdict, found.how) == (Verdict.MEASURED, "floats")
     assert (found.convergence_order, found.area_preserving) == (order, name != "RK4")
 
 
-@pytest.mark.sample(2)
-@pytest.mark.parametrize("name", WRONG)
-def test_in_floats_a_wrong_clock_is_refuted_at_its_order(name: str) -> None:
-    step, claimed, words = WRONG[name]
-    found = checked(as_float(step), order=claimed)
+@pytest.mark.parametrize(
+    ("step", "claimed", "words", "system"),
+    [
+        *(
+            pytest.param(*WRONG[name], DRIVEN, marks=pytest.mark.sample(2), id=name)
+            for name in WRONG
+        ),
+        pytest.param(
+            henon_steps.one_kick_at(0), 2, "", henon_steps.DRIVEN, marks=IN_CI, id="arrays"
+        ),
+    ],
+)
+def test_in_floats_a_wrong_clock_is_refuted_at_its_order(
+    step: Step, claimed: int, words: str, system: str
+) -> None:
+    found = checked(blind(step), system, order=claimed)
     assert (found.verdict, found.how, found.convergence_order) == (Verdict.REFUTED, "floats", 1)
     assert sum("stands still" in str(note) for note in found.notes) == bool(words)
 
@@ -239,7 +245,7 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
 def test_branches_are_judged_at_the_points_that_are_named() -> None:
     """Where they part at a t that is reached, it is told by what is measured."""
 
-    def branching(least: float) -> Callable[..., Any]:
+    def branching(least: float) -> Step:
         def step(p: Any, q: Any, t: Any, h: Any) -> Any:
             return verlet_at(0, 1)(p, q, t, h) if t > least else verlet_at(0, 0)(p, q, t, h)
 

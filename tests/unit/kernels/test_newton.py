@@ -23,7 +23,7 @@ from tests.helpers.stepping.implicit_steps import (
     steps,
 )
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step.lowering import MOST_UPDATES
+from verify.kernels.step.lowering import MAX_UPDATES
 from verify.runs.requested_run import run
 from verify.schemes.maps.kinds.implicit_runge_kutta import by_equations, implicit_map
 from verify.schemes.maps.step_map import StepMap
@@ -247,7 +247,7 @@ def test_of_two_solutions_it_is_the_one_that_h_goes_to_0_with(arithmetic: str, d
 
 
 def test_the_cap_is_a_small_number() -> None:
-    assert MOST_UPDATES <= 25
+    assert MAX_UPDATES <= 25
 
 
 # -- runs -----------------------------------------------------------------------------------------

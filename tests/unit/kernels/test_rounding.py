@@ -15,7 +15,7 @@ from verify.arithmetic.systems import mpfr
 from verify.functions import in_rings
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import KernelWriter
-from verify.kernels.rounding import PRECISION, RoundedValue, analyse, rounding_of
+from verify.kernels.rounding import PRECISION_BITS, RoundedValue, analyse, rounding_of
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.operations import StepProgram
 from verify.schemes import get
@@ -27,7 +27,7 @@ Box = dict[str, tuple[Fraction, Fraction]]
 
 def counted(program: StepProgram, root: int, box: Box) -> Fraction | None:
     """The bound of the value's error in COARSE, for exact inputs all over the box."""
-    with flint.ctx.workprec(PRECISION):
+    with flint.ctx.workprec(PRECISION_BITS):
         inputs = {
             name: RoundedValue(rational_ball(low).union(rational_ball(high)), flint.arb(0))
             for name, (low, high) in box.items()
@@ -143,7 +143,7 @@ def test_what_an_argument_is_off_is_magnified_by_the_functions_slope(
     off = abs(middle) * Fraction(share)
     program = StepProgram()
     root = applied(program, kind, program.input("x", static=False), 3)
-    with flint.ctx.workprec(PRECISION):
+    with flint.ctx.workprec(PRECISION_BITS):
         given = {"x": RoundedValue(rational_ball(middle), rational_ball(off))}
         found = analyse(program, [0, root], given, lambda *_: flint.arb(0))
         assert found is not None

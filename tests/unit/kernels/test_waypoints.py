@@ -63,7 +63,8 @@ def test_a_short_way_is_not_noted() -> None:
 
 
 def test_no_more_points_are_kept_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(many_points, "_MOST", 2 * 2)  # numbers, of which a point has two
+    # A point has two numbers.
+    monkeypatch.setattr(many_points, "_MAX_CACHED_NUMBERS", 2 * 2)
     known, points = Waypoints(True), cloud(3)
     asked(known, points, SHORT)
     assert asked(known, points, LONG) == [(LONG - SHORT, 2), (LONG, 1)]

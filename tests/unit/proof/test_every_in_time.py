@@ -68,13 +68,27 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
     assert right[2] - wrong[2] == -jets.h(0, 1, 1)
 
 
-@pytest.mark.sample(5)
-@pytest.mark.parametrize("name", [n for n in schemes.names() if schemes.get(n).needs_separable])
-def test_with_right_clocks_every_splitting_is_of_its_order(name: str) -> None:
-    found = prove_for_every_h(name, timed=True)
+SPLITTINGS = [n for n in schemes.names() if schemes.get(n).needs_separable]
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees"),
+    [
+        *(pytest.param(name, 1, marks=pytest.mark.sample(5), id=name) for name in SPLITTINGS),
+        pytest.param("stormer-verlet", 3, id="three degrees of freedom"),
+    ],
+)
+def test_with_right_clocks_every_splitting_is_of_its_order(name: str, degrees: int) -> None:
+    found = prove_for_every_h(name, timed=True, degrees=degrees)
     assert (found.verdict, found.area_preserving) == (Verdict.PROVED, True)
     assert found.convergence_order >= schemes.get(name).order
-    assert found.quantifier == "every smooth H = T(p, t) + V(q, t)"
+    assert found.quantifier.startswith("every smooth H = T(p, t) + V(q, t)")
+
+
+@pytest.mark.parametrize("degrees", [1, 3])
+def test_a_wrong_clock_is_refuted_and_symplectic_all_the_same(degrees: int) -> None:
+    found = prove_for_every_h("stormer-verlet, clock frozen", degrees=degrees, timed=True)
+    assert (found.verdict, found.symplectic, found.convergence_order) == ("REFUTED", True, 1)
 
 
 @pytest.mark.parametrize(

@@ -5,23 +5,22 @@ The oracles: sympy's derivatives of one H put in for the jets, and coefficients 
 
 import math
 from fractions import Fraction
+from itertools import product
 
 import pytest
 import sympy
 
-from tests.helpers.lie_derivatives import along_flow, lie_derivatives
+from tests.helpers.jets_of_one_h import along, at, at_place, value_at_place
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
-from verify.algebra.jets import Jets
-from verify.algebra.power_series import Derivatives, Series, expand_at
-from verify.errors import InputError
+from verify.algebra.jets import Jets, JetsInDegrees
+from verify.errors import InputError, LimitError
 from verify.exploration.properties.plane.order_by_jets import delta_j
-from verify.hamiltonians.canonical_field import JetField
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import order_for_every_h
 from verify.proof.order_for_every_h import prove_for_every_h
-from verify.proof.proof_for_every_h import STEPS
-from verify.proof.telescoping import potential_of_lie, telescopes
-from verify.prose import read_prose
+from verify.proof.order_for_one_h import prove
+from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import (
     RungeKutta,
     Stage,
@@ -59,77 +58,37 @@ def prove_made(monkeypatch: pytest.MonkeyPatch):
     return prove
 
 
-def at(jets: Jets, x: object, hamiltonian: sympy.Expr) -> sympy.Expr:
-    """A polynomial in the jets for one H, by sympy's derivatives."""
-    put = {"p": P, "q": Q}
-    put |= {
-        jets.context.names()[k + 2]: sympy.diff(hamiltonian, P, i, Q, j)
-        for k, (i, j) in enumerate(jets.indices)
-    }
-    terms = (
-        sympy.Rational(str(c))
-        * sympy.prod(put[jets.context.names()[k]] ** int(n) for k, n in enumerate(m))
-        for m, c in x.to_dict().items()
-    )
-    return sympy.expand(sum(terms, sympy.S.Zero))
-
-
-def along(y: sympy.Expr, hamiltonian: sympy.Expr) -> sympy.Expr:
-    h_p, h_q = hamiltonian.diff(P), hamiltonian.diff(Q)
-    return sympy.expand(h_p * y.diff(Q) - h_q * y.diff(P))
-
-
-# -- jets -----------------------------------------------------------------------------------------
-
 CUBIC = plain("p**3*q/3 + p*q**2 - 2*q**4 + p**2*q**2/5")
-SEPARABLE = plain("p**3/3 + p**2/2 - 2*q**4 + q")
-
-
-@pytest.mark.left_to_ci
-def test_derivatives_along_the_flow_are_those_of_any_hamiltonian() -> None:
-    jets = Jets(5)
-    for name, y in (("p", P), ("q", Q)):
-        for x in lie_derivatives(jets, name, 4):
-            assert at(jets, x, CUBIC) == sympy.expand(y)
-            y = along(y, CUBIC)
-
-
-def test_a_separable_hamiltonian_has_no_mixed_derivatives() -> None:
-    jets = Jets(4, separable=True)
-    assert jets.h(1, 1) == 0
-    for x, y in zip(lie_derivatives(jets, "p", 3), lie_derivatives(Jets(4), "p", 3), strict=True):
-        assert at(jets, x, SEPARABLE) == at(Jets(4), y, SEPARABLE)
-
-
-def test_a_derivative_beyond_those_there_are_is_refused() -> None:
-    with pytest.raises(OverflowError):
-        lie_derivatives(Jets(2), "p", 3)
-
-
-def test_a_shifted_derivative_is_taylors_formula() -> None:
-    jets = Jets(6)
-    dp = [jets.zero, jets.one, 2 * jets.one, jets.zero]
-    dq = [jets.zero, -3 * jets.one, jets.zero, jets.one]
-    h = sympy.Symbol("h")
-    moved = CUBIC.diff(P).subs({P: P + h + 2 * h**2, Q: Q - 3 * h + h**3}, simultaneous=True)
-    expected = sympy.Poly(sympy.expand(moved), h).all_coeffs()[::-1]
-    moves = [(name, Series.from_coefficients(jets, x, 3)) for name, x in (("p", dp), ("q", dq))]
-    for n, x in enumerate(expand_at(Derivatives(jets, jets.h(1, 0)), moves, 3).coefficients):
-        assert at(jets, x, CUBIC) == sympy.expand(expected[n])
 
 
 # -- the Lie-derivative scheme --------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("eta", range(1, 11))
-def test_lie_has_order_eta_plus_one_for_every_hamiltonian(eta: int) -> None:
-    proof = prove_for_every_h(f"lie{eta}")
+FORMULAS = {
+    1: "-div(X^{eta} f)/{next}!, f = (-H_q, H_p)",
+    2: "−1/{next}! Σ_i (d(X^{next} p_i)∧dq_i + dp_i∧d(X^{next} q_i))",
+}
+CHECKED = {
+    1: ("are the zero polynomial", "X·G is that coefficient"),
+    2: ("are zero polynomials", "the Lie derivative of β is that coefficient"),
+}
+
+
+@pytest.mark.parametrize(
+    ("eta", "degrees"), [*((eta, 1) for eta in range(1, 11)), (4, 2), (3, 2), (2, 3)]
+)
+def test_lie_has_order_eta_plus_one_and_telescopes_for_even_eta(eta: int, degrees: int) -> None:
+    proof, is_even = prove_for_every_h(f"lie{eta}", degrees=degrees), eta % 2 == 0
     assert (proof.verdict, proof.order, proof.convergence_order) == (
         Verdict.PROVED, eta + 1, eta,
     )  # fmt: skip
-    assert proof.formula == f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-    assert proof.telescopes is (eta % 2 == 0)
+    assert proof.formula == FORMULAS[min(degrees, 2)].format(eta=eta, next=eta + 1)
+    assert proof.telescopes is is_even
     assert (proof.potential is not None) is proof.telescopes
+    (vanish, telescopes), said = CHECKED[min(degrees, 2)], " ".join(map(str, proof.checked))
+    assert vanish in said
+    assert (telescopes in said) is is_even
+    assert proof.why
 
 
 def test_lie2_has_the_potential_of_half_the_hessian() -> None:
@@ -153,6 +112,37 @@ def test_the_leading_coefficient_is_that_of_one_hamiltonian(eta: int) -> None:
     assert at(jets, leading, CUBIC) == expected
 
 
+PAIR = "p1**2*q2 + (p2 + q1*p1)**3/3 + q1**2*q2**2*p2 + p1*p2*q1"
+DRIVEN = "p1**2*q2*t + (p2 + q1*p1)**3/3 + q1**2*q2**2*t**2 + p1*p2*q1*t"
+TRIPLE = "p1**2*q2*p3 + p2*q3**2 + q1*q2*p1*p3 + q3*p2**2"
+CASES = [
+    *((s, PAIR, False) for s in ("lie1", "lie2", "lie3", "rk4", "explicit-midpoint")),
+    ("lie2", DRIVEN, True), ("explicit-midpoint", DRIVEN, True),
+    ("lie1", TRIPLE, False), ("lie2", TRIPLE, False),
+]  # fmt: skip
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize(("scheme", "formula", "timed"), CASES)
+def test_the_leading_form_is_that_of_the_proof_for_one_hamiltonian(
+    scheme: str, formula: str, timed: bool
+) -> None:
+    hamiltonian = Hamiltonian.parse(formula)
+    every = prove_for_every_h(scheme, degrees=hamiltonian.degrees, timed=timed)
+    one = prove(get(scheme).step_map(hamiltonian), get(scheme))
+    assert (every.verdict, every.order, every.convergence_order) == (
+        one.verdict, one.order, one.convergence_order)  # fmt: skip
+    assert every.form is not None
+    leading = one.first.form
+    assert leading is not None
+    jets, names = every.form.ring, [*hamiltonian.coordinates, *(["t"] if timed else [])]
+    assert isinstance(jets, JetsInDegrees)
+    for a, b in product(range(2), range(2, 4)):
+        ours = at_place(jets, every.form.entry(a, b), hamiltonian.exact)
+        theirs = value_at_place(leading.ring.expression(leading.entry(a, b)), names)
+        assert ours == theirs
+
+
 def test_claims_that_are_wrong_by_one_or_by_a_sign_are_refuted(prove_made) -> None:
     assert prove_made(TaylorSeries(3), 4).verdict is Verdict.REFUTED
     assert prove_made(TaylorSeries(3), 3, area_preserving=True).verdict is Verdict.REFUTED
@@ -165,42 +155,6 @@ def test_claims_that_are_wrong_by_one_or_by_a_sign_are_refuted(prove_made) -> No
     proof = prove_made(Wrong(3), 3)
     assert (proof.verdict, proof.convergence_order, proof.order) == (Verdict.REFUTED, 1, 2)
     assert proof.formula == ""
-
-
-# -- telescoping ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("eta", range(1, 8))
-def test_linear_algebra_finds_what_the_formula_says(eta: int) -> None:
-    jets = Jets(eta + 2)
-    leading = list(delta_j(jets, *TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
-    found = telescopes(jets, leading)
-    assert found.holds is (eta % 2 == 0)
-    if found.holds:
-        by_formula = potential_of_lie(JetField.from_jets(jets), eta).divergence
-        assert along_flow(jets, found.potential) == leading == along_flow(jets, by_formula)
-
-
-def test_one_coefficient_more_no_longer_telescopes() -> None:
-    jets = Jets(5)
-    leading = list(delta_j(jets, *TaylorSeries(2).taylor(jets, 3)))[-1]
-    changed = leading + jets.h(1, 0) * jets.h(2, 0) * jets.h(0, 3)
-    found = telescopes(jets, changed)
-    assert not found.holds
-    assert "dimension" in found.reason
-    assert along_flow(jets, potential_of_lie(JetField.from_jets(jets), 2).divergence) != changed
-
-
-def test_a_hidden_derivative_is_found() -> None:
-    jets = Jets(6)
-    hidden = jets.h(2, 0) * jets.h(1, 2) ** 2 - 3 * jets.h(0, 3) * jets.h(2, 1) * jets.h(2, 0)
-    hidden += jets.h(1, 0) ** 2 * jets.h(0, 2)
-    assert telescopes(jets, along_flow(jets, hidden)).holds
-
-
-def test_odd_schemes_have_no_potential_formula() -> None:
-    with pytest.raises(ValueError, match="odd"):
-        potential_of_lie(JetField.from_jets(Jets(4)), 1)
 
 
 # -- other schemes --------------------------------------------------------------------------------
@@ -250,35 +204,44 @@ def test_explicit_euler_is_lie1(prove_made) -> None:
     assert (euler.order, euler.leading) == (2, prove_for_every_h("lie1").leading)
 
 
-def test_an_order_whose_polynomials_are_too_long_is_refused_at_once() -> None:
-    with pytest.raises(InputError, match="order 14 at most"):
-        prove_for_every_h("lie100")
+@pytest.mark.parametrize("degrees", [1, 4])
+def test_a_splitting_that_claims_too_much_is_refuted(degrees: int) -> None:
+    found = prove_for_every_h("kick 1/2; drift 1; kick 1/2; order 3", degrees=degrees)
+    assert (found.verdict, found.convergence_order) == ("REFUTED", 2)
 
 
-def test_a_users_own_map_is_known_for_one_hamiltonian_only() -> None:
-    with pytest.raises(InputError, match="one H"):
-        prove_for_every_h("p_next = p - h*q; q_next = q + h*p_next")
+@pytest.mark.parametrize(
+    ("scheme", "degrees", "words"),
+    [
+        ("lie100", 1, "order 14 at most"),
+        ("p_next = p - h*q; q_next = q + h*p_next", 1, "one H"),
+        ("p_next = p; q_next = q", 2, "in one degree of freedom only"),
+        ("lie2", 0, "must be 1 … 64"),
+        ("lie2", 65, "must be 1 … 64"),
+        ("lie2", 20, "derivatives of H would be needed"),
+        ("lie8", 3, "are too many for lie8"),
+    ],
+)
+def test_what_cannot_be_proved_for_every_h_is_refused_at_once(
+    scheme: str, degrees: int, words: str
+) -> None:
+    with pytest.raises((InputError, LimitError), match=words):
+        prove_for_every_h(scheme, degrees=degrees)
+
+
+@pytest.mark.sample(7)
+@pytest.mark.parametrize("scheme", ["lie1", "lie2", "lie3", "lie4", "rk4", "gauss4", "ruth3",
+                                    "implicit-midpoint", "blanes-moan4"])  # fmt: skip
+def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str) -> None:
+    plane, more = prove_for_every_h(scheme), prove_for_every_h(scheme, degrees=2)
+    assert (more.verdict, more.order) == (plane.verdict, plane.order)
+    assert more.symplectic == plane.area_preserving
+    assert more.convergence_order == plane.convergence_order
+    if scheme.startswith("lie"):
+        assert more.telescopes == plane.telescopes
 
 
 def test_all_named_schemes_hold_what_they_claim_for_every_hamiltonian() -> None:
     for name in schemes.names():
         if schemes.get(name).every_h is not None:
             assert prove_for_every_h(name).verdict is Verdict.PROVED, name
-
-
-def test_the_argument_for_every_eta_is_told_whole_and_of_taylors_schemes_in_the_plane_alone() -> (
-    None
-):
-    told = str(prove_for_every_h("lie2").argument)
-    assert told.startswith("The exact flow has det 1: the coefficients of h, h², … in the ")
-    assert told.endswith(" there, η = 2j + 1. ∎")
-    assert told.count("∎") == 1
-    places = [told.find(str(read_prose(text))) for text, _ in STEPS]
-    assert places == sorted(places)
-    assert places[0] == 0
-    others = (
-        prove_for_every_h("rk4"),
-        prove_for_every_h("lie2", timed=True),
-        prove_for_every_h("lie2", degrees=2),
-    )
-    assert not any(str(proof.argument) for proof in others)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.stepping.steps_in_degrees import (
+from tests.helpers.stepping.steps_by_differences import (
     Step,
     change_of_volume,
     defect,

@@ -1,9 +1,14 @@
-"""The bound of W is near its error for short runs, and grows as it says for long ones."""
+"""The bound of W is near its error for short runs, and grows as it says for long ones.
+
+It takes from M how large M⁻¹ may be.
+"""
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations
 from typing import Any
 
+import flint
 import pytest
 
 from tests.helpers import run_bounds
@@ -12,6 +17,7 @@ from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
+from verify.runs import matrix_growth
 from verify.runs.a_posteriori_bound import certify
 from verify.runs.digits_on_demand import METHOD_OF_W, difference_of_w
 from verify.runs.requested_run import run
@@ -104,3 +110,35 @@ def test_where_the_tangent_map_grows_like_n_the_certificate_grows_like_n_to_the_
 
     exponent = ctx.log(bound(10_000) / bound(1000), 10)
     assert abs(exponent - 9) < ctx.mpf("0.05")
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [[3, 1], [0, 2]],
+        [[3, 1, 0, 1], [0, 2, -1, 1], [1, 0, 3, 0], [1, 1, 0, 2]],
+    ],
+    ids=["plane", "two-degrees"],
+)
+def test_the_inverse_of_a_matrix_is_no_larger_than_is_said(rows: list[list[int]]) -> None:
+    """‖M⁻¹‖ ≤ ‖M‖/d with d by the Pfaffian, of matrices that are far from symplectic."""
+    size = len(rows)
+    n = size // 2
+    exact = flint.fmpq_mat(size, size, [flint.fmpq(x) for row in rows for x in row])
+    columns = [[row[k] for row in rows] for k in range(size)]
+    above = [
+        sum(u[i] * v[n + i] - u[n + i] * v[i] for i in range(n))
+        for u, v in combinations(columns, 2)
+    ]
+    noted = {
+        "growth_top": flint.arb(sum(x * x for row in rows for x in row)),
+        "det_low": flint.arb(int(exact.det().p)),
+        "form_top": flint.arb(sum(x * x for x in above)),
+    }
+    least = matrix_growth.least_of(size, noted)
+    assert least > 0
+    inverse = exact.inv()
+    norm = sum(float(int(x.p)) ** 2 / float(int(x.q)) ** 2 for x in inverse.entries()) ** 0.5
+    # Frobenius' norm of M⁻¹ is at most twice Euclid's.
+    assert norm <= 2 * float((noted["growth_top"].sqrt() / least).upper())
+    assert float(exact.det().p) != 1

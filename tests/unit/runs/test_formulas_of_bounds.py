@@ -20,7 +20,7 @@ from tests.helpers.run_bounds import CLOSE, Noted, Real, ball, ctx, drawn, numbe
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.flint_precision import working_precision
-from verify.kernels.rounding import PRECISION, RoundedValue
+from verify.kernels.rounding import PRECISION_BITS, RoundedValue
 from verify.observables import by_name
 from verify.runs import matrix_growth
 from verify.runs.a_posteriori_bound import _Certificate
@@ -112,7 +112,7 @@ def certificate(noted: Noted) -> _Certificate:
 
 def bounds_of(noted: Noted) -> dict[str, Real]:
     """What the certificate says of a run that noted this."""
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         made = certificate(noted)
         orbit = made.orbit()
         assert orbit is not None
@@ -177,7 +177,7 @@ def test_a_term_that_is_left_out_of_a_formula_shows(term: str) -> None:
 def test_where_the_quadratic_term_grows_beyond_twice_the_linear_one_nothing_is_certified() -> None:
     for seed in SEEDS:
         noted = drawn(seed, 2)
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             made = certificate(noted)
             _, reach = made.orbit() or (None, None)
             assert reach is not None
@@ -250,7 +250,7 @@ def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
         seen = noted_by(rows)
         if not seen["det_low"] > 0:
             continue
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             least = matrix_growth.least_of(size, seen)
         if not least > 0:
             continue
@@ -266,11 +266,11 @@ def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
 def test_the_inverses_bound_is_what_its_formula_says(size: int) -> None:
     for seed in SEEDS:
         seen = drawn(seed, size).seen
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             found = matrix_growth.least_of(size, {n: ball(x) for n, x in seen.items()})
         assert abs(number(found) / run_bounds.least(size, seen) - 1) < CLOSE
 
 
 def test_the_norm_is_euclids() -> None:
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         assert norm([flint.arb(-3), flint.arb(4)]).overlaps(flint.arb(5))

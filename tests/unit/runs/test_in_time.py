@@ -135,8 +135,8 @@ def test_a_bound_that_forgets_the_clock_would_be_too_small(
     right = certify(kernel_run, made, outcome)
     from verify.runs import step_bounds
 
-    true = step_bounds.error_of_time
-    monkeypatch.setattr(step_bounds, "error_of_time", lambda a, x: 1000 * true(a, x))
+    true = step_bounds.bound_time_error
+    monkeypatch.setattr(step_bounds, "bound_time_error", lambda a, x: 1000 * true(a, x))
     worse = certify(kernel_run, made, outcome)
     assert right is not None
     assert worse is not None

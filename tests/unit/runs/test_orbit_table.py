@@ -1,6 +1,6 @@
 """The states of a run: what its rows hold, which of the states they are, and their digits."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -12,6 +12,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs import digits_on_demand
 from verify.runs.orbit_table import orbit_of
 from verify.runs.requested_run import run
+from verify.scenes.observables import names
 from verify.scenes.results.run import COLUMNS, OrbitTable, RunResult
 
 H = Fraction(1, 10)
@@ -56,14 +57,40 @@ def test_delta_j_of_a_row_is_that_of_the_step_to_the_next(arithmetic: str) -> No
     assert off_the_product(lam, delta_j[1:]) > Fraction(1, 10**6), "a shifted column is seen"
 
 
-@pytest.mark.parametrize("arithmetic", ["float64", "auto"])
-def test_the_first_row_is_the_start_and_the_last_one_what_the_run_gives(arithmetic: str) -> None:
-    found = duffing(arithmetic)
-    table = orbit_of(found)
-    assert numbers(table, "q")[0] == Fraction(1, 2)
-    assert [numbers(table, n)[0] for n in ("t", "energy_error", "lambda")] == [0, 0, 0]
-    for name in ("p", "q", "lambda"):
-        value = found.values[name]
+def henon_heiles() -> RunResult:
+    start = {"q": ["1/8", "4/9"], "p": ["3/7", "-2/5"], "step_size": "1/20", "steps": 5}
+    return run(systems.get("henon-heiles").hamiltonian({}), "lie2", **start, arithmetic="mpfr",
+               digits=25, observables=names(planar=False))  # fmt: skip
+
+
+OF_TWO_DEGREES = ("t", "p1", "p2", "q1", "q2", "energy_error", "delta_j", "lambda",
+                  "symplectic_defect")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("make", "columns", "shape", "first"),
+    [
+        (lambda: duffing("float64"), COLUMNS, (21,), {"q": Fraction(1, 2)}),
+        (lambda: duffing("auto"), COLUMNS, (21,), {"q": Fraction(1, 2)}),
+        (henon_heiles, OF_TWO_DEGREES, (6, 2), {"q1": Fraction(1, 8)}),
+    ],
+    ids=["float64", "auto", "two-degrees"],
+)
+def test_the_first_row_is_the_start_and_the_last_one_what_the_run_gives(
+    make: Callable[[], RunResult],
+    columns: tuple[str, ...],
+    shape: tuple[int, ...],
+    first: dict[str, Fraction],
+) -> None:
+    result = make()
+    table = orbit_of(result)
+    assert table.columns == columns
+    assert table.p.shape == table.q.shape == shape
+    start = first | dict.fromkeys(("t", "energy_error", "lambda"), 0)
+    assert {name: numbers(table, name)[0] for name in start} == start
+    last = {name: result.values[name] for name in columns if name in result.values}
+    assert len(last) == len(columns) - 3
+    for name, value in last.items():
         assert abs(numbers(table, name)[-1] - Fraction(value.value)) <= Fraction(value.bound), name
 
 

@@ -1,13 +1,13 @@
-"""What a run reports: values that were computed elsewhere, honest bounds, closed forms, bad input.
+"""What a run reports: values that were computed elsewhere, honest bounds, runs of parts.
 
 `tests/data/vectors.json` was made with MPFR at 500 bits. The loop with gmpy2 below shares no code
-with `verify`. See test_runs_range.py for orbits that escape, series, memory and compilation.
+with `verify`. See test_run_range.py for orbits that escape and for series.
 """
 
 import random
-import sys
 from fractions import Fraction
 from functools import cache
+from math import prod
 from typing import Any
 
 import gmpy2
@@ -17,9 +17,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.paths import vectors
-from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import kernel_for
 from verify.runs import float64_bounds as float_bounds
 from verify.runs.float64_bounds import DIRECT_STEPS
 from verify.runs.requested_run import run
@@ -215,103 +213,38 @@ def test_lambda_over_n1_and_n2_steps_composes(
     assert abs((n1 + n2) * whole["mse"] - squares) <= small * squares
 
 
-# -- what a proof gives ---------------------------------------------------------------------------
-
-
-def asked_of_the_kernel(
-    monkeypatch: pytest.MonkeyPatch, run_none: bool = False
-) -> list[frozenset[str]]:
-    """The observables of every kernel that is asked for from now on."""
-    seen: list[frozenset[str]] = []
-
-    def spy(hamiltonian: Any, scheme: Any, arithmetic: Any, observables: Any, *more: Any) -> Any:
-        seen.append(observables)
-        assert not run_none, "a kernel was asked for"
-        return kernel_for(hamiltonian, scheme, arithmetic, observables, *more)
-
-    for name, module in list(sys.modules.items()):
-        if name.startswith("verify.") and getattr(module, "kernel_for", None) is kernel_for:
-            monkeypatch.setattr(module, "kernel_for", spy)
-    return seen
-
-
-@pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
-@pytest.mark.parametrize("steps", [1, 50, 20_001])
-def test_symplectic_euler_gives_exact_zeros_that_no_kernel_computes(
-    monkeypatch: pytest.MonkeyPatch, arithmetic: str, steps: int
-) -> None:
-    seen = asked_of_the_kernel(monkeypatch)
-    found = run(PENDULUM, "symplectic-euler", q=1, p="1/3", step_size="0.1", steps=steps,
-                arithmetic=arithmetic, points=5)  # fmt: skip
-    assert {
-        n: (found.values[n].value, found.values[n].bound) for n in CLOSED_FORM
-    } == dict.fromkeys(CLOSED_FORM, ("0", "0"))
-    assert set(found.exact) == set(CLOSED_FORM)
-    assert set().union(*seen) <= {"tangent"}
-    assert found.series == ()
-
-
-def harmonic_lambda(eta: int, x: Fraction, steps: int) -> Fraction:
-    """|R_η(ix)|^(2N) − 1 for the truncated exponential R_η, exactly."""
-    even = odd = Fraction(0)
-    term = Fraction(1)
-    for n in range(eta + 1):
-        term = term * x / n if n else term
-        if n % 2:
-            odd += term if n % 4 == 1 else -term
-        else:
-            even += term if n % 4 == 0 else -term
-    return (even**2 + odd**2) ** steps - 1
-
-
-@pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
-@pytest.mark.parametrize("eta", [1, 2, 3, 4, 5])
-@pytest.mark.parametrize("steps", [1, 7, 60])
-def test_a_constant_delta_j_gives_lambda_in_closed_form(
-    monkeypatch: pytest.MonkeyPatch, eta: int, steps: int, arithmetic: str
-) -> None:
-    seen = asked_of_the_kernel(monkeypatch)
-    harmonic = Hamiltonian.parse("p**2/2 + omega**2*q**2/2", {"omega": "7/3"})
-    at = {"q": "0.3", "p": 1, "step_size": "1/7", "steps": steps, "digits": 40}
-    found = run(harmonic, f"lie{eta}", **at, arithmetic=arithmetic)
-    assert set().union(*seen) <= {"tangent"}
-    true = harmonic_lambda(eta, Fraction(1, 3), steps)
-    one = harmonic_lambda(eta, Fraction(1, 3), 1)
-    wanted = {"lambda": true, "delta_j_max": abs(one), "mse": one**2}
-    for name, exact in wanted.items():
-        value = found.values[name]
-        assert abs(Fraction(value.value) - exact) <= Fraction(value.bound), name
-        assert digits_of(value.value) == 40
-    looped = run(harmonic, f"lie{eta}", **at, arithmetic="mpmath", observables=["lambda_plain"])
-    plain = looped.values["lambda_plain"]
-    assert abs(Fraction(plain.value) - true) <= Fraction(plain.bound)
-
-
-# -- bad input ------------------------------------------------------------------------------------
-
-BAD = {
-    "h-zero": {"step_size": 0}, "h-negative": {"step_size": "-0.1"}, "h-nan": {"step_size": "nan"},
-    "h-inf": {"step_size": float("inf")}, "h-text": {"step_size": "fast"}, "n-zero": {"steps": 0},
-    "n-negative": {"steps": -1}, "n-huge": {"steps": 10**13}, "n-float": {"steps": 10.0},
-    "n-bool": {"steps": True}, "q-nan": {"q": "nan"}, "p-inf": {"p": float("-inf")},
-    "q-none": {"q": None}, "digits-zero": {"digits": 0}, "digits-huge": {"digits": 10**6},
-    "observable": {"observables": ["energy"]}, "extremes": {"observables": ["extremes"]},
-    "arithmetic": {"arithmetic": "float32"}, "points-negative": {"points": -1},
+PARTS: dict[str, tuple[str, dict[str, tuple[Any, Any]], dict[str, Any]]] = {
+    "one-degree-by-a-number": (
+        "p1**2/2 + q1**4/4", {"p**2/2 + q**4/4": ("1/2", "1/3")}, {"steps": 500},
+    ),
+    "side-by-side": (
+        "p1**2/2 + q1**4/4 + p2**2/2 - cos(q2)",
+        {"p**2/2 + q**4/4": ("1/2", "1/3"), "p**2/2 - cos(q)": (1, 0)}, {"steps": 100},
+    ),
+    "in-time-beside-one-at-rest": (
+        "p1**2/2 + q1**2*cos(t)/2 + p2**2/2 + q2**2/2",
+        {"p**2/2 + q**2*cos(t)/2": ("1/2", "1/3"), "p**2/2 + q**2/2": (0, 0)},
+        {"steps": 100, "t0": "1/3"},
+    ),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("bad", BAD.values(), ids=BAD)
-def test_a_bad_argument_is_named_before_anything_runs(
-    monkeypatch: pytest.MonkeyPatch, bad: dict[str, Any]
+@pytest.mark.parametrize(("formula", "parts", "more"), PARTS.values(), ids=PARTS)
+def test_parts_that_are_not_coupled_run_as_each_does_in_the_plane(
+    formula: str, parts: dict[str, tuple[Any, Any]], more: dict[str, Any]
 ) -> None:
-    seen, (name,) = asked_of_the_kernel(monkeypatch, run_none=True), bad
-    good = {"q": 1, "p": 0, "step_size": "0.1", "steps": 10}
-    with pytest.raises(InputError, match=rf"^{name.removesuffix('s')}s?=") as caught:
-        run(PENDULUM, "lie2", **{**good, **bad})
-    assert "\n" not in str(caught.value)
-    assert not seen
-
-
-def test_a_parameter_without_a_value_is_named() -> None:
-    with pytest.raises(InputError, match=r"^parameter=delta: has no value"):
-        run(DUFFING, "lie2", q=1, p=0, step_size="0.1", steps=10)
+    """det J is the product of theirs, and S has their ΔJ on its diagonal blocks."""
+    keys = {"step_size": "1/50", "arithmetic": "mpfr", "digits": 25} | more
+    qs, ps = zip(*parts.values(), strict=True)
+    whole = run(Hamiltonian.parse(formula), "lie2", q=[*qs], p=[*ps], **keys).values
+    planes = [run(Hamiltonian.parse(text), "lie2", q=q, p=p, **keys).values
+              for text, (q, p) in parts.items()]  # fmt: skip
+    for k, plane in enumerate(planes, 1):
+        assert all(whole[f"{name}{k}"].value == plane[name].value for name in "pq")
+    products = [Fraction(plane["lambda"].value) for plane in planes]
+    changes = [Fraction(plane["delta_j_max"].value) for plane in planes]
+    assert abs(Fraction(whole["lambda"].value) - (prod(1 + x for x in products) - 1)) < 1e-24
+    assert Fraction(whole["symplectic_defect"].value) == max(map(abs, products))
+    assert Fraction(whole["symplectic_defect_max"].value) == max(changes)
+    if len(planes) == 1:
+        assert all(whole[name].value == planes[0][name].value for name in CLOSED_FORM)

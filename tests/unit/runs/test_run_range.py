@@ -1,14 +1,11 @@
-"""Runs at their edges: orbits that leave the range, thinned series, memory, and what is compiled.
+"""Runs at their edges: orbits that leave the range, thinned series, what is asked for.
 
 The oracles are plain Python loops over the paper's formulas.
 """
 
 import math
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import cache
 from typing import Any
 
 import pytest
@@ -16,14 +13,12 @@ from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic
 from verify.arithmetic.number_system import ESCAPE_BITS
-from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.requested_run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4")
-PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 HENON = Hamiltonian.parse("p**2/2 + q**2/2 - q**3/3")
 
 
@@ -89,27 +84,33 @@ def test_mpmath_stops_an_orbit_at_the_step_that_escapes(q: Any, p: Any, h: Any) 
     assert duffing_run("mpmath", true - 1, q=q, p=p, h=h).status == "finished"
 
 
-@pytest.mark.sample(8)
+Force = Callable[[float], float]
+IN_PLANE = {"q": 1, "p": -1, "step_size": "0.1", "steps": 60}
+KEPLER = "(p1**2 + p2**2)/2 - 1/sqrt(q1**2 + q2**2)"
+HEAD_ON = {"q": [1, 0], "p": [-2, 0], "step_size": "1/2", "steps": 50, "digits": 20}
+LEAVING: dict[str, tuple[str, dict[str, Any], Force]] = {
+    "square-root": ("p**2/2 + q*sqrt(q)", IN_PLANE, lambda q: 1.5 * math.sqrt(q)),
+    "logarithm": ("p**2/2 + q*log(q)", IN_PLANE, lambda q: math.log(q) + 1),
+    "cube-root": (
+        "p**2/2 + q**(4/3)", IN_PLANE, lambda q: 4 / 3 * (q ** (1 / 3) if q >= 0 else math.nan),
+    ),
+    "pole": ("p**2/2 + 1/q**2 + q", IN_PLANE, lambda q: 1 - 2 / q**3),
+    "collision": (KEPLER, HEAD_ON, lambda q: 1 / q**2),
+}  # fmt: skip
+
+
+@pytest.mark.sample(9)
 @pytest.mark.parametrize("name", arithmetic.names())
-@pytest.mark.parametrize(
-    "text",
-    ["p**2/2 + q*sqrt(q)", "p**2/2 + q*log(q)", "p**2/2 + q**(4/3)", "p**2/2 + 1/q**2 + q"],
-    ids=["square-root", "logarithm", "cube-root", "pole"],
-)
+@pytest.mark.parametrize(("text", "keys", "force"), LEAVING.values(), ids=LEAVING)
 def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
-    name: str, text: str
+    name: str, text: str, keys: dict[str, Any], force: Force
 ) -> None:
-    h, q, p = 0.1, 1.0, -1.0
-    found = run(Hamiltonian.parse(text), "lie1", q=1, p=-1, step_size="0.1", steps=60,
-                arithmetic=name)  # fmt: skip
-    force = {
-        "p**2/2 + q*sqrt(q)": lambda q: 1.5 * math.sqrt(q),
-        "p**2/2 + q*log(q)": lambda q: math.log(q) + 1,
-        "p**2/2 + q**(4/3)": lambda q: 4 / 3 * (q ** (1 / 3) if q >= 0 else math.nan),
-        "p**2/2 + 1/q**2 + q": lambda q: 1 - 2 / q**3,
-    }[text]
+    """In the plane, or on a straight line to a centre of force."""
+    result = run(Hamiltonian.parse(text), "lie1", **keys, arithmetic=name)
+    h = float(Fraction(keys["step_size"]))
+    q, p = (float(x[0] if isinstance(x, list) else x) for x in (keys["q"], keys["p"]))
     outside = None
-    for k in range(1, 61):
+    for k in range(1, keys["steps"] + 1):
         try:
             p, q = p - h * force(q), q + h * p
         except (ValueError, ZeroDivisionError):
@@ -117,8 +118,8 @@ def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
         if not math.isfinite(p):
             outside = k
             break
-    assert found.failed_step == outside
-    assert found.status == ("left range" if outside else "finished")
+    assert result.failed_step == outside
+    assert result.status == ("left range" if outside else "finished")
 
 
 CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
@@ -216,91 +217,7 @@ def test_points_do_not_change_the_values(name: str) -> None:
     assert (plain.series, len(thinned.series)) == ((), 40)
 
 
-# -- names ----------------------------------------------------------------------------------------
-
-# A kernel is text in which parameters stand beside its own names.
-OWN_NAMES = [
-    *(f"v{i}" for i in range(30)), "k", "dj", "lam", "mse", "top", "size", "plain", "steps", "add",
-    "total", "part", "p_rest", "dj_low", "lam_high", "kernel", "range", "escape", "cos_sin", "root",
-    "pq", "E", "I", "S", "N", "zoo", "beta", "True_", "self", "print",
-]  # fmt: skip
-
-
-def named(parameter: str, name: str) -> RunResult:
-    text = f"p**2/2 + {parameter}*q**2/2 + q**4/4 - cos(q)"
-    return run(Hamiltonian.parse(text, {parameter: "7/3"}), "lie2", q=1, p=0, step_size="0.1",
-               steps=20, arithmetic=name, observables=REPORTED, points=3)  # fmt: skip
-
-
-@cache
-def named_a() -> RunResult:
-    return named("a", "mpmath")
-
-
-@pytest.mark.sample(8)
-@pytest.mark.parametrize("parameter", OWN_NAMES)
-def test_the_name_of_a_parameter_does_not_change_what_is_found(parameter: str) -> None:
-    found, expected = named(parameter, "mpmath"), named_a()
-    assert expected.status == "finished"
-    assert (found.status, found.values) == ("finished", expected.values)
-    assert found.series == expected.series
-
-
-@pytest.mark.parametrize("parameter", ["v5", "k", "lam", "steps", "range"])
-def test_the_name_of_a_parameter_does_not_change_what_float64_finds(parameter: str) -> None:
-    assert named(parameter, "float64").values == named("a", "float64").values
-
-
-# -- memory and compilation -----------------------------------------------------------------------
-
-MEMORY = """
-import resource, tracemalloc
-from verify import Hamiltonian, run
-duffing = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
-def series(steps):
-    run(duffing, "lie2", q="1.5", p=0, step_size="0.001", steps=steps, points=600)
-def peak(steps):
-    tracemalloc.start()
-    series(steps)
-    own = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-series(500_000)  # compiles, which takes four times as long where it is traced
-print(*peak(500_000), *peak(5_000_000))
-"""
-
-
-@pytest.mark.left_to_ci
-def test_memory_does_not_grow_with_the_number_of_steps() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", MEMORY], capture_output=True, text=True, check=True
-    )
-    own, resident, own_of_many, resident_of_many = map(int, done.stdout.split())
-    assert own_of_many <= 1.1 * own
-    assert resident_of_many <= 1.1 * resident
-
-
-def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    # An H of this test's own, so that no other test has compiled its kernel.
-    fresh = Hamiltonian.parse("p**2/2 + a*q**2/2 + b*q**6/96 + 71*q**2/1931")
-    compiled, compile_one = [], float64._compile_now
-
-    def count(*args: Any) -> Any:
-        compiled.append(compile_one(*args))
-        return compiled[-1]
-
-    monkeypatch.setattr(float64, "_REPAID", 0)
-    monkeypatch.setattr(float64, "_compile_now", count)
-    for h in ("0.01", "0.02", "1/7", "3e-3"):
-        for a, b in ((1, 1), ("1/3", -2), (-1, "0.5")):
-            run(
-                fresh.with_values({"a": a, "b": b}), "lie3", q="0.1", p="0.2", step_size=h, steps=50
-            )
-    assert len(compiled) == 1
-    run(fresh.with_values({"a": 1, "b": 0}), "lie3", q=1, p=0, step_size="0.1", steps=50)
-    assert len(compiled) == 2, "a vanishing term has a kernel of its own"
+# -- what is asked for ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["float64", "mpmath"])

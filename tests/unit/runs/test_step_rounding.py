@@ -15,8 +15,8 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import error_of_time
-from verify.kernels.rounding import PRECISION, RoundedValue
+from verify.kernels.kernel import bound_time_error
+from verify.kernels.rounding import PRECISION_BITS, RoundedValue
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.operations import StepProgram
 from verify.kernels.stepping import KernelRun
@@ -46,7 +46,7 @@ def test_an_addition_loses_half_a_unit_of_a_sum_of_which_either_part_may_be_the_
     for seed in SEEDS:
         some = drawing(f"adding {seed}")
         size, inside, error, unit = some(), some(), some(), some()
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             made = bare(arithmetic=SimpleNamespace(absolute=absolute), unit=ball(unit))
             found = made.error_of_addition(ball(size), RoundedValue(ball(-inside), ball(error)))
         true = error if absolute else error + (size + inside + error) * unit
@@ -67,7 +67,7 @@ def test_a_step_of_the_tangent_map_loses_what_its_products_and_sums_do(size: int
             lowering=Lowering(program, (), "t"),
         )  # fmt: skip
         made = bare(kernel=SimpleNamespace(tangent=tangent), names=range(size))
-        with working_precision(PRECISION):
+        with working_precision(PRECISION_BITS):
             main = {k: RoundedValue(ball(x), ball(lost)) for k, (x, lost) in enumerate(read)}
             found = made.tangent_error(main)
             assert found is not None
@@ -99,7 +99,7 @@ def test_a_step_begins_where_the_run_has_been_with_what_its_inputs_are_off(
     start = {"p": Fraction(1, 7), "q": Fraction(-2, 3), "h": Fraction(1, 30), "t": Fraction(5, 3)}
     run, rounding, outcome = orbit(arithmetic, **start)
     seen, margin = outcome.tangents[-1], Fraction(1, 1000)
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         box, inputs = rounding.box(ball(ctx.mpf(1) / 1000)), rounding.inputs()
     for name in "pq":
         low, high = (Fraction(seen[f"{name}_{end}"]) for end in ("low", "high"))
@@ -116,14 +116,14 @@ def test_a_step_begins_where_the_run_has_been_with_what_its_inputs_are_off(
     for name, exact in run.inputs(outcome.kernel, shift).items():
         off = abs(arithmetic.exact(arithmetic.number(exact)) - exact)
         assert off <= upper(inputs[name].error) <= off * (1 + Fraction(1, 2**60))
-    assert upper(inputs["t"].error) >= error_of_time(arithmetic, late) > 0
+    assert upper(inputs["t"].error) >= bound_time_error(arithmetic, late) > 0
     first, last = ends_of(inputs["t"].interval)
     assert first <= start["t"] < late <= last
     assert last - first < Fraction(3, 10)
 
 
 def ends_of(x: flint.arb) -> tuple[Fraction, Fraction]:
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         return tuple(
             Fraction(int(m.p), int(m.q)) for m in (end.fmpq() for end in (x.lower(), x.upper()))
         )  # type: ignore[return-value]
@@ -172,8 +172,8 @@ def test_the_time_at_the_last_step_is_within_what_is_said(system: Any) -> None:
         latest = abs(t0) + steps * h
         # Adding the increment t − p to p rounds once more, by half a unit of each.
         adding = Fraction(1, 2**bits) * (0 if arithmetic.absolute else 3 * latest)
-        assert off <= error_of_time(arithmetic, latest) + adding
+        assert off <= bound_time_error(arithmetic, latest) + adding
         # A clock that adds up what the format cuts off from h would be off by more than that.
         cut = abs(arithmetic.exact(arithmetic.number(h)) - h)
         if arithmetic.absolute:
-            assert steps * cut > 2 * error_of_time(arithmetic, latest)
+            assert steps * cut > 2 * bound_time_error(arithmetic, latest)

@@ -1,14 +1,17 @@
 """What a proof says is 0 of a run is what each observable says of the map, and nothing else."""
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
+from tests.helpers.kernel_requests import record_kernel_requests
+from tests.unit.runs.test_run_exact import HENON, MIXED
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
 from verify.observables import by_name
 from verify.runs import requested_run as runs
-from verify.scenes.observables import names
+from verify.scenes.observables import CLOSED_FORM, names
 
 PLANE = Hamiltonian.parse("p**2/2 - cos(q)")
 TWO_DEGREES = Hamiltonian.parse("(p1**2 + p2**2)/2 + q1**2*q2 + q1**2 + q2**2")
@@ -41,6 +44,39 @@ def test_what_is_said_to_be_0_is_0_in_a_run_that_steps() -> None:
         assert Fraction(kept.values[name].value) == 0
         assert Fraction(lost.values[name].value) != 0
     assert proved(TWO_DEGREES, "lie2") == set()
+
+
+PENDULUM_RUN: dict[str, Any] = {"q": 1, "p": "1/3", "step_size": "0.1"}
+TWO_DEGREES_RUN: dict[str, Any] = {
+    "q": ["1/8", "4/9"], "p": ["3/7", "-2/5"], "step_size": "1/20", "steps": 5, "digits": 25,
+    "observables": names(planar=False),
+}  # fmt: skip
+OF_DEFECT = {*names(planar=False)} - {"energy_error_max"}
+SYMPLECTIC = {
+    **{
+        f"plane-{arithmetic}-{steps}": (
+            "p**2/2 - cos(q)", "symplectic-euler", arithmetic, PENDULUM_RUN | {"steps": steps},
+            {*CLOSED_FORM},
+        )
+        for arithmetic in ("float64", "mpmath")
+        for steps in (1, 50, 20_001)
+    },
+    "two-degrees-explicit": (HENON, "stormer-verlet", "mpfr", TWO_DEGREES_RUN, OF_DEFECT),
+    "two-degrees-implicit": (MIXED, "implicit-midpoint", "mpfr", TWO_DEGREES_RUN, OF_DEFECT),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SYMPLECTIC.values(), ids=SYMPLECTIC)
+def test_where_the_map_is_symplectic_exact_zeros_are_given_that_no_kernel_computes(
+    monkeypatch: pytest.MonkeyPatch, case: tuple[str, str, str, dict[str, Any], set[str]]
+) -> None:
+    formula, scheme, arithmetic, keys, zeros = case
+    requests = record_kernel_requests(monkeypatch)
+    result = runs.run(Hamiltonian.parse(formula), scheme, arithmetic=arithmetic, points=5, **keys)
+    assert all((result.values[n].value, result.values[n].bound) == ("0", "0") for n in zeros)
+    assert set(result.exact) == zeros
+    assert set().union(*requests) <= {"tangent", *keys.get("observables", ())} - zeros
+    assert result.series == ()
 
 
 CONSERVED = [("p**2/2 + q**2/2", "implicit-midpoint"), ("p*q", "gauss4"), ("cos(q)", "lie2"),
@@ -78,6 +114,42 @@ def test_each_observable_says_itself_when_it_vanishes() -> None:
     assert vanishing == {*by_name()} - {"lambda_plain", "energy_error_max"}
     conserved = {name for name, each in by_name().items() if each.vanishes(Conserving())}
     assert conserved == {"energy_error_max"}
+
+
+def harmonic_lambda(eta: int, x: Fraction, steps: int) -> Fraction:
+    """|R_η(ix)|^(2N) − 1 for the truncated exponential R_η, exactly."""
+    even = odd = Fraction(0)
+    term = Fraction(1)
+    for n in range(eta + 1):
+        term = term * x / n if n else term
+        if n % 2:
+            odd += term if n % 4 == 1 else -term
+        else:
+            even += term if n % 4 == 0 else -term
+    return (even**2 + odd**2) ** steps - 1
+
+
+@pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
+@pytest.mark.parametrize("eta", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("steps", [1, 7, 60])
+def test_a_constant_delta_j_gives_lambda_in_closed_form(
+    monkeypatch: pytest.MonkeyPatch, eta: int, steps: int, arithmetic: str
+) -> None:
+    requests = record_kernel_requests(monkeypatch)
+    harmonic = Hamiltonian.parse("p**2/2 + omega**2*q**2/2", {"omega": "7/3"})
+    at = {"q": "0.3", "p": 1, "step_size": "1/7", "steps": steps, "digits": 40}
+    result = runs.run(harmonic, f"lie{eta}", **at, arithmetic=arithmetic)
+    assert set().union(*requests) <= {"tangent"}
+    true = harmonic_lambda(eta, Fraction(1, 3), steps)
+    one = harmonic_lambda(eta, Fraction(1, 3), 1)
+    expected = {"lambda": true, "delta_j_max": abs(one), "mse": one**2}
+    for name, exact in expected.items():
+        value = result.values[name]
+        assert abs(Fraction(value.value) - exact) <= Fraction(value.bound), name
+        assert len(value.value.partition("e")[0].replace(".", "").lstrip("-0")) == 40
+    keys = at | {"arithmetic": "mpmath", "observables": ["lambda_plain"]}
+    plain = runs.run(harmonic, f"lie{eta}", **keys).values["lambda_plain"]
+    assert abs(Fraction(plain.value) - true) <= Fraction(plain.bound)
 
 
 UNIFORM = [("p**2/2 + q**2/2", "rk4"), ("p**2/2 + q**2/2", "lie2"), ("p*q + q**3/3", "rk4"),

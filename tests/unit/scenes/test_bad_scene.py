@@ -9,6 +9,43 @@ from verify.errors import InputError
 from verify.scenes.scene import load_scene
 from verify.scenes.values import MAX_STEPS
 
+HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
+TWO_DEGREES = HEAD.replace(H, HENON)
+LISTS = "q = [0.3, -0.1], p = [0.1, 0.2]"
+GRID_OF_LISTS = GRID.replace("q = 1.5, p = 0", LISTS)
+SEPARATED = f"""
+[[separation]]
+step_sizes = [0.1, 0.05]
+steps = 30
+initial_value = {{ {LISTS} }}
+"""
+REFERENCE = f"""
+[[reference]]
+step_sizes = [0.05]
+initial_values = [{{ {LISTS} }}]
+steps = [0, 1, 20]
+digits = 18
+"""
+FLOW = "[[flow]]\nshape = 'cat'\nstep_size = 0.1\nsteps = [1]\n"
+FIVE_DEGREES = """
+system = "fput"
+schemes = ["lie2"]
+[parameters]
+n = 5
+alpha = 1
+beta = 0
+[grid]
+steps = 5
+step_sizes = [0.1]
+initial_values = [{ q = [1, 0, 0, 0, 0], p = [0, 0, 0, 0, 0] }]
+"""
+
+
+def short(text: str) -> str:
+    """With a list of one number where q is of two."""
+    return text.replace("[0.3, -0.1]", "[0.3]")
+
+
 # name -> (content, what the message must hold)
 BAD: dict[str, tuple[str | bytes, str]] = {
     "unknown-key": (HEAD + "speed = 3\n", "speed=3: unknown key"),
@@ -78,6 +115,31 @@ BAD: dict[str, tuple[str | bytes, str]] = {
     "nested-tables": ("a = " + "{a=" * 20000, "is not TOML"),
     "dotted-deeply": (".".join("a" * 3000) + " = 1", "mine.toml"),
     "empty": ("", "schemes"),
+    "q-too-short": (TWO_DEGREES + short(GRID_OF_LISTS),
+        "q=0.3: has 1 of 2 numbers; H is of q1, q2"),
+    "q-no-list": (TWO_DEGREES + GRID_OF_LISTS.replace("[0.3, -0.1]", "0.3"),
+        "grid.initial_values.0.p: number="),
+    "no-lists": (TWO_DEGREES + GRID, "has 1 of 2 numbers"),
+    "q2-a-letter": (TWO_DEGREES + GRID_OF_LISTS.replace("-0.1", '"x"'),
+        "grid.initial_values.0.q.1: number=x"),
+    "separation-too-short": (TWO_DEGREES + short(SEPARATED), "q=0.3: has 1 of 2 numbers"),
+    "reference-too-short": (TWO_DEGREES + short(REFERENCE), "of 2 numbers"),
+    "growth-in-degrees": (TWO_DEGREES + GRID_OF_LISTS + "growth = true\n",
+        "grid.growth takes p and q"),
+    "observable-of-the-plane": (TWO_DEGREES + GRID_OF_LISTS + 'observables = ["lambda_plain"]\n',
+        "observable=lambda_plain"),
+    "criterion-in-degrees": (TWO_DEGREES + "criteria = [1]\n", "criteria takes p and q"),
+    "flow-no-lists": (TWO_DEGREES + FLOW + "centre = { q = 1, p = 0 }\nscale = 1\n",
+        "p=0: has 1 of 2 numbers; H is of p1, p2"),
+    "flow-plane-3": (TWO_DEGREES + FLOW + "plane = 3\n", "plane=3: must be 1 … 2"),
+    "flow-plane-3-of-a-point": (
+        TWO_DEGREES + FLOW + "plane = 3\ncentre = { q = [1, 0], p = [0, 0] }\n",
+        "plane=3: must be 1 … 2"),
+    "lists-in-the-plane": (HEAD + GRID_OF_LISTS, "is a list; H is of p and q"),
+    "observable-of-degrees": (HEAD + GRID + 'observables = ["symplectic_defect"]',
+        "is |lambda| in one degree of freedom"),
+    "separate-in-five-degrees": (FIVE_DEGREES + "separate = true\n",
+        "is for up to 4 degrees of freedom; H has 5"),
 }  # fmt: skip
 
 
@@ -91,12 +153,16 @@ def test_a_bad_scene_is_an_input_error_that_names_it_in_one_line(
     assert named in message
     assert "mine.toml" in message
     assert "\n" not in message
+    assert "«" not in message
     assert len(message) < 500
 
 
 def test_the_scene_that_the_bad_ones_are_made_of_is_good(tmp_path: Path) -> None:
     scene = load(tmp_path, GOOD)
     assert (scene.name, len(scene.series)) == ("mine", 1)
+    for section in (GRID_OF_LISTS, SEPARATED, REFERENCE, FLOW):
+        assert load(tmp_path, TWO_DEGREES + section).exact_hamiltonian().degrees == 2
+    assert load(tmp_path, FIVE_DEGREES).grid
 
 
 @pytest.mark.parametrize("path", ["missing.toml", ".", "/dev/null/x"])

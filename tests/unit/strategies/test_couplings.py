@@ -1,4 +1,4 @@
-"""What is known of a coupling holds: where it is bounded, and where it may be negative."""
+"""What is known of a coupling holds: where it is bounded, where it may be negative, its degrees."""
 
 from itertools import product
 
@@ -8,7 +8,7 @@ import sympy
 from hypothesis import strategies as st
 
 from tests.helpers.sampled.drawing import fuzzed
-from verify.strategies.couplings import Coupling, couplings
+from verify.strategies.couplings import Coupling, couplings, number_variables
 from verify.strategies.terms import KINDS, Drawer, FormulaLimits
 
 NAMES = sympy.symbols("p q P Q")
@@ -58,3 +58,14 @@ def test_what_is_flat_is_bounded_on_every_axis(coupling: Coupling) -> None:
     for sides in drawn(coupling):
         bounded = max(map(abs, values(sides, axes=True))) <= MOST
         assert bounded or not coupling.flat, sides
+
+
+def test_a_coupling_has_two_degrees_and_the_asked_properties() -> None:
+    assert len(EVERY) == 15
+    assert all(x.separable for x in couplings("rational", 6, separable=True, bounded=None))
+    assert all(x.confined for x in couplings("exponential", 6, separable=False, bounded=True))
+    assert not list(couplings("polynomial", 1, separable=True, bounded=None))
+
+
+def test_degrees_are_numbered_in_names_alone() -> None:
+    assert number_variables("exp(-p**2) + sin(2*q)*P", 3, 12) == "exp(-p3**2) + sin(2*q3)*p12"

@@ -2,13 +2,14 @@
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import strategies as st
 
 from tests.helpers.sampled.drawing import fuzzed
 from tests.unit.strategies.test_schemes import TWISTED
 from verify import Hamiltonian, Scene
 from verify import strategies as s
-from verify.scenes.values import InitialValue
+from verify.scenes.values import InitialState, InitialValue
 
 
 def valid(scene: Scene) -> Scene:
@@ -43,6 +44,19 @@ def test_scenes_of_given_parts_have_them_and_are_valid() -> None:
     }
     with_values = fuzzed(s.scenes(hamiltonians=duffing), 5)
     assert all(set(scene.parameters) == {"delta"} for scene in with_values)
+    coupled = st.just(Hamiltonian.parse("p1**2/2 + p2**2/2 + q1*q2"))
+    drawn = fuzzed(s.scenes(hamiltonians=coupled, degrees=2), 10)
+    assert {scene.hamiltonian for scene in drawn} == {"p1**2/2 + p2**2/2 + q1*q2"}
+
+
+@pytest.mark.parametrize("degrees", [2, 3])
+def test_scenes_have_a_scheme_that_takes_h_and_lists_for_starts(degrees: int) -> None:
+    for scene in fuzzed(s.scenes(degrees=degrees), 20):
+        (start,) = scene.grid.initial_values
+        assert isinstance(start, InitialState)
+        assert len(start.q) == len(start.p) == degrees
+        (scheme,) = fuzzed(s.schemes(names=scene.schemes), 1)
+        assert scheme.step_map(scene.exact_hamiltonian()).degrees == degrees
 
 
 def test_scenes_in_time_are_valid_and_begin_at_drawn_times() -> None:

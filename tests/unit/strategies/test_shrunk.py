@@ -14,6 +14,8 @@ from verify import Hamiltonian
 from verify import strategies as s
 from verify.scenes.values import InitialValue
 
+OSCILLATORS = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2"
+
 
 def uses(function: Any) -> Callable[[Hamiltonian], bool]:
     return lambda h: bool(h.exact.has(function))
@@ -30,9 +32,15 @@ def uses(function: Any) -> Callable[[Hamiltonian], bool]:
         (s.hamiltonians(["trigonometric"]), lambda _: True, "p**2/2 + cos(q)"),
         (s.hamiltonians(["rational"]), lambda _: True, "p**2/2 + 1/(q**2 + 1)"),
         (s.hamiltonians(), uses(sympy.cos), "p**2/2 + cos(q)"),
-        (s.hamiltonians(), lambda h: mixed(h.exact), "p**2/2 + p*q/2 + q**2/2"),
+        (s.hamiltonians(), mixed, "p**2/2 + p*q/2 + q**2/2"),
         (s.hamiltonians(["polynomial"]), lambda h: h.exact.diff(Q, 3) != 0, "p**2/2 + q**4/2"),
         (s.hamiltonians(bounded=True), lambda h: h.exact.coeff(P**2) > 3, "4*p**2 + q**2/2"),
+        (s.hamiltonians(degrees=2), lambda _: True, OSCILLATORS),
+        (
+            s.hamiltonians(degrees=2, coupled=True),
+            lambda _: True,
+            "p1**2/2 + p2**2/2 + q1**2/2 + q1*q2 + q2**2/2",
+        ),
     ],
 )
 def test_a_hamiltonian_shrinks_to_what_can_be_read(
@@ -47,3 +55,10 @@ def test_a_scene_shrinks_to_the_oscillator_and_one_step() -> None:
     assert found.grid.steps == 5
     assert found.grid.step_sizes == (Fraction(1, 10),)
     assert found.grid.initial_values == (InitialValue(q=0, p=0),)
+
+
+@pytest.mark.left_to_ci
+def test_a_scene_in_two_degrees_shrinks_to_oscillators_and_the_first_scheme() -> None:
+    scene = shrunk(s.scenes(degrees=2))
+    assert scene.exact_hamiltonian().formula == OSCILLATORS
+    assert scene.schemes == ("lie1",)

@@ -1,1 +1,1 @@
-"""sympy's expressions: their parts and their text, independent of any ring."""
+"""sympy's expressions: their parts and their text, without any ring."""

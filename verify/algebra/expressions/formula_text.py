@@ -19,11 +19,12 @@ def to_text(expression: sympy.Expr) -> str:
 
 @cache
 def _printer() -> Callable[[sympy.Expr], str]:
-    """Return the function that prints an expression; its class is one of sympy's, imported here."""
+    """Return the function that prints an expression. Its class derives from one of sympy's, which
+    is imported here."""
     from sympy.printing.str import StrPrinter
 
     class FormulaPrinter(StrPrinter):  # type: ignore[misc]
-        """sympy's text form, but for e (a parameter named E?) and powers that are exponentials."""
+        """sympy's text form, except of e (E may be a parameter) and exponential powers."""
 
         def _print_Exp1(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
             return "exp(1)"
@@ -38,15 +39,15 @@ def _printer() -> Callable[[sympy.Expr], str]:
 
 @contextmanager
 def _any_length() -> Iterator[None]:
-    """Allow whole numbers of any length as text; Python's own limit is 4300 digits.
+    """Allow integers of any length as text for a while; Python's limit is 4300 digits.
 
-    That limit guards against numbers from outside. These come from within: 10^1000, which a formula
-    may hold, has 7000 digits in its seventh power.
+    That limit guards against numbers from outside. These numbers come from computations: a formula
+    may have 10^1000, whose seventh power has 7000 digits.
     """
     # The limit is global to the process, so it is restored even after an error.
-    before = sys.get_int_max_str_digits()
+    previous_limit = sys.get_int_max_str_digits()
     sys.set_int_max_str_digits(0)
     try:
         yield
     finally:
-        sys.set_int_max_str_digits(before)
+        sys.set_int_max_str_digits(previous_limit)

@@ -1,7 +1,7 @@
-"""Monomials, read directly: a polynomial that is written out has many of them.
+"""Monomials, which are read without sympy's constructors: an expanded polynomial has many.
 
-All other parts of a formula go node by node through sympy, which examines every product for
-simplifications and is slow.
+All other parts of a formula are built node by node by sympy, which examines every product for
+simplifications, and is slow. This is called the ordinary way below.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ import gmpy2
 from verify.errors import InputError
 from verify.lazy_sympy import sympy
 
-DEEPEST = 6  # levels of nesting within a monomial, at most
-_LONGEST = 18  # digits of a number
-_MOST_BITS, _MOST_POWER = 1000, 64
+MAX_NESTING = 6  # levels within a monomial
+_MAX_DIGITS = 18  # of one number in a monomial
+_MAX_BITS, _MAX_POWER = 1000, 64
 
 Powers: TypeAlias = "tuple[tuple[sympy.Symbol, int], ...]"
 Quotient = tuple[int, int]  # numerator, denominator
 
 
 class Monomials:
-    """A collector of the terms of a sum that are numbers times powers of names, by their powers.
+    """A collector of a sum's monomials: terms that are numbers times powers of names.
 
-    `line`: the text that was parsed to the nodes. `name` returns a name's symbol, or what else it
-    stands for, and raises InputError for one that is not allowed.
+    `line`: the text from which the nodes were parsed. `name` returns the symbol of a name, or
+    another expression that it stands for; it raises InputError for a name that is not allowed.
     """
 
     def __init__(self, line: str, name: Callable[[str], sympy.Expr]) -> None:
@@ -36,14 +36,15 @@ class Monomials:
         self.collected: dict[Powers, gmpy2.mpq] = {}
 
     def take(self, node: ast.expr, sign: int) -> bool:
-        """Add the term times its sign; return False if it must be read in the ordinary way."""
+        """Add sign·node if the node is a monomial; return False if it must be read in the ordinary
+        way."""
         powers: dict[str, int] = {}
-        quotient = self._quotient(node, powers, DEEPEST)
-        if quotient is None or max(powers.values(), default=0) > _MOST_POWER:
+        quotient = self._quotient(node, powers, MAX_NESTING)
+        if quotient is None or max(powers.values(), default=0) > _MAX_POWER:
             return False
         try:
             symbols = [(self.name(name), n) for name, n in powers.items()]
-        except InputError:  # the ordinary way reports the first of several errors in the text
+        except InputError:  # the ordinary way reports the text's first error
             return False
         if not all(symbol.is_Symbol for symbol, _ in symbols):
             return False
@@ -53,10 +54,10 @@ class Monomials:
         return True
 
     def sum(self) -> sympy.Expr:
-        """Return the sum of the terms taken, in sympy's normal form.
+        """Return the sum of the collected terms, in sympy's normal form.
 
-        There a number stands first in a sum and the other terms are in sympy's own order; in a
-        product a number other than 1 stands before the names.
+        In it a number is the first term of a sum, and the others have sympy's order; in a product a
+        number other than 1 stands before the names.
         """
         constant, terms = sympy.S.Zero, []
         for powers, c in self.collected.items():
@@ -71,20 +72,18 @@ class Monomials:
                 )
         if len(terms) < 2:
             return sympy.Add(constant, *terms)
-        # sympy's constructors sort and simplify every argument, which is the cost that is avoided
-        # here: the arguments are put in its normal form at once.
+        # sympy's constructors sort and simplify every argument, which is slow. Here the arguments
+        # are in normal form already.
         terms.sort(key=_sort_key())
         return _build_ordered(sympy.Add, terms if constant.is_zero else [constant, *terms])
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
-        """Return the number before the names, and add the names' powers to `powers`.
-
-        None if the node is no such monomial, or the ordinary way would refuse it.
-        """
+        """Return the number before the names, and add the names' powers to `powers`; None if the
+        node is no monomial, or the ordinary way would refuse it."""
         match node:
             case ast.Constant():
                 digits = self.line[node.col_offset : node.end_col_offset]
-                short = digits.isdecimal() and len(digits) <= _LONGEST
+                short = digits.isdecimal() and len(digits) <= _MAX_DIGITS
                 return (int(digits), 1) if short else None
             case ast.Name(id=name):
                 powers[name] = powers.get(name, 0) + 1
@@ -114,8 +113,8 @@ class Monomials:
         if quotient is None:
             return None
         above, below = above * quotient[0], below * quotient[1]
-        # Larger numbers go the ordinary way, which has limits and messages of its own.
-        return (above, below) if max(abs(above), abs(below)).bit_length() <= _MOST_BITS else None
+        # Larger numbers are read in the ordinary way, which has its own limits and messages.
+        return (above, below) if max(abs(above), abs(below)).bit_length() <= _MAX_BITS else None
 
 
 @cache
@@ -125,7 +124,8 @@ def _sort_key() -> Callable[[sympy.Expr], Any]:
 
 
 def _build_ordered(kind: type[sympy.Expr], args: Sequence[sympy.Expr]) -> sympy.Expr:
-    """Build the sum or product of ordered arguments, ten times as fast as sympy, which sorts."""
+    """Build a sum or product of arguments in sympy's order, ten times as fast as sympy, which sorts
+    them."""
     return kind._from_args(tuple(args), is_commutative=True)
 
 
@@ -141,25 +141,26 @@ def is_power_of_name(x: sympy.Expr) -> bool:
 
 
 def reads_back(x: sympy.Expr, most: int) -> bool:
-    """Return True if x is a sum of monomials whose text surely parses back to x.
+    """Return True if x is a sum of monomials whose text surely parses back to x; False decides
+    nothing.
 
-    `most`: the allowed number of characters. The terms are then all taken by `Monomials`, which
-    keeps numbers and powers as they are, and sympy orders a sum in one way. False decides nothing.
+    `most`: the allowed number of characters. All terms are then read by `Monomials`, which leaves
+    numbers and powers as they are, and sympy's order of a sum is unique.
     """
     if not x.is_Add:
         return False
     length = 0
     for term in x.args:
         length += 4  # signs, spaces
-        for place, factor in enumerate(term.args if term.is_Mul else (term,)):
-            if factor.is_Rational and not place:
+        for index, factor in enumerate(term.args if term.is_Mul else (term,)):
+            if factor.is_Rational and not index:
                 digits = [len(str(abs(n))) for n in (factor.p, factor.q)]
-                if max(digits) > _LONGEST:
+                if max(digits) > _MAX_DIGITS:
                     return False
                 length += sum(digits) + 2
             elif is_power_of_name(factor):
                 name, power = factor.as_base_exp()
-                if not 0 < int(power) <= _MOST_POWER:
+                if not 0 < int(power) <= _MAX_POWER:
                     return False
                 length += len(name.name) + 5
             else:
@@ -174,7 +175,7 @@ class Monomial(NamedTuple):
     powers: tuple[tuple[str, int], ...]
 
 
-# The terms of a formula's expression are needed whenever something is computed from it.
+# Cached, since every computation with a formula needs its terms.
 @lru_cache(maxsize=64)
 def monomials_of(x: sympy.Expr) -> tuple[Monomial, ...] | None:
     """Return the terms of x in their order; None if one of them is no monomial."""

@@ -1,9 +1,9 @@
-"""The decision whether an algebraic number is 0, by a bound from below.
+"""The decision whether an algebraic number is 0, by a lower bound on its size.
 
-An algebraic integer that is not 0 has a norm of at least 1, so that with D conjugates, none larger
-than B, it is itself at least B^(1 − D) in size. A polynomial in roots and cosines is, times a whole
-number, an algebraic integer, for which D and B follow from the roots and cosines alone (Mignotte;
-"constructive root bounds"): a ball narrower than that bound decides.
+The norm of an algebraic integer ≠ 0, the product of its D conjugates, is at least 1 in size. If
+none of them is larger than B, the integer itself is at least B^(1 − D) in size. A polynomial in
+roots and cosines, times an integer, is an algebraic integer, and D and B follow from the roots and
+cosines alone (Mignotte; "constructive root bounds"). A ball narrower than the bound decides.
 """
 
 import math
@@ -22,7 +22,7 @@ _SIZE_BITS = 64
 
 
 def bounds_of(field: Field, x: Poly) -> Algebraic:
-    """Bound a polynomial in algebraic numbers: its degree, divisor and house."""
+    """Return bounds on a polynomial in algebraic numbers: its degrees, divisor and house."""
     places = places_in(x)
     numbers = {place: field.units[place].number for place in places}
     all_degrees: dict[int, int] = {}
@@ -61,7 +61,7 @@ def number_sign(field: Field, x: Poly) -> int:
             ball = Point(field, {}).enclose(x)
             if not ball.contains(0):
                 return 1 if ball > 0 else -1
-            # |d·x| ≥ B^(1 − D) unless it is 0, and B < 2^bits.
+            # |d·x| ≥ B^(1 − D) unless x is 0, and B < 2^bits.
             if abs(ball * bounds.divisor) < flint.arb(2) ** (-bits * (bounds.degree - 1)):
                 return 0
         if precision > 4 * most_bits + 1024:
@@ -70,7 +70,8 @@ def number_sign(field: Field, x: Poly) -> int:
 
 
 def bounds_of_root(field: Field, x: Poly, degree: int) -> tuple[int, Algebraic]:
-    """Bound |x|^(1/degree) for a number x that is not 0: the argument `number` of `Field.unit`."""
+    """Return bounds on |x|^(1/degree) for a number x ≠ 0, as the argument `number` of
+    `Field.unit`."""
     bounds = bounds_of(field, x)
     with working_precision(_SIZE_BITS):
         house = bounds.house.root(degree).abs_upper()
@@ -78,7 +79,8 @@ def bounds_of_root(field: Field, x: Poly, degree: int) -> tuple[int, Algebraic]:
 
 
 def vanishes(field: Field, x: Poly) -> bool:
-    """Return True if the coefficients of x, by powers of the functions in it, are all 0."""
+    """Return True if x is 0 as a polynomial in functions: its coefficients, which are algebraic
+    numbers, are all 0."""
     functions = {place for place in places_in(x) if field.units[place].number is None}
     parts = map(field.ring.context.from_dict, split_by_monomials(x, functions).values())
     return all(number_sign(field, part) == 0 for part in parts)

@@ -1,10 +1,10 @@
 """Cosines and sines of parts of an angle and of parts of a turn.
 
-cos and sin of k b are polynomials in those of b, with the one relation sin² + cos² = 1; or, with
-`tangents`, quotients of polynomials in t = tan(b/2), which need no relation, so that polynomials in
-them factor uniquely. Rational multiples of π are split off by the addition theorems; their cosines
-and sines are polynomials in the one number c = 2 cos(2π/N), whose minimal polynomial is known. For
-an angle k·atan u, cos and sin are the parts of (1 + iu)^k/(1 + u²)^(k/2).
+cos and sin of k b are polynomials in those of b, with the one relation sin² + cos² = 1. With
+`tangents` they are quotients of polynomials in t = tan(b/2) instead, which need no relation, and
+factor uniquely. Rational multiples of π are split off by the addition theorems; their cosines
+and sines are polynomials in one number, c = 2 cos(2π/N), whose minimal polynomial is at hand. cos
+and sin of k·atan u are the real and the imaginary part of (1 + iu)^k/(1 + u²)^(k/2).
 """
 
 import math
@@ -23,7 +23,7 @@ Pair = tuple[Quotient, Quotient]  # cosine and sine, or real and imaginary part
 
 
 def times(x: Pair, y: Pair) -> Pair:
-    """Multiply two complex numbers."""
+    """Return the product of two complex numbers."""
     (a, b), (c, d) = x, y
     return a * c - b * d, a * d + b * c
 
@@ -42,7 +42,7 @@ class Angles:
 
     def __init__(self, field: Field, powers: Powers, *, tangents: bool) -> None:
         self.field, self.powers, self.tangents = field, powers, tangents
-        self.arctangents: dict[int, Quotient] = {}  # of A: its argument
+        self.arctangents: dict[int, Quotient] = {}  # place of an arctangent → its argument
 
     @property
     def pi(self) -> Quotient:
@@ -149,10 +149,13 @@ class Angles:
             relation = self._in_cosine(minimal, unit)
             field.relate(unit, minimal.degree(), relation)
         # 2 cos((k + 1) a) = c·2 cos(k a) − 2 cos((k − 1) a)
-        before, now = flint.fmpz_poly([2]), flint.fmpz_poly([0, 1]) % minimal
+        current, following = flint.fmpz_poly([2]), flint.fmpz_poly([0, 1]) % minimal
         for _ in range(k):
-            before, now = now, (flint.fmpz_poly([0, 1]) * now - before) % minimal
-        return field.polynomial(self._in_cosine(before, field.unit_by_key[key]) / 2)
+            current, following = (
+                following,
+                (flint.fmpz_poly([0, 1]) * following - current) % minimal,
+            )
+        return field.polynomial(self._in_cosine(current, field.unit_by_key[key]) / 2)
 
     def _in_cosine(self, x: flint.fmpz_poly, c: Quotient) -> Poly:
         place = self.field.place(c)

@@ -1,9 +1,9 @@
 """A field of functions: quotients of polynomials in units, each of which can be enclosed.
 
-A unit is a name, π, or a function of quotients of older units: see the modules in this folder.
-Polynomials are kept in normal form modulo the units' relations, such as ρ² = 1 + q². A quotient is
-a function where its divisor is not 0; divisors come only from denominators of the expression that
-is examined. So where that is defined no divisor vanishes, except where a common factor cancelled.
+A unit is a name, π, or a function of quotients of older units (see the modules in this folder).
+Polynomials are in normal form modulo the units' relations, such as ρ² = 1 + q². A quotient is a
+function wherever its divisor is not 0. Divisors come only from denominators of the examined
+expression: where it is defined, no divisor vanishes, except where a common factor was cancelled.
 """
 
 import math
@@ -16,14 +16,13 @@ import flint
 from verify.algebra.identities.polynomials import Poly, Polynomials, places_in, terms_of
 
 Ball = flint.arb
-_MOST_TERMS = 20_000
-_MOST_WORK = 2_000_000  # products of two terms, all in all
-_MOST_CANCELLED = 300  # terms of a quotient, above which no common factor is looked for
-_MOST_DEGREE = 300
+_MAX_TERMS = 20_000
+_MAX_WORK = 2_000_000  # products of two terms over the life of a field
+_MAX_CANCELLED_TERMS = 300  # a quotient with more terms is neither cancelled nor factored
+_MAX_DEGREE = 300
 
 
-# Gives balls for the names at one point, in flint's present precision.
-Names = Callable[[], Mapping[str, flint.arb]]
+Names = Callable[[], Mapping[str, flint.arb]]  # → balls for the names at one point
 
 
 class UndecidedError(Exception):
@@ -34,9 +33,9 @@ class UndecidedError(Exception):
 class Algebraic:
     """Bounds on an algebraic number a.
 
-    `degrees`: the places of the units in it, each with a bound on the unit's degree over the older
-    ones; `divisor`: a whole number d > 0 for which d·a is an algebraic integer; `house`: a bound on
-    |a'| for every conjugate a'.
+    `degrees`: for the place of each unit in a, a bound on the unit's degree over older units;
+    `divisor`: an integer d > 0 for which d·a is an algebraic integer; `house`: a bound on |a′| for
+    every conjugate a′ of a.
     """
 
     degrees: Mapping[int, int]
@@ -53,9 +52,9 @@ class Algebraic:
 class Unit:
     """One generator of the field.
 
-    `ball` encloses its value in flint's present precision, from balls of older units and the names;
-    `positive`: it is > 0 wherever it is defined; `bounded`: it is between −1 and 1. `number`: the
-    bounds on an algebraic number; None for other units.
+    `ball` encloses its value at a point, at flint's present precision. `positive`: it is > 0
+    wherever it is defined; `bounded`: it is between −1 and 1. `number`: the bounds on an algebraic
+    number; None for functions.
     """
 
     index: int
@@ -66,14 +65,14 @@ class Unit:
 
 
 class Point:
-    """The units' balls at one point, which is given by balls for the names."""
+    """The balls of the units at one point; `names`: those of the names."""
 
     def __init__(self, field: "Field", names: Mapping[str, Ball]) -> None:
         self.field, self.names = field, names
         self.values: dict[int, Ball] = {}
 
     def enclose(self, x: Poly) -> Ball:
-        """Enclose a polynomial in the units."""
+        """Return a ball that contains a polynomial in the units."""
         total = flint.arb(0)
         places = places_in(x)
         for monomial, coefficient in terms_of(x):
@@ -125,10 +124,10 @@ class Field:
         bounded: bool = False,
         number: tuple[int, Algebraic] | None = None,
     ) -> "Quotient":
-        """Add a unit under a key that `unit_by_key` does not have yet.
+        """Add a unit under a key that is not yet in `unit_by_key`.
 
-        `number`: for an algebraic number, its degree over the units in the second item, and these
-        with the number's divisor and house.
+        `number`, for an algebraic number: its degree over older units, and the bounds with these
+        units' degrees and the number's divisor and house.
         """
         try:
             index = self.ring.reserve_place()
@@ -140,7 +139,8 @@ class Field:
         return self.unit_by_key[key]
 
     def relate(self, unit: "Quotient", power: int, relation: Poly) -> None:
-        """Set relation = 0, with that power of the unit and older units, for an older relation."""
+        """Set relation = 0, a polynomial with this power of the unit, and older units; it replaces
+        an earlier relation of the unit."""
         self.ring.relate(self.ring.gens[self.place(unit)], power, relation)
 
     def place(self, unit: "Quotient") -> int:
@@ -148,7 +148,7 @@ class Field:
         return places_in(unit.above)[0]
 
     def single(self, x: Poly) -> int | None:
-        """Return the place of the unit that x is, or None if x is not just a unit."""
+        """Return the place of the unit that equals x; None if x is no unit."""
         places = places_in(x)
         alone = len(x) == 1 and len(places) == 1 and x.total_degree() == 1
         return places[0] if alone and x.leading_coefficient() == 1 else None
@@ -157,19 +157,18 @@ class Field:
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
         self.work += len(x) * len(y)
-        # The limit counts products of terms over the whole life of the field, so no identity takes
-        # long.
-        if self.work > _MOST_WORK or x.total_degree() + y.total_degree() > 10 * _MOST_DEGREE:
+        # The work is counted over the whole life of the field, so that no identity takes long.
+        if self.work > _MAX_WORK or x.total_degree() + y.total_degree() > 10 * _MAX_DEGREE:
             raise UndecidedError("too much work")
         return self.check_length(self.ring.reduce(x * y))
 
     def check_length(self, x: Poly) -> Poly:
-        if len(x) > _MOST_TERMS:
+        if len(x) > _MAX_TERMS:
             raise UndecidedError("too many terms")
         return x
 
     def divide(self, above: Poly, below: Poly) -> "Quotient":
-        """Return the quotient without a common factor, as far as one is looked for."""
+        """Return the quotient; a common factor is cancelled if both are small."""
         if below.is_zero():
             raise UndecidedError("a division by zero")
         if above.is_zero():
@@ -185,7 +184,9 @@ class Field:
     def is_small(self, *elements: Poly) -> bool:
         """Return True if the elements are small enough to be factored."""
         terms = sum(len(x) for x in elements)
-        return terms <= _MOST_CANCELLED and all(x.total_degree() <= _MOST_DEGREE for x in elements)
+        return terms <= _MAX_CANCELLED_TERMS and all(
+            x.total_degree() <= _MAX_DEGREE for x in elements
+        )
 
     def is_positive(self, place: int) -> bool:
         """Return True if the unit of that place is > 0 wherever it is defined."""
@@ -200,16 +201,15 @@ class Field:
         return all(self.units[place].number is not None for place in places_in(x))
 
     def terms(self, x: "Quotient") -> Iterator[tuple[Fraction, "Quotient"]]:
-        """Split x = Σ c·m, with rational c, each m a power product over one divisor."""
+        """Yield (c, m) with x = Σ c·m, where c is rational and m a power product over x.below."""
         for monomial, c in terms_of(x.above):
             power_product = self.ring.context.from_dict({monomial: 1})
-            # x.below begins with 1, so one m has one form only where nothing cancels.
             yield Fraction(int(c.p), int(c.q)), self.divide(power_product, x.below)
 
 
 @dataclass(frozen=True)
 class Quotient:
-    """above/below, polynomials in normal form."""
+    """The quotient above/below of polynomials in normal form."""
 
     field: Field
     above: Poly
@@ -226,7 +226,7 @@ class Quotient:
 
     @property
     def rational(self) -> flint.fmpq | None:
-        """The quotient as a rational number; None if it is none as it stands."""
+        """The quotient as a rational number; None unless both polynomials are constants."""
         if self.is_zero:
             return flint.fmpq(0)
         if self.above.is_constant() and self.below.is_constant():

@@ -1,4 +1,4 @@
-"""The translation of a ring's element to the field of functions, where hidden identities show."""
+"""The translation of a ring's element to a field of functions, in which hidden identities show."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -9,22 +9,22 @@ from verify.algebra.identities.polynomials import Generator, Poly, terms_of
 from verify.algebra.identities.powers import Divisors, FinerError, Powers
 from verify.functions import in_rings
 
-_MOST_GENERATORS = 40
-_MOST_TERMS = 20_000
+_MAX_GENERATORS = 40
+_MAX_TERMS = 20_000
 _ATTEMPTS = 12
 
 
 class FieldImage:
     """One element of a ring, and the generators that it depends on, as quotients of a field.
 
-    Raises UndecidedError where it is too large.
+    Its construction raises UndecidedError if the element is too large.
     """
 
     def __init__(
         self, generators: Sequence[Generator], x: Poly, finer: Divisors, *, tangents: bool
     ) -> None:
         self.used = generators
-        if len(self.used) > _MOST_GENERATORS or len(x) > _MOST_TERMS:
+        if len(self.used) > _MAX_GENERATORS or len(x) > _MAX_TERMS:
             raise UndecidedError("too large")
         names = tuple(g.name for g in self.used if g.kind == "variable")
         self.field = Field(names, 2 * len(self.used) + 24)
@@ -37,7 +37,7 @@ class FieldImage:
         self.element = self.translate(x)
 
     def translate(self, x: Poly) -> Quotient:
-        """Translate a polynomial in the ring's generators, over one common divisor."""
+        """Return the image of a polynomial in the ring's generators, over one common divisor."""
         field, degrees = self.field, x.degrees()
         generators = [g for g in self.used if degrees[g.index] > 0]
         below = {g.index: str(self.images[g.index].below) for g in generators}
@@ -86,7 +86,7 @@ class FieldImage:
         quotient: Quotient = image(self, u)
         return quotient
 
-    # -- the images of functions, see `verify.functions` ----------------------------------------
+    # -- the images of functions (see `verify.functions`) ---------------------------------------
 
     def half_sum(self, u: Quotient, sign: int) -> Quotient:
         """Return (e^u + sign·e^−u)/2."""
@@ -94,22 +94,22 @@ class FieldImage:
         return (up + up.inverse().times(sign)).times(Fraction(1, 2))
 
     def root(self, u: Quotient, degree: int) -> Quotient:
-        """Return the root of u, which is assumed > 0, as the root is defined."""
+        """Return the root of u; u > 0 is assumed, since the root is defined."""
         self.powers.assume_positive(u)
         return self.powers.power(u, Fraction(1, degree))
 
     def logarithm(self, u: Quotient) -> Quotient:
-        """Return log u of u, which is assumed > 0, as the logarithm is defined."""
+        """Return log u; u > 0 is assumed, since the logarithm is defined."""
         self.powers.assume_positive(u)
         return self.powers.logarithm(u)
 
 
 def translate_element(generators: Sequence[Generator], x: Poly, *, tangents: bool) -> FieldImage:
-    """Translate x, with every unit divided as finely as necessary.
+    """Return the image of x; units are divided as finely as necessary.
 
-    `used`: all generators that x depends on, the oldest first.
+    `generators`: all generators that x depends on, the oldest first.
     """
-    # Each FinerError has recorded a finer divisor in `finer`, with which the field is rebuilt.
+    # Each FinerError has recorded a finer divisor in `finer`, with which the field is built again.
     finer = Divisors()
     for _ in range(_ATTEMPTS):
         try:

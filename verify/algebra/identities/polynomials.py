@@ -1,4 +1,4 @@
-"""Polynomials over the rationals, modulo relations, each of which replaces a generator's power."""
+"""Polynomials over the rationals modulo relations; a relation replaces a power of a generator."""
 
 import math
 from collections.abc import Collection, Iterator, Sequence
@@ -8,15 +8,15 @@ from fractions import Fraction
 import flint
 
 Poly = flint.fmpq_mpoly
-Monomial = tuple[int, ...]  # the powers of all generators
+Monomial = tuple[int, ...]  # the exponents of all generators
 
 
 @dataclass(frozen=True)
 class Generator:
-    """One ring generator: `kind` of function, and its argument.
+    """One generator of a ring: a kind of function, and its argument.
 
-    `kind`: variable, which has a `name`, pi, a function of `verify.functions.in_rings`, root (of
-    `degree`), or inverse.
+    `kind`: `variable` (with a `name`), `pi`, a function of `verify.functions.in_rings`, `root`
+    (with a `degree`), or `inverse`. `index`: its place.
     """
 
     index: int
@@ -27,15 +27,15 @@ class Generator:
 
     @property
     def inner(self) -> Poly:
-        """The argument of a function, a root or an inverse; a variable and π have none."""
+        """The argument; a variable and π have none."""
         assert self.argument is not None  # noqa: S101 - the caller checks the kind
         return self.argument
 
 
 def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
-    """Iterate over the monomials, as powers of all generators, with their coefficients.
+    """Return an iterator over (exponents of all generators, coefficient) of the terms.
 
-    That is far faster than flint's own dictionary.
+    It is far faster than flint's dictionary.
     """
     return zip(x.monoms(), x.coeffs(), strict=True)
 
@@ -46,9 +46,9 @@ def places_in(x: Poly) -> list[int]:
 
 
 def split(x: Poly, place: int) -> dict[int, Poly]:
-    """Split x by the powers of the generator of that place: the coefficients that are not 0.
+    """Return {power: coefficient ≠ 0} of x as a polynomial in the generator of that place.
 
-    They come from Taylor's theorem at 0, so that no term passes through Python.
+    The coefficients are those of Taylor's formula at 0, so that no term passes through Python.
     """
     parts = {}
     # The n-th derivative at 0, divided by n!, is the coefficient of the n-th power.
@@ -63,7 +63,7 @@ def split(x: Poly, place: int) -> dict[int, Poly]:
 def split_by_monomials(
     x: Poly, places: Collection[int]
 ) -> dict[Monomial, dict[Monomial, flint.fmpq]]:
-    """Return the coefficient, by its terms, of each power product of generators at these places."""
+    """Return {power product of the generators at `places`: terms of its coefficient in x}."""
     coefficients: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
     for monomial, c in terms_of(x):
         inside = tuple(n if place in places else 0 for place, n in enumerate(monomial))
@@ -78,21 +78,21 @@ class Polynomials:
     def __init__(
         self, names: Sequence[str], room: int = 0, ordering: flint.Ordering = flint.Ordering.lex
     ) -> None:
-        generator_names = [f"_{k}" for k in range(room)]  # no name begins so
-        # Lexicographic with the newest generator first: relations then reduce to older ones.
+        generator_names = [f"_{k}" for k in range(room)]  # no other name begins with _
+        # The lexicographic order has the newest generator first: relations reduce to older ones.
         self.context = flint.fmpq_mpoly_ctx.get([*generator_names, *names], ordering)
         self.gens = self.context.gens()
         self.places = {name: room + k for k, name in enumerate(names)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.free = room  # generators from this place on are in use
-        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
+        self.relations: list[tuple[int, int, Poly]] = []  # (place, power, polynomial = 0)
 
     def constant(self, value: Fraction) -> Poly:
         """Convert a rational number to an element."""
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
-        """Return a variable as an element; KeyError if the ring has none of that name."""
+        """Return a variable as an element. Raises KeyError if there is none of that name."""
         return self.gens[self.places[name]]
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
@@ -100,14 +100,15 @@ class Polynomials:
         return self.reduce(x * y)
 
     def reserve_place(self) -> int:
-        """Reserve the place of a new generator; OverflowError where there is no room."""
+        """Return the place of a new generator. Raises OverflowError if there is no room."""
         if not self.free:
             raise OverflowError
         self.free -= 1
         return self.free
 
     def relate(self, generator: Poly, power: int, relation: Poly) -> None:
-        """Set relation = 0, with a power of its newest generator; it replaces an older relation."""
+        """Set relation = 0, whose leading term is this power of `generator`, its newest one; it
+        replaces an earlier relation of the generator."""
         place = self.gens.index(generator)
         older = (each for each in self.relations if each[0] != place)
         self.relations = sorted([*older, (place, power, relation)], key=lambda each: -each[0])

@@ -1,9 +1,9 @@
 """Powers |f|^r and logarithms log |f|, by the factors of f.
 
-|·|^r and log |·| turn products into products and sums, whatever the signs of the factors are. So
-where u > 0, as it is wherever its root or its logarithm is defined, the root of u = c·Π fᵢ^nᵢ is
-|c|^r·Π |fᵢ|^(r nᵢ): no sign of a factor is assumed. |f| itself is σ f with σ² = 1, and σ is 1 or −1
-where the sign of f is shown, or follows from u > 0.
+|·|^r and log |·| turn products into products and sums, whatever the signs of the factors. u > 0
+wherever its root or its logarithm is defined, and there the root of u = c·Π fᵢ^nᵢ is
+|c|^r·Π |fᵢ|^(r nᵢ): no sign of a factor is assumed. |f| is σ f with a unit σ, σ² = 1; σ is 1 or −1
+if the sign of f is shown, or follows from u > 0.
 """
 
 from fractions import Fraction
@@ -19,22 +19,26 @@ from verify.algebra.identities.signs import definite_sign
 MAX_POWER = 256
 _MAX_DIVISOR = 120
 _MAX_NUMBER_BITS = 4000
-_SMALL_FACTOR = 16  # bits of the primes up to which a large number is factored
-_SMALL_NUMBER = 64
+_SMALL_PRIME_BITS = 16  # larger prime factors of a large number are not sought
+_SMALL_NUMBER_BITS = 64  # a number up to this length is factored completely
 
 
 class FinerError(Exception):
-    """A unit must be divided more finely: the field is to be built anew."""
+    """A unit must be divided more finely, and the field be built again."""
 
 
 class Divisors:
-    """The divisors of units, by the order in which these are added; kept between attempts."""
+    """The divisors of units, by kind and number of the unit; they are kept between attempts to
+    build a field.
+
+    The unit for e^u with the divisor d is e^(u/d): its d-th power is e^u.
+    """
 
     def __init__(self) -> None:
         self.divisors: dict[tuple[str, int], int] = {}
 
     def divisor_of(self, kind: str, number: int, r: Fraction) -> int:
-        """Return the divisor of a unit; FinerError where r is no whole multiple of its share."""
+        """Return the divisor d of a unit. Raises FinerError if r is no integer multiple of 1/d."""
         divisor = self.divisors.get((kind, number), 1)
         if divisor % r.denominator:
             finer = lcm(divisor, r.denominator)
@@ -51,9 +55,10 @@ class Powers:
     def __init__(self, field: Field, finer: Divisors) -> None:
         self.field, self.finer = field, finer
         self.signs: dict[str, Quotient] = {}
-        self.roots: dict[int, tuple[Poly, int]] = {}  # of ρ: its base and degree
-        self.exponents: dict[int, Quotient] = {}  # of E: its argument
-        self.logarithms: dict[int, Poly] = {}  # of L: its argument
+        # By place: base and degree of a root, argument of an exponential, argument of a logarithm.
+        self.roots: dict[int, tuple[Poly, int]] = {}
+        self.exponents: dict[int, Quotient] = {}
+        self.logarithms: dict[int, Poly] = {}
         self._numbers: dict[tuple[str, ...], int] = {}
 
     # -- signs --------------------------------------------------------------------------------
@@ -105,19 +110,21 @@ class Powers:
         return a / b, [*((f, int(n)) for f, n in above), *((f, -int(n)) for f, n in below)]
 
     def prime_factors(self, c: flint.fmpq) -> list[tuple[int, int]]:
-        """Factor |c| into powers of primes, or of numbers too large to be factored."""
+        """Return (prime, power) of the factors of |c|; a number too large to factor counts as
+        prime."""
         factors = []
         for number, sign in ((abs(int(c.p)), 1), (int(c.q), -1)):
             if number.bit_length() > _MAX_NUMBER_BITS:
                 raise UndecidedError("a number too large")
-            small = number.bit_length() <= _SMALL_NUMBER
-            whole = flint.fmpz(number)
-            parts = whole.factor() if small else whole.factor_smooth(_SMALL_FACTOR)
+            small = number.bit_length() <= _SMALL_NUMBER_BITS
+            integer = flint.fmpz(number)
+            parts = integer.factor() if small else integer.factor_smooth(_SMALL_PRIME_BITS)
             factors += [(int(prime), sign * int(n)) for prime, n in parts if prime > 1]
         return factors
 
     def bases(self, u: Quotient) -> list[tuple[Poly, int]]:
-        """Factor |u| into powers of such numbers and of irreducible polynomials."""
+        """Return (base, power) of the factors of |u|: of `prime_factors`, and of irreducible
+        polynomials."""
         (c, factors), constant = self.factors(u), self.field.ring.context.constant
         return [*((constant(prime), n) for prime, n in self.prime_factors(c)), *factors]
 
@@ -142,13 +149,13 @@ class Powers:
             return self.exponential(self.exponents[place].times(e))
         if abs(e) > MAX_POWER:
             raise UndecidedError("too high a power")
-        whole = e.numerator // e.denominator
-        fraction = e - whole
+        integer = e.numerator // e.denominator
+        fraction = e - integer
         total = field.polynomial(f)
-        if whole % 2 and (self._may_be_negative(f) or field.is_number(f)):
-            total = total**whole * self.sign(f)
+        if integer % 2 and (self._may_be_negative(f) or field.is_number(f)):
+            total = total**integer * self.sign(f)
         else:
-            total = total**whole
+            total = total**integer
         if not fraction:
             return total
         root, degree = self._root(f, fraction)
@@ -169,7 +176,7 @@ class Powers:
         return field.unit_by_key[key], degree
 
     def number(self, key: tuple[str, ...]) -> int:
-        """Return the number of the key, in the order in which keys first occur."""
+        """Return the number of a key; keys are numbered in the order in which they first occur."""
         return self._numbers.setdefault(key, len(self._numbers))
 
     # -- logarithms ---------------------------------------------------------------------------

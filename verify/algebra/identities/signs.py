@@ -1,12 +1,15 @@
 """The sign of a polynomial that has one wherever it is defined, shown by its terms or its roots.
 
-The sign is shown for: a sum of terms of one sign, each a product of even powers and positives; a
-sum of even powers of one generator whose coefficients have one sign; a polynomial in one generator
-without a (positive) root; a quadratic a x² + b x + c where a and 4ac − b² have a sign that is
-shown; a number that exceeds the terms in sines and cosines added to it. None is returned where
-there is no sign, or it is too hard to show.
+The sign is shown for
 
-By its sign |v|, to which sympy simplifies √(v²), is replaced by ±v in an expression.
+- a sum of terms of one sign, each a product of even powers and of positive generators;
+- a sum of even powers of one generator whose coefficients have one sign;
+- a polynomial in one generator without a (positive) root;
+- a quadratic a x² + b x + c if the signs of a and of 4ac − b² are shown;
+- a number that exceeds the sum of |coefficients| of the terms in sines and cosines added to it.
+
+None is returned if there is no sign, or it is too hard to show. sympy simplifies √(v²) to |v|; by
+the sign of v it is replaced by ±v in an expression.
 """
 
 from __future__ import annotations
@@ -20,15 +23,15 @@ from verify.algebra.expressions.function_nodes import function_of
 from verify.algebra.identities.polynomials import Poly, split, terms_of
 from verify.lazy_sympy import sympy
 
-_DEEPEST = 3
-_MOST_TERMS = 60
-_MOST_DEGREE = 40
-_MOST_BITS = 2000
-_MOST_OPERATIONS = 200  # of an expression
+_MAX_LEVELS = 3
+_MAX_TERMS = 60
+_MAX_DEGREE = 40
+_MAX_BITS = 2000
+_MAX_OPERATIONS = 200  # in an expression of sympy
 
 
 class Facts(Protocol):
-    """The signs and bounds of the generators, each of which is real."""
+    """Facts about generators, all of which are real: signs and bounds."""
 
     def is_positive(self, place: int) -> bool:
         """Return True if the generator of that place is > 0 wherever it is defined."""
@@ -42,20 +45,20 @@ class Facts(Protocol):
 def definite_sign(x: Poly, facts: Facts, *, strict: bool = False) -> int | None:
     """Return 1 if x ≥ 0 everywhere, −1 if x ≤ 0 everywhere, None if neither is shown.
 
-    `strict`: that x vanishes nowhere is shown, too.
+    `strict`: 1 if x > 0, −1 if x < 0.
     """
-    if x.is_zero() or len(x) > _MOST_TERMS:
+    if x.is_zero() or len(x) > _MAX_TERMS:
         return None
     if strict and _vanishes_at_origin(x, facts):
         return None
-    return _definite_sign(x, facts, strict, _DEEPEST)
+    return _definite_sign(x, facts, strict, _MAX_LEVELS)
 
 
 def _vanishes_at_origin(x: Poly, facts: Facts) -> bool:
-    """Return True if x is 0 where all generators are 0, and none of them is known to be positive.
+    """Return True if x is 0 if all generators are 0, and no generator in x is positive.
 
-    The criteria below hold for all such values of the generators, so that the search would end
-    without a result; for a squared distance in space only after 5000 polynomials.
+    Then no criterion below can show that x vanishes nowhere: they treat generators as free
+    variables. The search would take long: for a squared distance in space 5000 polynomials.
     """
     degrees = x.degrees()
     return x[(0,) * len(degrees)] == 0 and not any(
@@ -89,10 +92,8 @@ def _definite_sign(x: Poly, facts: Facts, strict: bool, levels: int) -> int | No
 
 
 def _sign_by_terms(x: Poly, facts: Facts, strict: bool) -> int | None:
-    """Find the sign from terms that all have one sign, except for bounded ones.
-
-    The bounded ones, in sines and cosines, must together be smaller than the constant term.
-    """
+    """Return the sign if all terms have one sign, except terms in bounded generators (sines and
+    cosines), whose |coefficients| together must not exceed the constant term."""
     number = x[(0,) * len(x.degrees())]
     sign, slack, nowhere_zero = (number > 0) - (number < 0), abs(number), False
     for monomial, c in terms_of(x):
@@ -111,16 +112,17 @@ def _sign_by_terms(x: Poly, facts: Facts, strict: bool) -> int | None:
 
 
 def _sign_by_roots(x: Poly, place: int, degree: int, facts: Facts) -> int | None:
-    """Find the sign of a polynomial in one generator that has no (positive) root."""
+    """Return the sign of a polynomial in one generator that has no root (for a positive generator,
+    no positive root)."""
     coefficients = [flint.fmpq(0)] * (degree + 1)
     for monomial, c in terms_of(x):
         coefficients[monomial[place]] = c
     polynomial = flint.fmpq_poly(coefficients).numer()
-    if degree > _MOST_DEGREE or polynomial.height_bits() > _MOST_BITS:
+    if degree > _MAX_DEGREE or polynomial.height_bits() > _MAX_BITS:
         return None
-    roots: Any = polynomial.complex_roots()  # a real root's imaginary part is 0, exactly
+    roots: Any = polynomial.complex_roots()  # the imaginary part of a real root is exactly 0
     real = [root for root, _ in roots if root.imag == 0]
-    # A negative root does no harm where the generator is positive.
+    # A negative root does no harm if the generator is positive.
     if any(not (facts.is_positive(place) and root.real < 0) for root in real):
         return None
     return 1 if x.leading_coefficient() > 0 else -1
@@ -129,7 +131,7 @@ def _sign_by_roots(x: Poly, place: int, degree: int, facts: Facts) -> int | None
 def _sign_by_even_powers(
     x: Poly, place: int, facts: Facts, strict: bool, levels: int
 ) -> int | None:
-    """Find the sign of a sum of even powers of a generator, or any powers of a positive one."""
+    """Return the sign of a sum of even powers of a generator, or any powers of a positive one."""
     signs = set()
     for power, part in split(x, place).items():
         if power % 2 and not facts.is_positive(place):
@@ -142,7 +144,7 @@ def _sign_by_square(x: Poly, place: int, facts: Facts, strict: bool, levels: int
     parts = split(x, place)
     c, b, a = (parts.get(power, x * 0) for power in range(3))
     sign = _definite_sign(a, facts, True, levels)
-    # a x² + b x + c = ((2 a x + b)² + 4 a c − b²)/(4 a) has the sign of a where 4 a c − b² ≥ 0.
+    # a x² + b x + c = ((2 a x + b)² + 4 a c − b²)/(4 a) has the sign of a if 4 a c − b² ≥ 0.
     if sign is None or _definite_sign(4 * a * c - b * b, facts, strict, levels) != 1:
         return None
     return sign
@@ -153,7 +155,7 @@ def _sign_by_square(x: Poly, place: int, facts: Facts, strict: bool, levels: int
 
 @dataclass(frozen=True)
 class _SympyGenerators:
-    """The signs and bounds of the generators of a polynomial of sympy's."""
+    """Facts about the generators of a polynomial of sympy."""
 
     generators: tuple[sympy.Expr, ...]
 
@@ -166,7 +168,7 @@ class _SympyGenerators:
 
 
 def without_absolute_values(expression: sympy.Expr) -> sympy.Expr:
-    """Replace |v| in the expression where the sign of v is shown."""
+    """Return the expression with ±v for every |v| if the sign of v is shown."""
     return expression.replace(sympy.Abs, _without_sign)
 
 
@@ -176,18 +178,18 @@ def _without_sign(v: sympy.Expr) -> sympy.Expr:
 
 
 def sign_of(v: sympy.Expr, *, strict: bool = False) -> int | None:
-    """Return 1 if v ≥ 0 everywhere, −1 if v ≤ 0, None if neither is shown.
+    """Return 1 if v ≥ 0 everywhere, −1 if v ≤ 0 everywhere, None if neither is shown.
 
-    `strict`: that v vanishes nowhere is shown, too.
+    `strict`: 1 if v > 0, −1 if v < 0.
     """
     # sympy's conversion to a polynomial takes long for large v; the sign is then left undecided.
-    if v.count_ops() > _MOST_OPERATIONS:
+    if v.count_ops() > _MAX_OPERATIONS:
         return None
     try:
         polynomial = sympy.Poly(v, domain=sympy.QQ)
     except sympy.PolynomialError:
         return None
-    if polynomial.total_degree() > _MOST_DEGREE:
+    if polynomial.total_degree() > _MAX_DEGREE:
         return None
     names = [f"_{k}" for k in range(len(polynomial.gens))]
     context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)

@@ -1,3 +1,3 @@
-"""Kernels in fixed point as functions of this machine: compiled, kept, and called, one orbit or
-several at a time.
+"""Native code: kernels in fixed point and in float64, compiled by LLVM, cached, and called for one
+orbit or for several at a time.
 """

@@ -1,8 +1,8 @@
 """float64 kernels compiled by LLVM: on many points at once, in several vectors, and on one point.
 
-The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translator`; each
-operation is rounded as there, and functions have the bits of the C library's. So a point has the
-bits that it has by itself.
+The source is that of a float64 kernel, in the language of `verify.arithmetic.wide.translator`. Each
+operation is rounded by itself, and functions have the bits of the C library. So a point gets the
+same bits in an array as alone.
 """
 
 import ctypes
@@ -19,19 +19,19 @@ from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.lanes.vectors import LANES
 from verify.arithmetic.wide.translator import Target
 
-POINTS = 64  # a call's
-SETS = POINTS // LANES
+POINTS_PER_CALL = 64
+SETS = POINTS_PER_CALL // LANES
 _CALL = re.compile(r"(\w+)\(")
-_FRACTION = 112  # bits of wide numbers, of which there are none
+_UNUSED_FRACTION = 112  # bits; a `Source` has a fixed-point format, which these kernels never use
 Points = npt.NDArray[np.float64]
 
 
 def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:
-    """Return `run(steps, inputs, points)`: the kernel's steps on an array, in place.
+    """Return `run(steps, inputs, points)`, which makes the kernel's steps on an array, in place.
 
-    `carried`: its last arguments, so many, are the rows of `points`, (carried, POINTS); `inputs`
-    are those between the steps and them. Raises NotImplementedError if the source has what is
-    not in the language.
+    `points` has the shape (carried, POINTS_PER_CALL): its rows are the last `carried` arguments of
+    the kernel. `inputs` are the arguments between the number of steps and these. Raises
+    NotImplementedError if the source is not in the language.
     """
     from verify.arithmetic.lanes import libm_circle
     from verify.arithmetic.lanes.doubles import DoublesInLanes
@@ -48,11 +48,11 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     rows = len(layout.arguments)
 
     def run(steps: int, inputs: Points, points: Points) -> None:
-        arguments = np.empty((rows, POINTS))
+        arguments = np.empty((rows, POINTS_PER_CALL))
         arguments.view(np.int64)[0] = steps
         arguments[1 : rows - carried] = np.reshape(inputs, (-1, 1))
         arguments[rows - carried :] = points
-        results = np.empty((carried + 2, POINTS))
+        results = np.empty((carried + 2, POINTS_PER_CALL))
         # Both arrays stay referenced until the call returns: the compiled code has only their
         # addresses.
         function(arguments.ctypes.data, results.ctypes.data)
@@ -62,9 +62,10 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
 
 
 def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> Callable[..., Any]:
-    """Return the kernel as a function of its own arguments, a tuple or one number as it returns.
+    """Return the kernel as a function of the same arguments and results as its source.
 
-    `anew`: not from what is kept on disk. Raises NotImplementedError as `on_points` does.
+    `anew`: compile it even if its code is cached on disk. Raises NotImplementedError as `on_points`
+    does.
     """
     layout, linked = _source(source, names, "doubles").compile(anew=anew)
     packing, unpacking = (_record(kinds) for kinds in (layout.arguments, layout.results))
@@ -86,18 +87,19 @@ def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> C
 def _source(
     source: str, names: Mapping[str, Any], target: str, make: Callable[[int], Target] | None = None
 ) -> Source:
-    """Return the kernel with the numbers among its names, which are all that a target needs."""
+    """Return the kernel's source with the float64 constants among `names`: a target needs no
+    others."""
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    return Source(_annotate(source), _FRACTION, constants, target, make)
+    return Source(_annotate(source), _UNUSED_FRACTION, constants, target, make)
 
 
 def _record(kinds: Sequence[str]) -> Struct:
-    """Return the layout of integers and float64 side by side."""
+    """Return the memory layout of values of these kinds, `int` or `float`, one after another."""
     return Struct("=" + "".join("q" if kind == "int" else "d" for kind in kinds))
 
 
 def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], object]:
-    """Return the kernel on these arguments, as a call to be timed, which packs none of them."""
+    """Return a call of the kernel on these arguments for timing; they are packed beforehand."""
     prepare: Callable[..., Callable[[], object]] = getattr(
         kernel, "prepare", partial(partial, kernel)
     )
@@ -105,7 +107,7 @@ def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], o
 
 
 def _annotate(source: str) -> str:
-    """Annotate all numbers as float64, except the steps."""
+    """Annotate the first argument, the number of steps, as `int`, and all others as `float`."""
     head, parenthesis, signature = source.partition("(")
     arguments, end, body = signature.partition("):")
     first, *names = (argument.partition(":")[0].strip() for argument in arguments.split(","))

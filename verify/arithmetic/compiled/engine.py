@@ -1,6 +1,7 @@
 """Kernels in fixed point as native functions: one orbit at a time, or several in lanes.
 
-Orbits under way in a kernel: their words in memory, and where they stop on the way.
+An `Orbit` is one that a kernel is stepping: its words in memory, and the stops at which its state
+is recorded.
 """
 
 import ctypes
@@ -39,7 +40,7 @@ class Walk(NamedTuple):
 
 
 class State(Sequence[Word]):
-    """The numbers that a kernel carries, at one stop; each is decoded when it is read."""
+    """The numbers that a kernel carries, at one stop; a number is decoded when it is read."""
 
     __slots__ = ("_layout", "_pieces", "_raw")
 
@@ -61,23 +62,23 @@ class State(Sequence[Word]):
         return map(self._layout.result, self._pieces[1:], count(1))
 
     def words(self) -> bytes:
-        """Return all that is carried, as it lies in memory."""
+        """Return the bytes of all carried numbers, as they lie in memory."""
         return self._raw[8 : self._layout.result_at[-1]]
 
 
 @dataclass
 class Orbit:
-    """The words of one orbit, its stops so far, and its distance from the next."""
+    """The words of one orbit, its states at the stops so far, and the steps to its next stop."""
 
     layout: Layout
     walk: Walk
-    words: Words  # the arguments
-    steps_to_stop: int  # steps to the next stop
+    words: Words  # the kernel's arguments
+    steps_to_stop: int
     states: list[State]
 
     @classmethod
     def from_walk(cls, layout: Layout, walk: Walk) -> "Orbit":
-        """Begin an orbit; OverflowError if a number is outside the format."""
+        """Begin an orbit. Raises OverflowError if a number is outside the format."""
         head = layout.pack((walk.every, *walk.fixed))
         state = walk.state
         tail = state.words() if isinstance(state, State) else layout.pack_state(state)
@@ -85,7 +86,7 @@ class Orbit:
 
     @property
     def steps_left(self) -> int:
-        """Steps to the end of its run."""
+        """The number of steps to the end of its run."""
         walk = self.walk
         return (
             self.steps_to_stop + (walk.stops - len(self.states) - 1) * walk.every + walk.later_steps
@@ -93,14 +94,13 @@ class Orbit:
 
     @property
     def has_ended(self) -> bool:
-        """True at its last stop, or if it has left its range before: then there are fewer
-        states."""
+        """True at its last stop, or if it left its range before; there are fewer states then."""
         return self.steps_to_stop == 0
 
     def take(self, result: Words, steps: int) -> None:
-        """Take over the results of so many steps."""
-        # The first word is the number of steps done, the last one is 0 if a function had no
-        # value: in either case the orbit has left the range, and its last state is not one.
+        """Take over the results of a call for `steps` steps."""
+        # The first word is the number of steps done; the last one is 0 if a function had no value.
+        # If a step or a value is missing, the orbit has left the range: the results are no state.
         if int(result[0]) < steps or not result[-1]:
             self.steps_to_stop = 0
             return
@@ -111,9 +111,10 @@ class Orbit:
 
 
 def step_together(orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lanes: int) -> None:
-    """Step orbits, as many as there are lanes or fewer, until one of them has ended.
+    """Step orbits, at most as many as there are lanes, until one of them has ended.
 
-    If the kernel is not called for a part of the way to a stop, all have the same way to each.
+    If a kernel must not stop between two stops (see `in_parts`), all orbits must be equally far
+    from theirs.
     """
     # Unused lanes repeat the first orbit: its words are valid, so that they cannot slow the loop
     # down by leaving the range.
@@ -135,17 +136,18 @@ def step_together(orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lan
 
 
 Names = tuple[tuple[str, Any], ...]
-_LEAST_IN_LANES = 3 if LANES > 4 else 4  # fewer take longer together than one after the other
-_MOST_IN_LANES = 496  # fraction bits; beyond that LLVM takes seconds
-_WORTH_COMPILING = 5_000_000  # steps in all: what lanes save then is about what LLVM takes
+_MIN_LANE_ORBITS = 3 if LANES > 4 else 4  # fewer orbits take longer together than in turn
+_MAX_LANE_FRACTION = 496  # fraction bits; for more LLVM takes seconds
+# Over so many steps of all orbits, lanes save about the time that LLVM takes to compile for them.
+_MIN_STEPS_TO_COMPILE = 5_000_000
 
 
 def compile_source(source: str, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
     """Return the function that the source defines (see `verify.arithmetic.wide.translator`).
 
-    It is compiled once, and linked when it is first called, since not every kernel that is made is
-    run. It takes and gives `Fixed`, int and float. Raises OverflowError if an argument is
-    outside the format, and ValueError if a function had no value outside a loop.
+    It is compiled once, and linked at its first call, since not every kernel is run. Its arguments
+    and results are `Fixed`, int and float. A call raises OverflowError if an argument is outside
+    the format, and ValueError if a function had no value outside a loop.
     """
     return _cached_function(source, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
 
@@ -158,16 +160,15 @@ def _cached_function(source: str, fraction: int, names: Names) -> "NativeFunctio
 class NativeFunction:
     """A function of one orbit, and of several at once, with the same bits.
 
-    If it is a kernel it is a work too (see `verify.lockstep`), of which a `Walk` is asked: its
-    first argument is a number of steps, its results are the steps done and what its last arguments
-    have become.
+    A kernel is also a work (see `verify.lockstep`) whose requests are `Walk`s: its first argument
+    is a number of steps; its results are the steps done and the new values of its last arguments.
     """
 
     def __init__(self, source: Source, *, anew: bool = False) -> None:
-        """`anew`: not from what is kept on disk."""
+        """`anew`: compile it even if its code is cached on disk."""
         self.source = source
         self.layout, self._link = source.compile(anew=anew)
-        self._expected = 0  # steps
+        self._expected_steps = 0
 
     def __call__(self, *arguments: Word) -> object:
         packed = self.layout.pack(arguments)
@@ -179,8 +180,8 @@ class NativeFunction:
 
     @cached_property
     def lane_kernel(self) -> "Callable[[Words], Words] | None":
-        """The same as `orbit_kernel`, for as many orbits as there are lanes; None if one by one is
-        better."""
+        """The same as `orbit_kernel`, for as many orbits as there are lanes; None if orbits are
+        stepped one by one."""
         if self._lane_source is None:
             return None
         _, linked = self._lane_source.compile()
@@ -189,28 +190,29 @@ class NativeFunction:
     @cached_property
     def _lane_source(self) -> Source | None:
         path = paths.choose_path()
-        if path is None or self.source.fraction > _MOST_IN_LANES:
+        if path is None or self.source.fraction > _MAX_LANE_FRACTION:
             return None
         return replace(self.source, target=f"lanes, {path.name}", make=path.target)
 
     def expect(self, steps: int) -> None:
         """Announce that so many steps will be requested, of one orbit or of many."""
-        self._expected += steps
+        self._expected_steps += steps
 
     @cached_property
     def _no_need_to_compile(self) -> bool:
-        """Lanes that are kept from earlier, or asked for, are used for short work too."""
+        """True if lanes are used for short work too: their code is cached, or a user forced
+        them."""
         return bool(paths.forced_path()) or (
             self._lane_source is not None and self._lane_source.is_cached
         )
 
     @cached_property
     def orbit_kernel(self) -> "Callable[[Words], Words]":
-        """The function from the arguments' words to the results' words; an orbit is a column."""
+        """The function from the arguments' words to the results' words, one column per orbit."""
         return partial(_call, self._link(), sum(self.layout.result_sizes) // 8 + 1)
 
     def advance(self, pending: Sequence[Pending]) -> None:
-        """Advance the walks that several orbits request, until one of them is at its end."""
+        """Advance walks that orbits have requested, until one of them has ended."""
         for work in pending:
             if work.state is None:
                 try:
@@ -218,18 +220,18 @@ class NativeFunction:
                 except OverflowError as error:
                     work.end(None, error)
                     return
-        # Who waits longest, so that nobody is left behind, and of the others those with the
-        # longest way to go: then few are left to go alone at the end.
+        # The first has waited longest, and is always chosen. Of the others those with the most
+        # steps left are: so that few orbits remain to be stepped alone at the end.
         longest = sorted(pending[1:], key=lambda work: -work.state.steps_left)
         chosen = [pending[0], *longest]
         chosen = (chosen if self.in_parts else _equally_far(chosen))[:LANES]
-        worth = self._expected >= _WORTH_COMPILING or self._no_need_to_compile
-        lanes = self.lane_kernel if worth and len(chosen) >= _LEAST_IN_LANES else None
         # Compilation for lanes takes seconds; it repays only if many steps are expected.
+        worth = self._expected_steps >= _MIN_STEPS_TO_COMPILE or self._no_need_to_compile
+        lanes = self.lane_kernel if worth and len(chosen) >= _MIN_LANE_ORBITS else None
         if lanes is None:
             chosen = chosen[:1]
         kernel, orbits = lanes or self.orbit_kernel, [work.state for work in chosen]
-        begin_time = time.perf_counter()  # it is compiled now
+        begin_time = time.perf_counter()  # after compilation, which is not counted
         step_together(orbits, kernel, LANES if lanes else 1)
         share = (time.perf_counter() - begin_time) / len(chosen)
         for work in chosen:
@@ -239,13 +241,14 @@ class NativeFunction:
 
     @cached_property
     def in_parts(self) -> bool:
-        """True if m steps and then n are m + n, which a special first step makes untrue."""
+        """True if m steps and then n have the bits of m + n: not if the source treats k = 0
+        apart."""
         return "k == 0" not in self.source.text
 
 
 def _equally_far(pending: Sequence[Pending]) -> list[Pending]:
-    """Return those as far from their next stop as the first; all stand at a stop, and so they
-    stay alike."""
+    """Return the works whose next stop is as far as that of the first: stepped together, they reach
+    every stop together."""
     distance = pending[0].state.steps_to_stop
     return [work for work in pending if work.state.steps_to_stop == distance]
 

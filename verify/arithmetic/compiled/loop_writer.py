@@ -1,11 +1,12 @@
 """Plain Python functions over numbers and arrays → LLVM IR.
 
-The language: assignments, also of several names; + − * /, and // % ^ of integers that are not
+The language has assignments, also to several names; + − * /, and // % ^ of integers that are not
 negative; comparisons, `and`, `or`; `min`, `max`, `sqrt`, `len`; `if`, `while`, `for … in range(…)`,
-`break`, `continue`, `return`; and calls of other such functions, which are written out where they
-are called. A number is a float64 or a 64-bit integer, a variable what is first assigned to it. An
-array has such numbers, or rows of them; no index is checked. Each operation is rounded as Python
-rounds it. All else is a NotImplementedError.
+`break`, `continue`, `return`; and calls of other such functions, which are inlined.
+
+A number is a float64 or a 64-bit integer; a variable keeps the type of its first value. An array
+has such numbers, or rows of them; no index is checked. Each operation is rounded as Python rounds
+it. Any other source raises NotImplementedError.
 """
 
 import ast
@@ -23,7 +24,7 @@ from verify.arithmetic.wide.newton import DOUBLE
 from verify.arithmetic.wide.one_orbit import float_function, read_number, write_number
 
 Function: TypeAlias = Callable[..., Any]
-Ours: TypeAlias = Any  # a node of a source that we wrote, whose parts are known
+SourceNode: TypeAlias = Any  # an ast node; its parts are not checked, since we wrote the source
 _TYPES = {"float": DOUBLE, "int": I64}
 _OPERATIONS = {
     ast.Add: ("add", "fadd"), ast.Sub: ("sub", "fsub"), ast.Mult: ("mul", "fmul"),
@@ -35,7 +36,7 @@ _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "=="
 
 @dataclass(frozen=True)
 class Array:
-    """An array of rows with so many columns, or with none, of numbers."""
+    """An array of rows with `columns` columns; or of numbers, if `columns` is 0."""
 
     pointer: Value
     length: Value
@@ -44,13 +45,13 @@ class Array:
 
 @dataclass
 class Frame:
-    """A function that is being written out: its variables' places, and where it goes on."""
+    """A function that is being written: its variables' addresses, and the blocks it jumps to."""
 
     names: dict[str, Any]
-    globals: dict[str, Any]  # its module's names
+    globals: dict[str, Any]  # the names of the function's module
     end: ir.Block
-    results: list[Value] = field(default_factory=list)  # places
-    loops: list[tuple[ir.Block, ir.Block]] = field(default_factory=list)  # next, after
+    results: list[Value] = field(default_factory=list)  # addresses
+    loops: list[tuple[ir.Block, ir.Block]] = field(default_factory=list)  # of continue, of break
 
 
 class LoopWriter:
@@ -60,12 +61,15 @@ class LoopWriter:
         self.module = ir.Module()
         pointer = I64.as_pointer()
         self.main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer] * 2), "main")
-        self.places = ir.IRBuilder(self.main.append_basic_block("entry"))
+        self.allocations = ir.IRBuilder(self.main.append_basic_block("entry"))
         self.b = ir.IRBuilder(self.main.append_basic_block("body"))
         self.frame = Frame({}, {}, self.b.block)
 
     def write(self, function: Function, kinds: Sequence[str]) -> tuple[str, ...]:
-        """Write the function for arguments of these kinds; return the kinds of its results."""
+        """Write the function for arguments of these kinds; return the kinds of its results.
+
+        A kind is `float` or `int`; that of an array is followed by its number of columns.
+        """
         arguments, offset = [], 0
         for kind, _, columns in (result.partition(" ") for result in kinds):
             read = I64 if columns else _TYPES[kind]
@@ -79,12 +83,12 @@ class LoopWriter:
         for result in results:
             offset = write_number(self.b, self.main.args[1], offset, result)
         self.b.ret_void()
-        self.places.branch(self.main.blocks[1])
+        self.allocations.branch(self.main.blocks[1])
         return tuple("float" if x.type == DOUBLE else "int" for x in results)
 
     def _inline(self, function: Function, arguments: Sequence[Any]) -> list[Value]:
-        """Write the function's text here, and return its results."""
-        definition: Ours = ast.parse(inspect.getsource(function)).body[0]
+        """Write the function's statements here, and return its results."""
+        definition: SourceNode = ast.parse(inspect.getsource(function)).body[0]
         outer = self.frame
         self.frame = Frame({}, function.__globals__, self.b.append_basic_block("end"))
         for argument, value in zip(definition.args.args, arguments, strict=True):
@@ -99,7 +103,7 @@ class LoopWriter:
 
     def _block(self, statements: Sequence[ast.stmt]) -> None:
         for statement in statements:
-            handlers: dict[type, Callable[[Ours], None]] = {
+            handlers: dict[type, Callable[[SourceNode], None]] = {
                 ast.Assign: self._assignment, ast.AugAssign: self._change, ast.If: self._if,
                 ast.While: self._while, ast.For: self._for, ast.Return: self._return,
                 ast.Continue: lambda _: self._go(self.frame.loops[-1][0]),
@@ -123,11 +127,11 @@ class LoopWriter:
         else:
             self._store(target, self._expression(statement.value))
 
-    def _change(self, statement: Ours) -> None:
+    def _change(self, statement: SourceNode) -> None:
         x, y = map(self._expression, (statement.target, statement.value))
         self._store(statement.target, self._operation(statement.op, x, y))
 
-    def _store(self, target: Ours, value: Any) -> None:
+    def _store(self, target: SourceNode, value: Any) -> None:
         if isinstance(target, ast.Name):
             self._assign(target.id, value)
         else:
@@ -140,9 +144,9 @@ class LoopWriter:
             names[name] = value
             return
         if name not in names:
-            # Places are allocated in the entry block: LLVM's sroa turns only those into registers,
+            # Memory is allocated in the entry block: LLVM's sroa turns only that into registers,
             # and a loop that allocated in its body would grow the stack.
-            names[name] = self.places.alloca(value.type)
+            names[name] = self.allocations.alloca(value.type)
         self.b.store(self._as(value, names[name].type.pointee), names[name])
 
     def _if(self, statement: ast.If) -> None:
@@ -158,8 +162,8 @@ class LoopWriter:
         self.b.position_at_end(head)
         self._loop(self._condition(statement.test), statement.body, head)
 
-    def _for(self, statement: Ours) -> None:
-        """Write `for name in range(…)` of a stop, or of a start and a stop."""
+    def _for(self, statement: SourceNode) -> None:
+        """Write `for name in range(stop)` or `for name in range(start, stop)`."""
         *start, stop = map(self._expression, statement.iter.args)
         self._assign(statement.target.id, start[0] if start else constant(0, 64))
         head, following = (self.b.append_basic_block(x) for x in ("head", "next"))
@@ -174,7 +178,7 @@ class LoopWriter:
         self.b.position_at_end(after)
 
     def _loop(self, goes_on: Value, body: Sequence[ast.stmt], following: ir.Block) -> None:
-        """Write a loop at its head; `following` is where it goes on behind the body."""
+        """Write a loop, from its head; `following` is the block that comes after the body."""
         inside, after = (self.b.append_basic_block(x) for x in ("loop", "done"))
         self.b.cbranch(goes_on, inside, after)
         self.b.position_at_end(inside)
@@ -184,10 +188,10 @@ class LoopWriter:
         self._go(following)
         self.b.position_at_end(after)
 
-    def _return(self, statement: Ours) -> None:
+    def _return(self, statement: SourceNode) -> None:
         frame, values = self.frame, self._several(statement.value, 0)
         if not frame.results:
-            frame.results = [self.places.alloca(x.type) for x in values]
+            frame.results = [self.allocations.alloca(x.type) for x in values]
         for x, address in zip(values, frame.results, strict=True):
             self.b.store(self._as(x, address.type.pointee), address)
         self._go(frame.end)
@@ -195,8 +199,8 @@ class LoopWriter:
     # -- expressions --------------------------------------------------------------------------
 
     def _several(self, node: ast.expr, count: int) -> list[Any]:
-        """Return the elements of a tuple, the results of a call, or the first numbers of a row;
-        else one number."""
+        """Return the elements of a tuple, the results of a call, or the first `count` numbers of a
+        row; else the one number of the expression."""
         if isinstance(node, ast.Tuple):
             return [self._expression(element) for element in node.elts]
         if isinstance(node, ast.Call):
@@ -204,8 +208,8 @@ class LoopWriter:
         value = self._expression(node)
         if not isinstance(value, Array):
             return [value]
-        places = (self.b.gep(value.pointer, [constant(k, 64)]) for k in range(count))
-        return [self.b.load(place) for place in places]
+        addresses = (self.b.gep(value.pointer, [constant(k, 64)]) for k in range(count))
+        return [self.b.load(address) for address in addresses]
 
     def _expression(self, node: ast.expr) -> Any:
         match node:
@@ -245,13 +249,13 @@ class LoopWriter:
             raise NotImplementedError(ast.dump(operator))
         return getattr(self.b, name)(x, y)
 
-    def _item(self, node: Ours) -> Any:
+    def _item(self, node: SourceNode) -> Any:
         array = self._expression(node.value)
         if array.columns and not isinstance(node.slice, ast.Tuple):
             return Array(self._address(node), constant(array.columns, 64))
         return self.b.load(self._address(node))
 
-    def _address(self, node: Ours) -> Value:
+    def _address(self, node: SourceNode) -> Value:
         """Return the address of a number, or of the beginning of a row."""
         array, indices = self._expression(node.value), [node.slice]
         if isinstance(node.slice, ast.Tuple):
@@ -261,7 +265,7 @@ class LoopWriter:
         index = self.b.add(index, column[0]) if column else index
         return self.b.gep(array.pointer, [index])
 
-    def _call(self, node: Ours) -> list[Value]:
+    def _call(self, node: SourceNode) -> list[Value]:
         name, values = node.func.id, [self._expression(argument) for argument in node.args]
         if name in ("min", "max"):
             return [reduce(lambda x, y: self._least("<>"[name == "max"], x, y), values)]
@@ -273,7 +277,8 @@ class LoopWriter:
         return self._inline(function, values)
 
     def _least(self, order: str, x: Value, y: Value) -> Value:
-        """Return the first of those that come first in this order."""
+        """Return the least number for the order "<", the greatest for ">"; of equal ones the first,
+        as Python does."""
         x, y = self._alike(x, y)
         return self.b.select(self._compare(order, y, x), y, x)
 

@@ -18,30 +18,36 @@ if TYPE_CHECKING:
     from llvmlite import ir
 
 Native = Callable[[Any, Any], None]  # of the addresses of arguments and results
-_LOCK = threading.Lock()  # LLVM's set-up is not made for threads
-_ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
-# Read as this is imported, since a process that goes on while its files change has the old ones.
-_ROOMS = ("arithmetic/compiled", "arithmetic/lanes", "arithmetic/wide", "functions/elementary")
-_OURS = [
+_LOCK = threading.Lock()  # LLVM is not set up for several threads
+_ENGINES: list[llvm.ExecutionEngine] = []  # kept, since their code must not be freed
+# The files are read at import: they are then those whose code this process runs, even if they
+# change on disk later.
+_COMPILER_FOLDERS = (
+    "arithmetic/compiled",
+    "arithmetic/lanes",
+    "arithmetic/wide",
+    "functions/elementary",
+)
+_COMPILER_FILES = [
     path
-    for room in _ROOMS
+    for room in _COMPILER_FOLDERS
     for path in sorted(Path(__file__).parents[2].joinpath(room).glob("*.py"))
 ]
-_COMPILER = sha256(b"\n".join(path.read_bytes() for path in _OURS))
+_COMPILER_HASH = sha256(b"\n".join(path.read_bytes() for path in _COMPILER_FILES))
 
 
 @cache
 def versions() -> str:
-    """Return all that machine code depends on besides its source: compilers, this one too,
-    processor."""
+    """Return what machine code depends on besides its source: this package's compiler and lanes,
+    Python, llvmlite, LLVM and the processor."""
     python = ".".join(map(str, sys.version_info[:3]))
-    ours = f"Python {python}, {_COMPILER.hexdigest()}, {LANES} lanes"
+    ours = f"Python {python}, {_COMPILER_HASH.hexdigest()}, {LANES} lanes"
     libraries = f"llvmlite {llvmlite.__version__}, LLVM {llvm.llvm_version_info}"
     return f"{ours}, {libraries}, {llvm.get_process_triple()}, {' '.join(_processor())}"
 
 
 def machine_code(module: "ir.Module") -> bytes:
-    """Return the module as an object file. Any thread may ask for one, one is made at a time."""
+    """Return the module as an object file. Any thread may call it; one compiles at a time."""
     with _LOCK:
         target = _target()
         module.triple = target.triple
@@ -52,7 +58,8 @@ def machine_code(module: "ir.Module") -> bytes:
 
 
 def link(code: bytes, name: str = "main") -> Native:
-    """Return the function of that name in an object file; it stays in memory for good."""
+    """Return the function of that name in an object file, which stays in memory until the process
+    ends."""
     with _LOCK:
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target())
         # The object file has no references outside the C library; the engine resolves these in this
@@ -75,7 +82,7 @@ def _target() -> llvm.TargetMachine:
     llvm.initialize_native_asmprinter()
     cpu, features = _processor()
     target = llvm.Target.from_triple(llvm.get_process_triple())
-    # At level 1 code is had in four fifths of the time, and lanes take up to an eighth longer.
+    # Level 1 would compile in four fifths of the time, but lanes would run up to an eighth longer.
     return target.create_target_machine(cpu=cpu, features=features, opt=2)
 
 

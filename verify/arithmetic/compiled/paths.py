@@ -1,8 +1,11 @@
-"""The way in which several orbits are stepped on this machine.
+"""The code path by which several orbits are stepped on this machine.
 
-`VERIFY_LANES` forces one: `avx512` (its 52-bit multiply-add), `avx2` (the fused multiply-add of
-float64), `portable` (the same code by products of 128 bits, slower than one orbit after the other,
-for tests), or `off` (one after the other).
+The environment variable `VERIFY_LANES` forces one:
+
+- `avx512`: by the 52-bit multiply-add of AVX-512;
+- `avx2`: by the fused multiply-add of float64;
+- `portable`: the same code with products of 128 bits, for tests; it is slower than `off`;
+- `off`: one orbit after the other.
 """
 
 import os
@@ -20,15 +23,15 @@ VARIABLE, OFF = "VERIFY_LANES", "off"
 
 @dataclass(frozen=True)
 class Path:
-    """A way: the class that multiplies, and the features that the processor must have."""
+    """A code path: the class that multiplies, and the features that the processor must have."""
 
     name: str
-    multiply_add: str
+    multiply_add: str  # a class of `verify.arithmetic.lanes.multiply_add`
     required: tuple[str, ...] = ()
 
     @property
     def target(self) -> "Callable[[int], Target]":
-        """A function that makes the writer of code for numbers with so many fraction bits."""
+        """The function from a number of fraction bits to the writer of code for that format."""
         from verify.arithmetic.lanes import multiply_add
         from verify.arithmetic.lanes.ensemble import Ensemble
 
@@ -51,7 +54,10 @@ PATHS = {path.name: path for path in (*_FASTEST_FIRST, Path("portable", "Portabl
 
 
 def forced_path() -> str:
-    """Return the way that VERIFY_LANES names, or empty. Raises InputError if that is unknown."""
+    """Return the path that VERIFY_LANES names; empty if it is not set.
+
+    Raises InputError if it is unknown.
+    """
     name = os.environ.get(VARIABLE, "")
     if name and name not in (*PATHS, OFF):
         raise InputError(VARIABLE, name, f"allowed: {', '.join([*PATHS, OFF])}")
@@ -59,16 +65,16 @@ def forced_path() -> str:
 
 
 def choose_path() -> Path | None:
-    """Choose the way; None is one orbit after the other.
+    """Choose the path; None means one orbit after the other.
 
-    Raises InputError if VERIFY_LANES names a way that is unknown, or not available.
+    Raises InputError if VERIFY_LANES names a path that is unknown, or not available.
     """
     name = forced_path()
     if name == OFF:
         return None
     if not name:
         return next((path for path in _FASTEST_FIRST if path.is_available), None)
-    # A forced way that the processor lacks would end the process with an illegal instruction.
+    # A forced path that the processor lacks would end the process with an illegal instruction.
     if not PATHS[name].is_available:
         raise InputError(VARIABLE, name, "this processor has no such instructions")
     return PATHS[name]

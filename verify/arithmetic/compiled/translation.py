@@ -1,4 +1,4 @@
-"""Numbers that kernels take and give, their layout in memory, and the translation of a source."""
+"""The arguments and results of kernels, their layout in memory, and the translation of a source."""
 
 import json
 import struct
@@ -15,7 +15,7 @@ from verify.arithmetic.wide.translator import Target, Translator
 
 
 class Fixed:
-    """raw / 2^fraction, a number that kernels take and give."""
+    """The number raw / 2^fraction, an argument or a result of a kernel."""
 
     __slots__ = ("fraction", "raw")
 
@@ -43,16 +43,18 @@ class Fixed:
 
 _DOUBLE = struct.Struct("<d")
 
-Word = Fixed | float | int  # by the kind of an argument, or of a result
+Word = Fixed | float | int  # the kind of the argument, or of the result, decides which
 
 
 @dataclass(frozen=True)
 class Layout:
-    """The layout of a function's arguments and results in memory: 64-bit words, one after
-    another, and behind the results one that says whether all functions had a value."""
+    """The layout of a function's arguments and results in memory: 64-bit words, one after another.
+
+    One more word follows the results: it is 0 if a function had no value.
+    """
 
     fraction: int
-    arguments: tuple[str, ...]
+    arguments: tuple[str, ...]  # their kinds (see `verify.arithmetic.wide.translator`)
     results: tuple[str, ...]
     returns_tuple: bool
 
@@ -74,13 +76,13 @@ class Layout:
 
     @cached_property
     def pieces(self) -> struct.Struct:
-        """A struct that splits the results: doubles as they are, and the bytes of longer
+        """The struct that splits the results into doubles and into the bytes of all other
         numbers."""
         kinds = zip(self.results, self.result_sizes, strict=True)
         return struct.Struct("<" + "".join("d" if k == "float" else f"{n}s" for k, n in kinds))
 
     def pack(self, arguments: Sequence[Word]) -> bytes:
-        """Pack the first arguments, or all; OverflowError if one is outside the format."""
+        """Pack the first arguments, or all. Raises OverflowError if one is outside the format."""
         return b"".join(map(self._pack_word, arguments, self.arguments))
 
     def pack_state(self, state: Sequence[Word]) -> bytes:
@@ -97,7 +99,7 @@ class Layout:
         return raw.to_bytes(8 * words_of(bits), "little", signed=True)
 
     def unpack(self, raw: bytes) -> object:
-        """Return the results; ValueError if a function had no value outside a loop."""
+        """Return the results. Raises ValueError if a function had no value outside a loop."""
         if not raw[self.result_at[-1]]:
             raise ValueError("a function has no value there")
         values = tuple(map(self.result, self.pieces.unpack_from(raw), count()))
@@ -115,14 +117,15 @@ class Layout:
 class Translation:
     """A function's layout and its machine code.
 
-    `code` is called once, and only for a function that is run: most of the time is LLVM's.
+    `code` compiles. It is called only for a function that is run, since LLVM takes most of the
+    time.
     """
 
     layout: Layout
     code: Callable[[], bytes]
 
     def to_bytes(self) -> bytes:
-        """Return the kept form: a line of JSON, then the object file."""
+        """Return the form that is cached on disk: a line of JSON, then the object file."""
         layout = self.layout
         kinds = [layout.fraction, layout.arguments, layout.results, layout.returns_tuple]
         return json.dumps(kinds).encode() + b"\n" + self.code()
@@ -138,28 +141,28 @@ class Translation:
 
 @dataclass(frozen=True)
 class Source:
-    """A source to be compiled: a function's text, its format, the values of the names in it, and
-    the target."""
+    """A function to be compiled: its text, its format, the values of the names in it, and the
+    target."""
 
     text: str
     fraction: int
     names: tuple[tuple[str, Any], ...]
     target: str = "one orbit"
-    make: Callable[[int], Target] | None = None  # its target, of so many fraction bits
+    make: Callable[[int], Target] | None = None  # fraction bits → target; None for one orbit
 
     @property
     def key(self) -> str:
-        """The name under which it is kept."""
+        """The key under which its machine code is cached."""
         form = f"{self.fraction} {self.target}"
         return code_cache.key_of(native.versions(), self.text, form, repr(self.names))
 
     @property
     def is_cached(self) -> bool:
-        """True if it need not be compiled."""
+        """True if its machine code is cached."""
         return code_cache.load(self.key) is not None
 
     def translation(self) -> Translation:
-        """Translate it now, from nothing that is kept."""
+        """Translate the source, whether or not its code is cached."""
         if self.make is None:
             from verify.arithmetic.wide.one_orbit import OneOrbit
 
@@ -174,16 +177,16 @@ class Source:
         return Translation(layout, cache(lambda: native.machine_code(module)))
 
     def compile(self, *, anew: bool = False) -> tuple[Layout, Callable[[], native.Native]]:
-        """Return its layout, and a function that links it: the code is loaded, or compiled and
-        kept, at the first call.
+        """Return the layout, and a function that links the code.
 
-        `anew`: neither loaded nor kept.
+        At the first call of that function the code is loaded from the cache, or compiled and
+        cached. `anew`: it is compiled, and not cached.
         """
         cached = None if anew else code_cache.load(self.key)
         translation = self.translation() if cached is None else Translation.from_bytes(cached)
 
-        # Most kernels are made to be examined and never run: so linking waits for the first call,
-        # and a result is written to the cache only then.
+        # Most kernels are built to be examined and never run. So linking waits for the first call,
+        # and the code is written to the cache only then.
         @cache
         def function() -> native.Native:
             linked = native.link(translation.code())

@@ -1,10 +1,11 @@
 """float64 kernels of many points in lockstep as LLVM IR: several vectors for each of its numbers.
 
-Nothing branches but the loop, in which no point ends before the others. Under an `if` a variable
-keeps its value in the lanes where the condition is false.
+Only the loop branches, and no point ends it before the others. Under an `if` a variable keeps its
+value in the lanes where the condition is false.
 
-What is done to one set of lanes stands together, up to the next call for all of them: it has the
-registers for itself, and the processor looks ahead to the next set while it waits.
+A set is one vector of points. The operations on one set stand together, up to the next call for
+all sets: so they have the registers for themselves, and the processor looks ahead to the next set
+while it waits.
 """
 
 import ast
@@ -23,16 +24,15 @@ from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.one_orbit import BOOL
 
 _B = ir.IRBuilder
-_ALIGNED = 8  # bytes; numbers come from Python's memory
+_ALIGNMENT = 8  # bytes; memory from Python is aligned to no more
 
 
 class DoublesInLanes:
-    """See `verify.arithmetic.wide.translator.Target`.
+    """A target (see `verify.arithmetic.wide.translator.Target`) for many points in float64.
 
-    A number is a tuple of vectors, one for each of the `sets` of lanes; or a vector, if it is
-    the same for all of them. The steps and their counter are one word. The last arguments, so many
-    as are `carried`, differ from point to point. `function_names`: the functions that the source
-    calls.
+    A number is a tuple of vectors, one for each of the `sets`; or one vector, if it is the same
+    for all sets. The number of steps and its counter are scalar words. The last `carried`
+    arguments differ from point to point. `function_names`: the functions that the source calls.
     """
 
     def __init__(self, sets: int, carried: int, function_names: Sequence[str]) -> None:
@@ -60,7 +60,7 @@ class DoublesInLanes:
         address = self._address(self.b, memory, index, lane_set)
         if kind == "int":
             address = self.b.bitcast(address, I64.as_pointer())
-        return self.b.load(address, align=_ALIGNED)
+        return self.b.load(address, align=_ALIGNMENT)
 
     def _address(self, b: ir.IRBuilder, memory: Value, index: int, lane_set: int) -> Value:
         """Return the address of a number's row for one set of lanes."""
@@ -77,7 +77,9 @@ class DoublesInLanes:
         for index, value in enumerate(results):
             for lane_set, x in enumerate(self._in_sets(value)):
                 word = b.bitcast(vectors.same(b, x, WORDS), DOUBLES) if x.type == I64 else x
-                b.store(word, self._address(b, b.function.args[1], index, lane_set), align=_ALIGNED)
+                b.store(
+                    word, self._address(b, b.function.args[1], index, lane_set), align=_ALIGNMENT
+                )
         b.ret_void()
 
     def when(self, condition: Any, body: Callable[[], None]) -> None:
@@ -87,9 +89,9 @@ class DoublesInLanes:
         self._where = None
 
     def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
-        before = dict(self._variables)
-        loop_variables = [variable for variable in before if variable in assigned]
-        if any(self.kind(before[variable]) == "int" for variable in loop_variables):
+        outer_variables = dict(self._variables)
+        loop_variables = [variable for variable in outer_variables if variable in assigned]
+        if any(self.kind(outer_variables[variable]) == "int" for variable in loop_variables):
             _refuse("integers that a loop changes")
         places = {variable: self._room() for variable in loop_variables}
         self._keep(places)
@@ -101,17 +103,17 @@ class DoublesInLanes:
         index = b.load(counter)
         b.cbranch(b.icmp_signed("<", index, limit), inside, done)
         self._open(ir.IRBuilder(inside))
-        self._variables = before | {name: index} | self._fetch(places)
+        self._variables = outer_variables | {name: index} | self._fetch(places)
         body()
         self._keep(places)
         b = self._close()
         b.store(b.add(index, constant(1, 64)), counter)
         b.branch(head)
         self._open(ir.IRBuilder(done))
-        self._variables = before | self._fetch(places)
+        self._variables = outer_variables | self._fetch(places)
         # A variable that is first set in the loop has no value if the loop makes no pass; reading
         # it afterwards is refused.
-        self._loop_locals |= {name, *assigned} - before.keys()
+        self._loop_locals |= {name, *assigned} - outer_variables.keys()
         self.circle.forget()
 
     def leave(self) -> None:
@@ -123,26 +125,26 @@ class DoublesInLanes:
     # -- sets of lanes ------------------------------------------------------------------------
 
     def _open(self, b: ir.IRBuilder) -> None:
-        """Go on in new blocks: one for what all sets share, and then one after the other."""
+        """Begin new blocks: `b` for operations that all sets share, and behind it one per set."""
         self.b = b
         self._of_sets = [ir.IRBuilder(b.append_basic_block("set")) for _ in range(self.sets)]
 
     def _close(self) -> ir.IRBuilder:
-        """End what is done set by set; return the builder for what comes after."""
+        """Chain the blocks of the sets; return the builder for the code behind them."""
         chain = [self.b, *self._of_sets]
         for builder, following in pairwise(chain):
             builder.branch(following.block)
         return chain[-1]
 
     def _each(self, operation: Callable[..., Value], *values: Any) -> Any:
-        """Apply the operation, which takes a builder first, to each of the sets; once if all
-        is the same for them."""
+        """Apply an operation, whose first argument is a builder, to each of the sets; once, if all
+        values are the same for all sets."""
         if not any(isinstance(x, tuple) for x in values):
             return operation(self.b, *values)
         return tuple(map(operation, self._of_sets, *map(self._in_sets, values)))
 
     def _for_all(self, operation: Callable[[ir.IRBuilder], Any]) -> None:
-        """Apply an operation, which takes a builder, once for all sets."""
+        """Apply an operation of a builder once for all sets."""
         b = self._close()
         operation(b)
         self._open(b)
@@ -151,7 +153,7 @@ class DoublesInLanes:
         return value if isinstance(value, tuple) else (value,) * self.sets
 
     def _room(self) -> tuple[Value, ...]:
-        """Allocate memory of a number."""
+        """Allocate memory for a number: one address per set."""
         return tuple(self.allocations.alloca(DOUBLES) for _ in range(self.sets))
 
     def _keep(self, places: Mapping[str, tuple[Value, ...]]) -> None:
@@ -172,13 +174,13 @@ class DoublesInLanes:
         return self._variables[name]
 
     def assign(self, name: str, value: Any) -> None:
-        before = self._variables.get(name)
-        if before is not None and self.kind(before) == "float":
+        previous = self._variables.get(name)
+        if previous is not None and self.kind(previous) == "float":
             value = self.convert(value, "float")
         if self._where is not None:
-            if before is None or self.kind(before) == "int":
+            if previous is None or self.kind(previous) == "int":
                 _refuse("a variable that is set for some points, and was no number before")
-            value = self._each(_B.select, self._where, value, before)
+            value = self._each(_B.select, self._where, value, previous)
         self._variables[name] = value
         self._loop_locals.discard(name)
 
@@ -202,10 +204,10 @@ class DoublesInLanes:
         return self._each(_B.neg if self.kind(x) == "int" else _B.fneg, x)
 
     def sum(self, sign: str, x: Any, y: Any) -> Any:
-        whole = self.kind(x) == "int"
+        integers = self.kind(x) == "int"
         if sign == "+":
-            return self._each(_B.add if whole else _B.fadd, x, y)
-        return self._each(_B.sub if whole else _B.fsub, x, y)
+            return self._each(_B.add if integers else _B.fadd, x, y)
+        return self._each(_B.sub if integers else _B.fsub, x, y)
 
     def product(self, x: Any, y: Any) -> Any:
         if self.kind(x) == "int":

@@ -1,8 +1,8 @@
-"""Orbits in lockstep as LLVM IR: each of a kernel's numbers is one in each lane.
+"""Orbits in lockstep as LLVM IR: a kernel's number has one value in each lane.
 
-Nothing branches but the loop. Under an `if` a variable keeps its value in the lanes where the
-condition is false. Lanes that return within the loop retire (`verify.arithmetic.lanes.memory`), so
-that a lane that fails hurts no other.
+Only the loop branches. Under an `if` a variable keeps its value in the lanes where the condition is
+false. A lane that returns within the loop retires (`verify.arithmetic.lanes.memory`): a lane that
+fails does no harm to others.
 """
 
 import ast
@@ -25,10 +25,10 @@ from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of
 
 
 class Ensemble:
-    """See `verify.arithmetic.wide.translator.Target`.
+    """A target (see `verify.arithmetic.wide.translator.Target`) for one orbit in each lane.
 
-    A wide number is a `LaneNumber`; a double or an integer is a vector, but for the steps and their
-    counter, which are one for all lanes; a condition is a vector too, or one for all.
+    A wide number is a `LaneNumber`; a double or an integer is a vector, except the number of steps
+    and its counter, which are scalars. A condition is a vector, or one bit for all lanes.
     """
 
     def __init__(self, fraction: int, multiply_add: type[MultiplyAdd]) -> None:
@@ -39,7 +39,7 @@ class Ensemble:
         self.memory = Memory(self.numbers, self.widths)
         self.circle = LibmCircle(self.module, 1, libm_circle.NAMES)
         self._variables: dict[str, Any] = {}
-        self._retirement: Retirement | None = None  # of the loop
+        self._retirement: Retirement | None = None  # that of the lanes in the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
 
     # -- the function -------------------------------------------------------------------------
@@ -54,9 +54,9 @@ class Ensemble:
         for name, kind in arguments:
             self._variables[name] = self.memory.read(self.b, main.args[0], offset, kind)
             offset += self.memory.size(kind)
-        first = arguments[0][0] if arguments and arguments[0][1] == "int" else None
-        if first:  # the steps, one number for all
-            self._variables[first] = self.b.extract_element(self._variables[first], constant(0, 64))
+        steps = arguments[0][0] if arguments and arguments[0][1] == "int" else None
+        if steps:  # the number of steps is the same in all lanes
+            self._variables[steps] = self.b.extract_element(self._variables[steps], constant(0, 64))
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
@@ -85,17 +85,17 @@ class Ensemble:
         self._where = None
 
     def loop(self, name: str, limit: Value, body: Callable[[], None], assigned: set[str]) -> None:
-        b, before = self.b, dict(self._variables)
-        changed_here = [n for n in before if n in assigned or n == "valid"]
+        b, outer_variables = self.b, dict(self._variables)
+        changed_here = [n for n in outer_variables if n in assigned or n == "valid"]
         variables = Variables(self.numbers)
         for variable in changed_here:
-            variables.add(b, self.allocations, variable, before[variable])
-        variables.keep(b, before)
+            variables.add(b, self.allocations, variable, outer_variables[variable])
+        variables.keep(b, outer_variables)
         self._retirement = Retirement(b, self.allocations, limit)
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
-        for value in (value for n, value in before.items() if n not in changed_here):
-            if isinstance(value, LaneNumber):  # it stays as it is: its factors are made once
+        for value in (value for n, value in outer_variables.items() if n not in changed_here):
+            if isinstance(value, LaneNumber):  # constant in the loop: it is prepared once
                 self.numbers.prepare(b, value)
         head, inside, self._finish = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
@@ -103,13 +103,13 @@ class Ensemble:
         index = b.load(counter)
         b.cbranch(b.icmp_signed("<", index, limit), inside, self._finish)
         b.position_at_end(inside)
-        self._variables = before | {name: index} | variables.fetch(b, before)
+        self._variables = outer_variables | {name: index} | variables.fetch(b, outer_variables)
         body()
         variables.keep(b, self._variables)
         b.store(b.add(index, constant(1, 64)), counter)
         b.branch(head)
         b.position_at_end(self._finish)
-        self._variables = before | variables.fetch(b, before)
+        self._variables = outer_variables | variables.fetch(b, outer_variables)
         self.circle.forget()
 
     def leave(self) -> None:
@@ -127,11 +127,11 @@ class Ensemble:
         return self._variables[name]
 
     def assign(self, name: str, value: Any) -> None:
-        before = self._variables.get(name)
-        if before is not None and name != "valid" and self.kind(value) != self.kind(before):
-            value = self.convert(value, self.kind(before))
+        previous = self._variables.get(name)
+        if previous is not None and name != "valid" and self.kind(value) != self.kind(previous):
+            value = self.convert(value, self.kind(previous))
         if self._where is not None:
-            value = self._select(self._where, value, before)
+            value = self._select(self._where, value, previous)
         self._variables[name] = value
 
     def _select(self, condition: Value, x: Any, y: Any) -> Any:
@@ -247,15 +247,16 @@ class Ensemble:
         return list(results.values)
 
     def _here(self, operation: Callable[..., Any], *values: Any) -> Any:
-        """Apply an operation, which takes a builder first."""
+        """Apply an operation whose first argument is a builder."""
         return operation(self.b, *values)
 
     def _wide(self, x: Value) -> LaneNumber:
-        top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
+        limit = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
         size = vectors.absolute(self.b, x)
-        fits = self.b.fcmp_ordered("<", size, top)
+        fits = self.b.fcmp_ordered("<", size, limit)
         self._require(fits)
-        x = self.b.select(fits, x, vectors.splat_double(0.0))  # what fits not has no words
+        # LLVM does not define the conversion of a number that does not fit: 0 takes its place.
+        x = self.b.select(fits, x, vectors.splat_double(0.0))
         return self.numbers.from_double(self.b, x)
 
     def _require(self, condition: Value) -> None:

@@ -1,11 +1,11 @@
 """Functions of numbers in lanes, with the bits of those of one orbit.
 
-If a function is written in lanes it says in which of them it is unsure of its last bit. There,
-and if it is not written in lanes, the function of one orbit is called, lane by lane.
+A function that is written in lanes says in which lanes its last bit is unsure. There, and for
+functions that are not written in lanes, the function of one orbit is called, lane by lane.
 
 1/x and √x are iterated from a guess in float64 by sums and rounded products of numbers, step by
-step as in `verify.arithmetic.wide.newton`. Each of these operations has the same bits in lanes, so
-that what is made of them has.
+step as in `verify.arithmetic.wide.newton`. Each of these operations has the same bits in lanes as
+for one orbit; therefore the results have, too.
 """
 
 from collections.abc import Callable
@@ -18,16 +18,21 @@ from verify.arithmetic.lanes.products import LaneNumber
 from verify.arithmetic.lanes.transcendentals import Circle, Exponential
 from verify.arithmetic.lanes.vectors import (
     CONDITIONS,
-    DIGIT,
     DOUBLES,
     LANES,
+    LIMB_BITS,
     WORDS,
     splat,
     splat_double,
 )
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resize
-from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, MoreFunctions, iterations
+from verify.arithmetic.wide.newton import (
+    LEAST_DIVISOR_PLACES,
+    LEAST_ROOT_PLACES,
+    MoreFunctions,
+    iterations,
+)
 from verify.arithmetic.wide.one_orbit import float_function
 from verify.arithmetic.wide.size import words_of
 
@@ -42,7 +47,7 @@ class Newton:
         """Iterate y ← y + y (1 − x y)."""
         numbers, one = self.numbers, splat_double(1.0)
         size = numbers.from_settled(numbers.settle(b, numbers.absolute(b, x)), numbers.size)
-        valid = self._at_least(b, size, LEAST_DIVISOR)
+        valid = self._at_least(b, size, LEAST_DIVISOR_PLACES)
         guess = b.fdiv(one, b.select(valid, numbers.to_double(b, x), one))
         y = numbers.from_double(b, guess)
         unit = numbers.constant(1 << self.fraction, numbers.size)
@@ -54,9 +59,9 @@ class Newton:
     def sqrt(self, b: ir.IRBuilder, x: LaneNumber) -> FunctionValues:
         """Iterate s ← s + (x − s²)/(2 s₀)."""
         numbers = self.numbers
-        valid = self._at_least(b, x, LEAST_ROOT)
-        inside = b.select(valid, numbers.to_double(b, x), splat_double(1.0))
-        guess = b.call(vectors.intrinsic(self.module, "sqrt"), [inside])
+        valid = self._at_least(b, x, LEAST_ROOT_PLACES)
+        radicand = b.select(valid, numbers.to_double(b, x), splat_double(1.0))
+        guess = b.call(vectors.intrinsic(self.module, "sqrt"), [radicand])
         s = numbers.from_double(b, guess)
         slope = numbers.from_double(b, b.fdiv(splat_double(0.5), guess))
         for _ in range(iterations(self.fraction, quadratic=False)):
@@ -71,7 +76,8 @@ class Newton:
 
 
 class LaneFunctions:
-    """A writer of functions of one format into a module, each when it is first needed."""
+    """A writer of the functions of one format into a module; each is written when it is first
+    used."""
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
         self.module, self.numbers, self._words = module, numbers, words_of(numbers.size)
@@ -83,7 +89,7 @@ class LaneFunctions:
             "inverse": newton.inverse,
             "sqrt": newton.sqrt,
         }
-        if circle.spare < DIGIT:
+        if circle.spare < LIMB_BITS:
             self._in_lanes |= {
                 "cos_sin": circle.cos_sin,
                 "cos": lambda b, x: _part(circle.cos_sin(b, x), 0),
@@ -94,13 +100,12 @@ class LaneFunctions:
     def call(
         self, b: ir.IRBuilder, name: str, x: LaneNumber, allocations: ir.IRBuilder
     ) -> FunctionValues:
-        """Return the function's values, with no lane unsure; memory is allocated by
-        `allocations`."""
+        """Return the function's values, with no lane unsure; `allocations` allocates memory."""
         if name not in self._in_lanes:
             everywhere = ir.Constant(CONDITIONS, [1] * LANES)
             return self._one_by_one(b, name, x, everywhere, allocations)
         near = self._in_lanes[name](b, x)
-        if near.unsure is None:
+        if near.unsure is None:  # it has the bits of one orbit in all lanes
             return near
         places = [[allocations.alloca(WORDS) for _ in value.limbs] for value in near.values]
         for value, addresses in zip(near.values, places, strict=True):
@@ -109,7 +114,7 @@ class LaneFunctions:
         # The results of all lanes are stored before the branch: the rare block overwrites only the
         # lanes in which rounding is in doubt.
         cold, after = b.append_basic_block("unsure"), b.append_basic_block("sure")
-        before, everywhere = b.block, ir.Constant(CONDITIONS, [1] * LANES)
+        entry, everywhere = b.block, ir.Constant(CONDITIONS, [1] * LANES)
         b.cbranch(vectors.any_of(b, near.unsure), cold, after)
         b.position_at_end(cold)
         precise = self._one_by_one(b, name, x, near.unsure, allocations)
@@ -120,7 +125,7 @@ class LaneFunctions:
         b.branch(after)
         b.position_at_end(after)
         valid = b.phi(CONDITIONS)
-        valid.add_incoming(everywhere, before)
+        valid.add_incoming(everywhere, entry)
         valid.add_incoming(has_value, end)
         numbers = [
             self.numbers.from_settled([b.load(p) for p in addresses], self.numbers.size)
@@ -133,7 +138,7 @@ class LaneFunctions:
     def _one_by_one(
         self, b: ir.IRBuilder, name: str, x: LaneNumber, chosen: Value, allocations: ir.IRBuilder
     ) -> FunctionValues:
-        """Apply the function of one orbit, in the lanes where the condition holds."""
+        """Apply the function of one orbit in the lanes where `chosen` holds."""
         count = self._words
         function, results = self._loop_of(name)
         room = allocations.alloca(WORDS, size=count)
@@ -150,7 +155,7 @@ class LaneFunctions:
         return FunctionValues(values, b.icmp_unsigned("!=", words[-1], splat(0)))
 
     def _loop_of(self, name: str) -> tuple[ir.Function, int]:
-        """Return the function that goes through lanes in memory, and how many values it writes."""
+        """Return the function that loops over the lanes in memory, and the number of its values."""
         function_of_one = self.of_one_orbit.get(name)
         results = len(function_of_one.function_type.return_type.elements) - 1
         if name in self._loops:
@@ -196,7 +201,8 @@ class LaneFunctions:
 
 
 def apply_to_doubles(b: ir.IRBuilder, name: str, x: Value) -> Value:
-    """Apply a function of float64, lane by lane: the same bits as for one orbit."""
+    """Apply a function of float64 with the bits that it has for one orbit: lane by lane, except the
+    square root, which the processor rounds correctly."""
     if name.removeprefix("f_") == "sqrt":
         return b.call(vectors.intrinsic(b.module, "sqrt"), [x])
     function, total = float_function(b.module, name), ir.Constant(DOUBLES, ir.Undefined)

@@ -1,9 +1,9 @@
-"""A kernel's numbers in memory, as LLVM IR: arguments, results, and what goes from pass to pass.
+"""A kernel's numbers in memory, as LLVM IR: arguments, results, and the variables of a loop.
 
-Arguments and results are 64-bit words from the lowest, each once a lane. A loop keeps the variables
-that it changes, and which lanes go on. Lanes that return within the loop retire: what they do
-further on is not looked at, and the loop ends when all have; of what they give only the first
-value, the steps done, is theirs.
+Arguments and results are 64-bit words, the lowest first; each word is a vector, one value per lane.
+A loop keeps the variables that it changes in memory, and records which lanes go on. Lanes that
+return within the loop retire: their later values are ignored, and the loop ends when all lanes have
+retired. Of a retired lane's results only the first, the number of steps done, is valid.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,13 +19,15 @@ from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, LANES, WORDS
 from verify.arithmetic.wide.limbs import Value, constant
 from verify.arithmetic.wide.size import words_of
 
-_ALIGNED = 8  # bytes; numbers come from Python's memory
+_ALIGNMENT = 8  # bytes; memory from Python is aligned to no more
 
 
 @dataclass(frozen=True)
 class Memory:
-    """A reader and writer of arguments and results; `widths`: the bits of a number, by the kinds of
-    wide numbers."""
+    """A reader and writer of arguments and results.
+
+    `widths`: the bits of a number by its kind, `wide` or `sum`; other kinds take one word.
+    """
 
     numbers: Numbers
     widths: Mapping[str, int]
@@ -37,17 +39,17 @@ class Memory:
     def read(self, b: ir.IRBuilder, memory: Value, offset: int, kind: str) -> Any:
         """Return the number of that kind at a word offset."""
         places = (self._address(b, memory, offset + i) for i in range(self.size(kind)))
-        words = [b.load(address, align=_ALIGNED) for address in places]
+        words = [b.load(address, align=_ALIGNMENT) for address in places]
         if kind in self.widths:
             return self.numbers.from_words(b, words, self.widths[kind])
         return b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
 
     def write(self, b: ir.IRBuilder, memory: Value, words: Sequence[Value]) -> None:
         for index, word in enumerate(words):
-            b.store(word, self._address(b, memory, index), align=_ALIGNED)
+            b.store(word, self._address(b, memory, index), align=_ALIGNMENT)
 
     def words(self, b: ir.IRBuilder, value: Any) -> list[Value]:
-        """Return the words of a number; of one for all lanes, the same in each."""
+        """Return the words of a number; a scalar is repeated in each lane."""
         if isinstance(value, LaneNumber):
             return self.numbers.words(b, value)
         if value.type == DOUBLES:
@@ -68,7 +70,7 @@ class Variables:
         self.places: dict[str, list[Value]] = {}
 
     def add(self, b: ir.IRBuilder, allocations: ir.IRBuilder, name: str, value: Any) -> None:
-        """Allocate places for a variable, which has this value before the loop."""
+        """Allocate memory for a variable, which has this value before the loop."""
         parts = self._parts(b, value)
         self.places[name] = [allocations.alloca(part.type) for part in parts]
 
@@ -100,8 +102,8 @@ class Retirement:
         b.store(ir.Constant(CONDITIONS, [1] * LANES), self.going)
 
     def retire(self, b: ir.IRBuilder, condition: Value, step: Value, finish: ir.Block) -> None:
-        """Retire the lanes where the condition holds, which have done so many steps; go to
-        `finish` when none is left."""
+        """Retire the lanes where the condition holds, which have done `step` steps; jump to
+        `finish` when no lane is left."""
         leaving = b.and_(condition, b.load(self.going))
         exit_block = b.append_basic_block("leaving")
         after = b.append_basic_block("after")

@@ -1,15 +1,15 @@
-"""Sums of the low and the high 52 bits of products, by what a processor has for it.
+"""Sums of the low and the high 52 bits of products, by the instructions that a processor has.
 
-AVX-512 IFMA adds either half of a product of 52-bit words in an instruction. AVX2 has the fused
-multiply-add of float64, whose rounding splits a product of two whole numbers exactly:
+AVX-512 IFMA adds either half of a product of 52-bit words in one instruction. AVX2 has the fused
+multiply-add of float64, whose rounding splits a product of two integers exactly:
 
-    k = x y + 2^104 rounded to its 53 bits, which is 2^104 + 2^52 times a whole number;
-    r = x y + (2^104 − k), which is whole, and at most 2^51 in size.
+    k = x y + 2^104 rounded to its 53 bits, which is 2^104 + 2^52 times an integer;
+    r = x y + (2^104 − k), which is an integer, and at most 2^51 in size.
 
-So both halves come without a rounding mode's being changed, and a low half may be negative. If
-neither is there, products of 128 bits give the same sums, slowly, which is for tests.
+So both halves are computed without a change of the rounding mode; the low half may be negative.
+Without either instruction products of 128 bits give the same sums, slowly: for tests.
 
-A long product is such sums by columns: xᵢ yⱼ stands in column i + j and the one above it.
+A long product is a sum of such halves by columns: xᵢ yⱼ is added to column i + j and the next one.
 """
 
 import struct
@@ -21,10 +21,11 @@ from types import MappingProxyType
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, LANES, WORDS, splat, splat_double
+from verify.arithmetic.lanes.vectors import DOUBLES, LANES, LIMB_BITS, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
 
-# x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.
+# The low bits of the float64 2^52 + x hold an integer x ≥ 0, those of 1.5·2^52 + x an integer of
+# either sign, |x| ≤ 2^51. With the 2^104 below they hold x y / 2^52 likewise.
 _UNIT, _ABOUT_0 = 2.0**52, 1.5 * 2.0**52
 _HIGH, _HIGH_ABOUT_0 = 2.0**104, 1.5 * 2.0**104
 
@@ -37,7 +38,7 @@ class Sum:
     constant: int = 0
 
     def add(self, b: ir.IRBuilder, part: Value, excess: int = 0) -> None:
-        """Add a part, which is too large by a known number."""
+        """Add a part that is too large by `excess`."""
         self.vector = part if self.vector is None else b.add(self.vector, part)
         self.constant -= excess
 
@@ -48,19 +49,19 @@ class Sum:
 
 
 class MultiplyAdd(ABC):
-    """Products of factors, which are limbs of 52 bits, or the highest limb of a signed number."""
+    """Products of factors: limbs of 52 bits, or the highest limb of a signed number."""
 
-    signed = False  # whether a factor may have its sign; else the low 52 bits of a word count
-    leaves_out = False  # whether a long product is formed sooner without its lowest columns
+    signed = False  # True if a factor keeps its sign; else the low 52 bits of a word count
+    leaves_out = False  # True if a long product is faster without its lowest columns
 
     @abstractmethod
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
-        """Return a limb, of which the low 52 bits count, as it is multiplied; the `highest` may
-        be negative, and is below 2^51 in size."""
+        """Return a limb in the form in which it is multiplied. Its low 52 bits count; the `highest`
+        limb may be negative, and is below 2^51 in size."""
 
     @abstractmethod
     def sum(self, start: int = 0) -> Sum:
-        """Return a sum to begin with."""
+        """Return a new sum that begins with `start`."""
 
     @abstractmethod
     def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
@@ -74,9 +75,10 @@ class MultiplyAdd(ABC):
     def add_product(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
-        """Add the product in two parts, the second divided by 2^52: exact only together.
+        """Add the product in two parts, the second of them divided by 2^52: only together are they
+        exact.
 
-        `signed`: a factor may be negative. Without `high` a multiple of 2^52 is left out.
+        `signed`: a factor may be negative. Without `high` the second part is left out.
         """
 
     def add_shifted(self, b: ir.IRBuilder, low: Value, x: Value, shift: int) -> Value:
@@ -85,7 +87,7 @@ class MultiplyAdd(ABC):
 
 
 class _WordProducts(MultiplyAdd):
-    """Factors are words, of which the low 52 bits count."""
+    """Products whose factors are words, of which the low 52 bits count."""
 
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
         return limb
@@ -135,7 +137,7 @@ class Portable(_WordProducts):
     def add_high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         long = ir.VectorType(ir.IntType(128), LANES)
         product = b.mul(*(b.zext(vectors.mask(b, v), long) for v in (x, y)))
-        total.add(b, b.trunc(b.lshr(product, ir.Constant(long, [DIGIT] * LANES)), WORDS))
+        total.add(b, b.trunc(b.lshr(product, ir.Constant(long, [LIMB_BITS] * LANES)), WORDS))
 
 
 class Fused(MultiplyAdd):
@@ -169,18 +171,19 @@ class Fused(MultiplyAdd):
     ) -> None:
         about = _HIGH_ABOUT_0 if signed else _HIGH
         above, rest = self._split(b, x, y, about)
-        low.add(b, self._whole(b, rest), _bits(_ABOUT_0))
+        low.add(b, self._integer_bits(b, rest), _bits(_ABOUT_0))
         if high is not None:
             high.add(b, b.bitcast(above, WORDS), _bits(about))
 
     def _split(self, b: ir.IRBuilder, x: Value, y: Value, about: float) -> tuple[Value, Value]:
-        """Return (`about` + the higher part of the product, the rest)."""
+        """Return (`about` + the high part of the product, the low part), both in float64."""
         start = splat_double(about)
         above = vectors.multiply_add(b, x, y, start)
         return above, vectors.multiply_add(b, x, y, b.fsub(start, above))
 
-    def _whole(self, b: ir.IRBuilder, x: Value) -> Value:
-        """Return the bits of 1.5·2^52 + x, |x| ≤ 2^51 whole: those of 1.5·2^52, and x added."""
+    def _integer_bits(self, b: ir.IRBuilder, x: Value) -> Value:
+        """Return the bits of 1.5·2^52 + x for an integer |x| ≤ 2^51: as a word they are the bits of
+        1.5·2^52 plus x."""
         return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
 
 
@@ -189,10 +192,10 @@ def _bits(x: float) -> int:
 
 
 class Columns:
-    """Columns from `low` to `top`; their carries have not moved.
+    """The columns of a long product from `low` to `top`; their carries have not moved.
 
-    What lies above `top` is left out, and so is what lies below `low`: of a product in the column
-    beneath it the higher half is added, rounded down or to the nearest, of others nothing.
+    Products above `top` are left out. Of a product in the column beneath `low` the high half is
+    added, rounded down or to the nearest; of products further below nothing is.
     """
 
     def __init__(
@@ -204,16 +207,16 @@ class Columns:
         *,
         exact: bool = False,
     ) -> None:
-        """`start`: what is added to a column besides; `exact`: halves are rounded down, so that of
-        a single product less than a unit is left out."""
+        """`start`: a number to add to each column; `exact`: high halves are rounded down, so that
+        less than a unit of a single product is left out."""
         self.multiply_add, self.low, self.top = multiply_add, low, top
         self.sums = {c: multiply_add.sum(start.get(c, 0)) for c in range(low, top + 1)}
         self._add_half = multiply_add.add_high if exact else multiply_add.add_near
 
     def add(self, b: ir.IRBuilder, x: Value, y: Value, c: int, *, signed: bool = False) -> None:
-        """Add the product of two factors, standing in a column; `signed`: one may be negative."""
-        # One column below the kept ones: its high half carries into the lowest kept column, and is
-        # added; everything further down is less than a unit for each product.
+        """Add the product of two factors in column c; `signed`: a factor may be negative."""
+        # Of a product one column below the kept ones the high half is added to the lowest kept
+        # column; further down a product is less than a unit.
         if c == self.low - 1:
             self._add_half(b, self.sums[self.low], x, y)
         elif self.low <= c <= self.top:

@@ -9,7 +9,7 @@ from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.products import LaneNumber, Products, count_of
-from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
+from verify.arithmetic.lanes.vectors import DOUBLES, LIMB_BITS, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import units_of_words
 from verify.arithmetic.wide.size import WORD, words_of
@@ -22,8 +22,8 @@ class Numbers(Products):
 
     def constant(self, raw: int, width: int) -> LaneNumber:
         count = count_of(width)
-        limbs = [splat((raw >> DIGIT * i) % (1 << DIGIT)) for i in range(count - 1)]
-        return self.from_settled([*limbs, splat(raw >> DIGIT * (count - 1))], width)
+        limbs = [splat((raw >> LIMB_BITS * i) % (1 << LIMB_BITS)) for i in range(count - 1)]
+        return self.from_settled([*limbs, splat(raw >> LIMB_BITS * (count - 1))], width)
 
     def add(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> LaneNumber:
         return self._by_limbs(b, b.add, x, y)
@@ -53,7 +53,7 @@ class Numbers(Products):
         return LaneNumber([b.select(negative, b.sub(splat(0), v), v) for v in limbs], x.width)
 
     def extend(self, b: ir.IRBuilder, x: LaneNumber, width: int) -> LaneNumber:
-        """Return the same number in more limbs."""
+        """Return the same number with `width` bits."""
         return LaneNumber(x.limbs + [splat(0)] * (count_of(width) - len(x.limbs)), width, x.weight)
 
     def less(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> Value:
@@ -72,15 +72,16 @@ class Numbers(Products):
         return [self._word(b, x, WORD * index) for index in range(words_of(x.width))]
 
     def _leading(self, b: ir.IRBuilder, x: LaneNumber, beneath: int = 0) -> Value:
-        """Return the leading word, as `verify.arithmetic.wide.limbs.leading` does."""
+        """Return the leading word, or a word beneath it, as `verify.arithmetic.wide.limbs.leading`
+        does."""
         return self._word(b, x, x.width - WORD * (beneath + 1))
 
     def _word(self, b: ir.IRBuilder, x: LaneNumber, first: int) -> Value:
-        """Return 64 bits of the number in two's complement, from bit `first` on."""
+        """Return 64 bits of the number in two's complement, beginning with bit `first`."""
         total = None
         limbs = self.settle(b, x)
         for i, limb in enumerate(limbs):
-            start, end = DIGIT * i - first, DIGIT * (i + 1) - first
+            start, end = LIMB_BITS * i - first, LIMB_BITS * (i + 1) - first
             last = i == len(limbs) - 1
             if (end <= 0 and not last) or start >= 64:
                 continue
@@ -91,15 +92,15 @@ class Numbers(Products):
         return total
 
     def from_words(self, b: ir.IRBuilder, words: Sequence[Value], width: int) -> LaneNumber:
-        """Return the number of so many bits in 64-bit words, the lowest first."""
+        """Return the number of `width` bits that stands in 64-bit words, the lowest first."""
         count = count_of(width)
         limbs = []
         for i in range(count):
-            index, shift = divmod(DIGIT * i, 64)
-            last = i == count - 1  # it has the sign, which may be in the word above
+            index, shift = divmod(LIMB_BITS * i, 64)
+            last = i == count - 1  # the limb with the sign, which may stand in the next word
             highest = index == len(words) - 1
             limb = (b.ashr if last and highest else b.lshr)(words[index], splat(shift))
-            if not highest and (last or shift > 64 - DIGIT):
+            if not highest and (last or shift > 64 - LIMB_BITS):
                 limb = b.or_(limb, vectors.up(b, words[index + 1], 64 - shift))
             limbs.append(limb if last else vectors.mask(b, limb))
         return self.from_settled(limbs, width)
@@ -115,21 +116,22 @@ class Numbers(Products):
         """Convert as `verify.arithmetic.wide.newton.from_double` does; |value| < 2^15."""
         floor, absolute = (vectors.intrinsic(b.module, name) for name in ("floor", "fabs"))
         count = count_of(self.size)
-        scale = splat_double(2.0 ** (self.fraction - DIGIT * (count - 1)))
+        scale = splat_double(2.0 ** (self.fraction - LIMB_BITS * (count - 1)))
         rest = b.fmul(b.call(absolute, [value]), scale)
         limbs: list[Value] = []
         for _ in range(count):
-            whole = b.call(floor, [rest])
-            limbs.insert(0, b.fptoui(whole, WORDS))
-            rest = b.fmul(b.fsub(rest, whole), splat_double(2.0**DIGIT))
+            integer = b.call(floor, [rest])
+            limbs.insert(0, b.fptoui(integer, WORDS))
+            rest = b.fmul(b.fsub(rest, integer), splat_double(2.0**LIMB_BITS))
         negative = b.fcmp_ordered("<", value, splat_double(0.0))
         signed = [b.select(negative, b.sub(splat(0), limb), limb) for limb in limbs]
         return LaneNumber(signed, self.size)
 
-    # -- what the language has ----------------------------------------------------------------
+    # -- calls of the language ----------------------------------------------------------------
 
     def inside(self, b: ir.IRBuilder, x: LaneNumber, limit: LaneNumber) -> Value:
-        """Return |x| < limit, by the leading bits alone; see the translator of one orbit."""
+        """Return a condition that implies |x| < limit, from the leading bits alone; see
+        `verify.arithmetic.wide.one_orbit.OneOrbit.inside`."""
         high, most = (self._leading(b, v) for v in (x, limit))
         biased = b.sub(b.add(high, most), splat(1))
         return b.icmp_unsigned("<", biased, b.sub(b.add(most, most), splat(1)))
@@ -138,14 +140,14 @@ class Numbers(Products):
         """Return x / 2^shift rounded down, 0 ≤ shift < 64, `shift` a word in each lane."""
         limbs = self.settle(b, x)
         sign = vectors.down(b, limbs[-1], 63)
-        far = b.icmp_unsigned(">=", shift, splat(DIGIT))
-        rest = b.select(far, b.sub(shift, splat(DIGIT)), shift)
-        # By whole limbs first. The highest, whose sign fills it, is a limb like the others then.
+        far = b.icmp_unsigned(">=", shift, splat(LIMB_BITS))
+        rest = b.select(far, b.sub(shift, splat(LIMB_BITS)), shift)
+        # First the number is shifted by 0 or 1 limb; its sign then fills a new highest limb.
         *low, high = limbs
         above = [*low[1:], high, sign]
         near = [b.select(far, v, u) for u, v in zip([*low, high], above, strict=True)]
         filled = [*near, sign]
-        complement = b.sub(splat(DIGIT), rest)
+        complement = b.sub(splat(LIMB_BITS), rest)
         shifted = [
             b.or_(b.lshr(vectors.mask(b, u), rest), vectors.mask(b, b.shl(v, complement)))
             for u, v in pairwise(filled[:-1])
@@ -156,8 +158,8 @@ class Numbers(Products):
 class FunctionValues(NamedTuple):
     """The values of a function in lanes.
 
-    `valid`: the lanes in which it has them; None: in all. `unsure`: the lanes in which they may be
-    rounded otherwise than those of one orbit; None: in none.
+    `valid`: the lanes in which the function has values; None for all. `unsure`: the lanes in which
+    a value may be rounded otherwise than for one orbit; None for no lane.
     """
 
     values: Sequence[LaneNumber]

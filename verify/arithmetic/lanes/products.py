@@ -1,15 +1,17 @@
 """Numbers in lanes, their carries and their products.
 
-A number has limbs in radix 2^52, one vector each. They are words with signs, and their sum
-Σ limbᵢ 2^(52 i) is its value: sums are formed limb by limb, and carries are left where they are
-until a product, a sign or 64-bit words are asked for. Then they move up: all limbs but the highest
-are in [0, 2^52), the highest has the sign.
+A number has limbs in radix 2^52, each a vector of signed words; its value is Σ limbᵢ 2^(52 i). Sums
+are formed limb by limb, and carries stay in their limbs until a product, a sign or 64-bit words are
+needed. Then the carries move up: all limbs but the highest are in [0, 2^52) afterwards, and the
+highest has the sign.
 
-A product has the bits of `verify.arithmetic.wide.limbs.product`: it is rounded once. If that
-saves time its lowest columns are left out, and if they matter in some lane, it is formed anew
-from all of them. If factors are words without a sign, the product of x − X 2^52n and
-y − Y 2^52n, X and Y 1 if the number is negative, else 0, is formed from x y by taking X y and
-Y x away n limbs higher.
+A product has the bits of `verify.arithmetic.wide.limbs.product`: it is rounded once. If that saves
+time, its lowest columns are left out; if they matter in some lane, the product is computed again
+from all columns.
+
+The factors may be words without a sign. A number is then x − X 2^(52 n), where X is 1 if it is
+negative, else 0, and another y − Y 2^(52 n); their product is x y minus X y and Y x, both n limbs
+higher.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,28 +22,31 @@ from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.multiply_add import Columns, MultiplyAdd
-from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
+from verify.arithmetic.lanes.vectors import LIMB_BITS, WORDS, splat
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.size import size_of
 
-_MOST_WEIGHT = 1 << 9  # of sums whose carries have not moved: limbs stay below 2^62
-_WEIGHT = 8  # columns are below 1.5·2^58, and at least 4 bits are shifted out of them
-_LEAST_BELOW = 16  # bits that are kept below a product's last, so that they seldom leave it unsure
-_EXACT = 1  # below that column less than a unit is left out, and what is kept is rounded down
-_ABOVE = 1 << 58  # added to columns if words are shifted down without their signs
+_MAX_WEIGHT = 1 << 9  # a sum of less weight needs no carries moved: its limbs stay below 2^62
+_PRODUCT_WEIGHT = 8  # columns are below 1.5·2^58, and at least 4 bits are shifted out of them
+_MIN_GUARD_BITS = 16  # bits kept below a product's last bit, so that it is seldom unsure
+# If all columns from this one on are kept, less than a unit is left out, and it is rounded down.
+_EXACT_COLUMN = 1
+_COLUMN_BIAS = 1 << 58  # makes columns positive, for processors that shift down without the sign
 
 
 def count_of(width: int) -> int:
     """Return the number of limbs for so many bits, the sign among them."""
-    return -(-width // DIGIT)
+    return -(-width // LIMB_BITS)
 
 
 @dataclass(eq=False)
 class LaneNumber:
-    """Limbs from the lowest, each below `weight`·2^52 in size; `width` bits hold its value.
+    """A number as its limbs, the lowest first, each below `weight`·2^52 in size; its value fits in
+    `width` bits.
 
-    `settled` are the limbs once carries have moved, `factors` what is multiplied, and `negative`
-    where it is; each is written once, where it is first asked for.
+    Written when they are first used, and once: `carried`, the limbs after carries have moved;
+    `settled`, these cut to 52 bits; `factors`, the limbs as they are multiplied; `negative`, the
+    lanes in which the number is negative.
     """
 
     limbs: list[Value]
@@ -54,13 +59,15 @@ class LaneNumber:
 
 
 class Carries:
-    """Operations on the carries of numbers with so many fraction bits, each written once."""
+    """Operations on the carries of numbers with `fraction` fraction bits; the code of each is
+    written once per number."""
 
     def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
         self.fraction, self.size, self.multiply_add = fraction, size_of(fraction), multiply_add
 
     def carry(self, b: ir.IRBuilder, x: LaneNumber) -> list[Value]:
-        """Return the limbs after the carries have moved; of all but the highest 52 bits count."""
+        """Return the limbs after the carries have moved; only the low 52 bits of a limb count,
+        except of the highest."""
         if not x.carried:
             x.carried = vectors.carry(b, x.limbs)
         return x.carried
@@ -85,21 +92,20 @@ class Carries:
         return x.negative
 
     def prepare(self, b: ir.IRBuilder, x: LaneNumber) -> None:
-        """Write here what may be needed later; what is not needed costs nothing."""
+        """Write the number's limbs and factors here, before a loop; LLVM drops what is not used."""
         self.settle(b, x)
         self.factors(b, x)
         self.negative(b, x)
 
     def from_settled(self, limbs: Sequence[Value], width: int) -> LaneNumber:
-        """Return a number whose carries have moved."""
+        """Return the number of limbs whose carries have moved."""
         limbs = list(limbs)
         return LaneNumber(limbs, width, settled=limbs, carried=limbs)
 
     def light(self, b: ir.IRBuilder, x: LaneNumber) -> LaneNumber:
-        """Return the same number, its carries moved if it is a sum of many."""
-        # Each limb is below weight·2^52 in size; a word overflows at 2^63, so carries must move
-        # before sums get that heavy.
-        if x.weight < _MOST_WEIGHT:
+        """Return the same number, with its carries moved if it is a sum of many numbers."""
+        # A limb is below weight·2^52 in size, and overflows at 2^63: carries must move before.
+        if x.weight < _MAX_WEIGHT:
             return x
         return self.from_settled(self.settle(b, x), x.width)
 
@@ -109,19 +115,20 @@ class Products(Carries):
 
     def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
         super().__init__(fraction, multiply_add)
-        self._lowest, self._drop = divmod(fraction, DIGIT)  # the result's column, bits below it
-        first = self._lowest if self._drop >= _LEAST_BELOW else self._lowest - 1
-        self._first = first if multiply_add.leaves_out else _EXACT
-        self._whole: dict[int, ir.Function] = {}
+        # The result's last bit stands in column `_lowest`, above `_drop` other bits of it.
+        self._lowest, self._drop = divmod(fraction, LIMB_BITS)
+        first = self._lowest if self._drop >= _MIN_GUARD_BITS else self._lowest - 1
+        self._first = first if multiply_add.leaves_out else _EXACT_COLUMN
+        self._whole_products: dict[int, ir.Function] = {}
 
     def product(self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber) -> LaneNumber:
         """Return x y / 2^fraction, rounded to the nearest, halves upwards."""
         columns = self._columns(b, x, y, self._first)
         near = self._round(b, columns, x.width)
-        if self._first == _EXACT:
-            return LaneNumber(near, x.width, _WEIGHT)
+        if self._first == _EXACT_COLUMN:
+            return LaneNumber(near, x.width, _PRODUCT_WEIGHT)
         unsure = vectors.any_of(b, self._unsure(b, columns[self._first]))
-        before, cold = b.block, b.append_basic_block("unsure")
+        entry, cold = b.block, b.append_basic_block("unsure")
         after = b.append_basic_block("sure")
         # The weights move the rare block out of the way, so that the common path stays in
         # straight-line code.
@@ -135,34 +142,34 @@ class Products(Carries):
         b.position_at_end(after)
         limbs = [b.phi(WORDS) for _ in near]
         for limb, *candidates in zip(limbs, near, whole_limbs, strict=True):
-            for value, block in zip(candidates, (before, cold), strict=True):
+            for value, block in zip(candidates, (entry, cold), strict=True):
                 limb.add_incoming(value, block)
-        return LaneNumber(limbs, x.width, _WEIGHT)
+        return LaneNumber(limbs, x.width, _PRODUCT_WEIGHT)
 
     def _unsure(self, b: ir.IRBuilder, column: Value) -> Value:
-        """Return the condition that the omitted columns might carry into the result."""
-        lost = self._lost(self._first)
-        below = self._drop if self._first == self._lowest else DIGIT
-        rest = b.and_(b.add(column, splat(lost)), splat((1 << below) - 1))
-        return b.icmp_signed("<", rest, splat(2 * lost))
+        """Return the condition that the omitted columns may carry into the result."""
+        bound = self._omission_bound(self._first)
+        below = self._drop if self._first == self._lowest else LIMB_BITS
+        rest = b.and_(b.add(column, splat(bound)), splat((1 << below) - 1))
+        return b.icmp_signed("<", rest, splat(2 * bound))
 
     @staticmethod
-    def _lost(first: int) -> int:
-        """Return the units of the first column that may be missing: less than one for each
-        product in the two columns beneath it, 2·first − 1 of them, and less than one for all
-        further below."""
+    def _omission_bound(first: int) -> int:
+        """Return a bound on the omitted part of a product, in units of the first kept column: less
+        than one for each of the 2·first − 1 products in the two columns beneath it, and less than
+        one for all columns further below."""
         return 2 * first
 
     def _whole_product(self, module: ir.Module, width: int) -> ir.Function:
-        """Return a function for the product from all columns: apart, since it is hardly ever
-        called."""
-        if width in self._whole:
-            return self._whole[width]
+        """Return a function for the product from all columns; it is not inlined, since it is hardly
+        ever called."""
+        if width in self._whole_products:
+            return self._whole_products[width]
         count = count_of(width)
         result = ir.LiteralStructType([WORDS] * count)
         kind = ir.FunctionType(result, [WORDS] * (2 * count))
         function = ir.Function(module, kind, f"lanes_whole_product_{width}")
-        self._whole[width] = function
+        self._whole_products[width] = function
         function.linkage = "internal"
         function.attributes.add("noinline")
         b = ir.IRBuilder(function.append_basic_block("entry"))
@@ -171,7 +178,7 @@ class Products(Carries):
             for limbs in (function.args[:count], function.args[count:])
         )
         packed = ir.Constant(result, ir.Undefined)
-        for i, limb in enumerate(self._round(b, self._columns(b, x, y, _EXACT), width)):
+        for i, limb in enumerate(self._round(b, self._columns(b, x, y, _EXACT_COLUMN), width)):
             packed = b.insert_value(packed, limb, i)
         b.ret(packed)
         return function
@@ -179,15 +186,16 @@ class Products(Carries):
     def _columns(
         self, b: ir.IRBuilder, x: LaneNumber, y: LaneNumber, first: int
     ) -> dict[int, Value]:
-        """Return Σ xᵢ yⱼ and half a unit of the result's last place by columns, from the first on.
+        """Return Σ xᵢ yⱼ plus half a unit of the result's last place, by columns from `first` on.
 
-        Of the column above the result's highest limb the low bits are needed, or none: not if
-        the highest column has room for the sign, and for carries that are still to come.
+        The last column holds bit `fraction` + `width`. If it lies above the result's highest limb,
+        only its low bits are needed; else the highest limb has room for the sign and for carries
+        that have not moved.
         """
-        top, count = (self.fraction + x.width) // DIGIT, len(x.limbs)
+        top, count = (self.fraction + x.width) // LIMB_BITS, len(x.limbs)
         start = self._start(first, top)
         start[self._lowest] += 1 << (self._drop - 1)
-        columns = Columns(self.multiply_add, first, top, start, exact=first == _EXACT)
+        columns = Columns(self.multiply_add, first, top, start, exact=first == _EXACT_COLUMN)
         u, v = self.factors(b, x), self.factors(b, y)
         if x is not y:
             self._take_signs(b, columns, x, y)
@@ -196,7 +204,7 @@ class Products(Carries):
                 for j in range(count):
                     columns.add(b, u[i], v[j], i + j, signed=count - 1 in (i, j))
             return columns.total(b)
-        mixed = Columns(self.multiply_add, first, top, exact=first == _EXACT)
+        mixed = Columns(self.multiply_add, first, top, exact=first == _EXACT_COLUMN)
         self._take_signs(b, mixed, x, x)
         for i in range(count):
             for j in range(i + 1, count):
@@ -209,18 +217,18 @@ class Products(Carries):
         return columns.total(b)
 
     def _start(self, first: int, top: int) -> dict[int, int]:
-        """Return numbers to add to columns so that all but the highest are not negative; their
+        """Return numbers to add to the columns, so that all but the highest are not negative; their
         sum is 0."""
-        above = 0 if vectors.SHIFTS_SIGNS else _ABOVE
+        above = 0 if vectors.SHIFTS_SIGNS else _COLUMN_BIAS
         start = dict.fromkeys(range(first, top + 1), 0)
         for c in range(first, top):
             start[c] += above
-            start[c + 1] -= above >> DIGIT
+            start[c + 1] -= above >> LIMB_BITS
         return start
 
     def _take_signs(self, b: ir.IRBuilder, columns: Columns, x: LaneNumber, y: LaneNumber) -> None:
-        """Subtract y, as many columns higher as x has limbs, where x is negative and its factors
-        are unsigned."""
+        """Subtract y·2^(52 n), n the number of limbs of x, in the lanes where x is negative; do
+        nothing if factors have signs."""
         if self.multiply_add.signed:
             return
         for j, limb in enumerate(self.settle(b, y)):
@@ -230,20 +238,20 @@ class Products(Carries):
                 total.vector = b.select(self.negative(b, x), reduced, total.vector)
 
     def _round(self, b: ir.IRBuilder, columns: Mapping[int, Value], width: int) -> list[Value]:
-        """Return the result's limbs, from the columns beginning with the first known one."""
+        """Return the limbs of the result, from the kept columns."""
         down, drop = vectors.down_positive, self._drop
         propagated, count = dict(columns), count_of(width)
         for c in range(min(columns), self._lowest):
-            propagated[c + 1] = b.add(propagated[c + 1], down(b, propagated[c], DIGIT))
+            propagated[c + 1] = b.add(propagated[c + 1], down(b, propagated[c], LIMB_BITS))
         kept_columns = [propagated[c] for c in range(self._lowest, max(columns) + 1)]
         limbs = [
-            self.multiply_add.add_shifted(b, down(b, low, drop), above, DIGIT - drop)
+            self.multiply_add.add_shifted(b, down(b, low, drop), above, LIMB_BITS - drop)
             for low, above in pairwise(kept_columns)
         ][: count - 1]
-        if len(kept_columns) > count:  # what lies above is multiples of 2^64 of the highest limb
+        if len(kept_columns) > count:  # its higher bits are shifted out of the word
             high = down(b, kept_columns[count - 1], drop)
-            limbs.append(b.add(high, vectors.up(b, kept_columns[count], DIGIT - drop)))
-        else:  # of the highest column 52 bits count, the highest of them the sign
-            high = vectors.up(b, kept_columns[-1], 64 - DIGIT)
-            limbs.append(vectors.down(b, high, 64 - DIGIT + drop))
+            limbs.append(b.add(high, vectors.up(b, kept_columns[count], LIMB_BITS - drop)))
+        else:  # the low 52 bits of the highest column count, the highest of these as the sign
+            high = vectors.up(b, kept_columns[-1], 64 - LIMB_BITS)
+            limbs.append(vectors.down(b, high, 64 - LIMB_BITS + drop))
         return limbs

@@ -1,11 +1,11 @@
 """Balls by Arb (python-flint): every number is a midpoint with a radius that holds the true value.
 
-A kernel's values so are rigorous enclosures of those of exact arithmetic at the exact inputs, for
-the rounding of each operation goes into the radius. Balls forget how errors belong together:
-along an orbit they widen like e^(cT), and each halving is a bit that more precision gives back.
+A kernel's values therefore enclose those of exact arithmetic at the exact inputs: the rounding of
+each operation goes into the radius. Balls do not know that errors are correlated: along an orbit
+they widen like e^(cT). Each further bit of precision halves the radii.
 
-Not promised: that a ball is as narrow as it could be. What is undefined somewhere in a ball (the
-logarithm of one that touches 0) is NaN, and stays NaN in every later operation.
+A ball need not be as narrow as possible. If an operation is undefined somewhere in a ball (as the
+logarithm of a ball that touches 0), the result is NaN, and so is every later result.
 """
 
 from fractions import Fraction
@@ -42,8 +42,8 @@ def at_bits(bits: int) -> Arithmetic:
             return rational_ball(value)
 
     def in_range(x: Any) -> bool:
-        """Return True if x is in range, and not so wide that nothing is known of it: then more
-        precision helps."""
+        """Return True if x is in range, and has a digit or a radius below 1. A wider ball says
+        nothing of the orbit: more precision helps then."""
         return bool(abs(x) < escape and (x.rel_accuracy_bits() > 0 or x.rad() < 1))
 
     escape = flint.arb(2) ** ESCAPE_BITS
@@ -65,8 +65,8 @@ def at_bits(bits: int) -> Arithmetic:
             "maximum": flint.arb.max,
         },
         compile=interpret,
-        # NaN stays NaN, and exponents have no end, so that looking at the end of a chunk is enough;
-        # in a chunk so short even cubing at every step makes no exponent that takes time.
+        # NaN stays NaN, and exponents have no limit: a look at the end of a chunk is enough. The
+        # chunk is so short that even a cube at every step makes no exponent that takes long.
         guard=None,
         pipelined=False,
         chunk=1 << 9,

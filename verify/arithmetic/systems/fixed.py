@@ -1,9 +1,9 @@
 """Fixed-point numbers of 128, 156, 192, … bits, compiled by LLVM: for bounded orbits, and fast.
 
 A number has 16 integer bits, the sign among them, and all others after the point: its precision is
-absolute. Nothing overflows unseen: before a run, interval arithmetic finds limits of p and q within
-which no operation of a step can leave the format (`verify.kernels.stepping`), and the loop ends
-where the orbit leaves them, or a function has no value.
+absolute. No overflow goes unnoticed: before a run, interval arithmetic finds limits of p and q
+within which no operation of a step can leave the format (`verify.kernels.stepping`); the loop ends
+when the orbit leaves them, or a function has no value.
 """
 
 import math
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
 
 NAME = "fixed"
-_THREE_LIMBS = 3 * 52  # bits; in lanes as fast as 128, for one orbit as 192
+_THREE_LIMB_BITS = 3 * 52  # this format is in lanes as fast as 128 bits, for one orbit as 192
 
 
 def make(digits: int) -> Arithmetic:
@@ -32,7 +32,7 @@ def make(digits: int) -> Arithmetic:
     # Half a unit, 2^(−bits − 1), is at most 10^−digits.
     least = size_of(math.ceil(digits * math.log2(10)) - 1)
     width = max(128, WORD * words_of(least))
-    return at_bits((_THREE_LIMBS if 128 < least <= _THREE_LIMBS else width) - INTEGER_BITS)
+    return at_bits((_THREE_LIMB_BITS if 128 < least <= _THREE_LIMB_BITS else width) - INTEGER_BITS)
 
 
 def at_bits(bits: int) -> Arithmetic:
@@ -51,7 +51,9 @@ def at_bits(bits: int) -> Arithmetic:
     # Fixed point: the error of an operation does not depend on the number's size, except through
     # the functions' own units.
     def rounding(kind: str, degree: int, size: "Ball") -> "Ball":
-        if kind == "root":  # of another degree it is a number; there is no function for it
+        # Fixed point has no roots but the square root: others occur only of constants, and are
+        # then constants, rounded like π.
+        if kind == "root":
             kind = "sqrt" if degree == 2 else "pi"
         return type(size)(2) ** -bits * _units()[kind](size)
 
@@ -80,7 +82,7 @@ NUMBER_SYSTEM = NumberSystem(
     "fixed-point numbers of 128 bits and more, compiled for this one map",
     cost=40,
     compiles=True,
-    most_digits=1000,  # compilation takes ever longer, too
+    most_digits=1000,  # the time of compilation grows, too
     automatic=True,
     in_lanes=True,
 )
@@ -93,7 +95,8 @@ def functions() -> tuple[str, ...]:
 
 @cache
 def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
-    """Return each operation's error in units of the last place, by the size of its result.
+    """Return for each operation the function from the size of its result to a bound on its error,
+    in units of the last place.
 
     See `verify.arithmetic.wide.table_series`.
     """
@@ -121,7 +124,8 @@ def _walk(
     state: Sequence[Any],
     later_steps: int,
 ) -> Course[Any]:
-    """Walk in one call, and in lanes if others walk in the same kernel."""
+    """Make the steps of `Arithmetic.states` in one request; with other orbits' requests to the
+    same kernel they are made in lanes."""
     from verify.arithmetic.compiled.engine import Walk
 
     try:

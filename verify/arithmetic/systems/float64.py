@@ -1,7 +1,7 @@
-"""IEEE double precision, compiled by LLVM where it repays: the arithmetic that is under test.
+"""IEEE double precision, compiled by LLVM if a run is long enough: the arithmetic under test.
 
-No fast-math: operations are rounded one by one, as the source writes them. Division by zero and
-overflow give infinities and NaN, which the run finds.
+There is no fast-math: each operation of the source is rounded by itself. Division by zero and
+overflow give infinities and NaN, which the run detects.
 """
 
 import math
@@ -17,8 +17,10 @@ from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpret
 from verify.functions import by_name, in_rings
 
 NAME = "float64"
-_REPAID = 50_000  # steps: Python takes some 2 µs each, and llvmlite's import and compilation 0.1 s
-_REPAID_SOLVING = 10_000  # steps with a loop in them, which solves equations: 4 … 25 µs
+# From so many steps on a kernel is compiled: Python takes some 2 µs for a step, or 4 … 25 µs if a
+# loop in it solves equations; the import of llvmlite and the compilation take 0.1 s.
+_BREAK_EVEN_STEPS = 50_000
+_BREAK_EVEN_STEPS_SOLVING = 10_000
 
 
 def make(digits: int) -> Arithmetic:
@@ -44,9 +46,9 @@ def make(digits: int) -> Arithmetic:
 
 
 def compiled_at_once(*, anew: bool = False) -> Arithmetic:
-    """Return the same number system, each kernel compiled at its first call: for timing it.
+    """Return the same arithmetic with kernels that are compiled at once: for timing them.
 
-    `anew`: not from what is kept on disk, if LLVM compiles it.
+    `anew`: compile them even if their code is cached on disk.
     """
     return replace(make(17), compile=partial(_compile_now, anew=anew))
 
@@ -61,7 +63,7 @@ NUMBER_SYSTEM = NumberSystem(
 
 
 def nearest_double(value: Fraction) -> float:
-    """Return the nearest float64; infinite beyond their range, where a run then ends."""
+    """Return the nearest float64; an infinity beyond the range of float64, which ends a run."""
     try:
         return float(value)
     except OverflowError:
@@ -69,20 +71,21 @@ def nearest_double(value: Fraction) -> float:
 
 
 def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return the kernel, compiled once it has so many steps to do that it repays.
+    """Return the kernel; it is compiled once it has made so many steps that compilation repays.
 
-    Until then Python does them, with the same bits, as its operators and functions are those of
-    IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
-    give infinities and NaN; what is refused even so is left to the compiled one.
+    Until then Python makes the steps, with the same bits: its operators are those of IEEE, and its
+    functions those of the same C library. If Python raises, as for 1/0, the steps are made again
+    with functions that return infinities and NaN; if these raise too, by the compiled kernel.
     """
     in_python = _in_python(source, name, namespace)
     compiled: Callable[..., Any] | None = None
-    repaid = _REPAID if source.count("for ") < 2 else _REPAID_SOLVING
+    repaid = _BREAK_EVEN_STEPS if source.count("for ") < 2 else _BREAK_EVEN_STEPS_SOLVING
     done = 0
 
     def kernel(first: Any, *arguments: Any) -> Any:
         nonlocal compiled, done
-        steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
+        # The first argument of a kernel is the number of steps; other functions count as one step.
+        steps = first if isinstance(first, int) else 1
         if compiled is None and done + steps <= repaid:
             with suppress(ArithmeticError, ValueError):
                 result = in_python(first, *arguments)
@@ -96,18 +99,19 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
 
 
 def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return the kernel in Python; what that refuses, as 1/0, is done again with functions that
-    give infinities and NaN, as IEEE and a compiled one do.
+    """Return the kernel in Python. If Python raises, as for 1/0, the call is made again with
+    functions that return infinities and NaN, as IEEE and the compiled kernel do.
 
-    A compiled kernel stays in memory for good, and orbits that escape are no rarity.
+    It is not compiled for this: compiled code stays in memory until the process ends, and many
+    orbits escape.
     """
     plain = interpret(source, name, namespace)
 
     @cache
     def permissive() -> Callable[..., Any]:
         functions = {f: _ieee(f) for f in by_name() if f in namespace}
-        divided = _DIVISION.sub(r"over(\1, \2)", source)
-        return interpret(divided, name, {**namespace, **functions, **_OVER})
+        ieee_source = _DIVISION.sub(r"over(\1, \2)", source)
+        return interpret(ieee_source, name, {**namespace, **functions, **_OVER})
 
     def kernel(*arguments: Any) -> Any:
         try:
@@ -121,19 +125,18 @@ def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 def _compile_now(
     source: str, name: str, namespace: Mapping[str, Any], *, anew: bool = False
 ) -> Callable[..., Any]:
-    """Compile by LLVM if there is a loop over steps; otherwise a call takes longer than in
-    Python."""
+    """Compile by LLVM if the source has a loop over steps; without one, a call of native code takes
+    longer than Python."""
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point
 
-        with suppress(NotImplementedError):  # a function that is not in its language
+        with suppress(NotImplementedError):  # the source is not in the compiler's language
             return one_point(source, namespace, anew=anew)
     return _in_python(source, name, namespace)
 
 
 def _ieee(name: str) -> Callable[[float], float]:
-    """Return the function; where Python's own refuses, with the infinity or NaN that IEEE has
-    there."""
+    """Return the function with the infinity or NaN of IEEE where Python's function raises."""
     function: Callable[[float], float] = getattr(math, name)
     pair = by_name()[name].pair
     odd = pair is not None and name == pair.odd
@@ -144,7 +147,7 @@ def _ieee(name: str) -> Callable[[float], float]:
         except OverflowError:
             return math.copysign(math.inf, x) if odd else math.inf
         except ValueError:
-            return math.nan if x else -math.inf  # at 0 only log is refused
+            return math.nan if x else -math.inf  # at 0 only log raises
 
     return call
 
@@ -160,7 +163,7 @@ _OVER = {"over": _over}
 
 
 def _root(x: float, n: int) -> float:
-    # 1/n is rounded, which x ** (1/n) magnifies by log x; one Newton step takes that away.
+    # 1/n is rounded, which x ** (1/n) magnifies by log x; one Newton step removes that error.
     if x < 0.0:
         return math.nan  # Python's power would be complex
     root: float = x ** (1.0 / n)

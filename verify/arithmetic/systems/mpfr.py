@@ -1,12 +1,12 @@
-"""MPFR by gmpy2: mpmath's numbers and bits, several times as fast.
+"""MPFR by gmpy2: floating point of any precision, several times as fast as mpmath.
 
-Every operation and function is rounded to nearest, so that on + − × ÷ it agrees with mpmath bit
-for bit at equal precision; functions may differ there in the last bit, since not all of mpmath's
-are correctly rounded. Exponents end near ±2^62.
+Every operation and function is rounded to nearest. So at equal precision + − × ÷ agree with mpmath
+bit for bit; functions may differ in the last bit, since not all of mpmath's are correctly rounded.
+Exponents end near ±2^62.
 
-What is undefined and what leaves that range is an error, raised when the context is left: an
-infinity may have turned into a number again by then, but MPFR's flags remember it. (gmpy2's own
-traps look at the flags after each operation, which makes a kernel slower by a fifth.)
+An undefined operation, or a result outside that range, raises an error when the context is left.
+An infinity may have become a number again by then, but MPFR's flags record it. (gmpy2's traps check
+the flags after each operation, which makes a kernel slower by a fifth.)
 """
 
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from typing import Any
 
 from verify.arithmetic.number_system import (
     ESCAPE_BITS,
-    MOST_EXPONENT,
+    MAX_EXPONENT,
     Arithmetic,
     NumberSystem,
     bits_for,
@@ -40,7 +40,7 @@ def at_bits(bits: int) -> Arithmetic:
 
     from verify.arithmetic.exact import fraction
 
-    # A new gmpy2.context for each use: one that is entered twice forgets what it is to restore.
+    # A new gmpy2.context for each use: one that is entered twice forgets which to restore.
     new_context = partial(
         gmpy2.context,
         precision=bits,
@@ -52,7 +52,7 @@ def at_bits(bits: int) -> Arithmetic:
     rounding_context = new_context()
 
     def number(value: Fraction) -> Any:
-        # Rounded once; own.div of gmpy2 2.2 rounds to the bits of the caller's context.
+        # Rounded once. context.div of gmpy2 2.2 would round to the bits of the caller's context.
         return gmpy2.mpfr(gmpy2.mpq(value), bits, rounding_context)
 
     with new_context():
@@ -62,13 +62,13 @@ def at_bits(bits: int) -> Arithmetic:
         bits=bits,
         number=number,
         exact=fraction,
-        finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MOST_EXPONENT,
+        finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MAX_EXPONENT,
         context=partial(_check_flags, new_context),
         functions={
             **{f: getattr(gmpy2, f) for f in (*in_rings(), "sin_cos", "sqrt")},
             "root": _root,
             "approx": float,
-            "wide": gmpy2.mpfr,  # the exact value of a float64: 53 bits at least are there
+            "wide": gmpy2.mpfr,  # exact for a float64: there are at least 53 bits
             "pi": pi,
             "escape": number(Fraction(2**ESCAPE_BITS)),
             "minus_escape": number(Fraction(-(2**ESCAPE_BITS))),
@@ -92,7 +92,7 @@ def _check_flags(new_context: Callable[[], Any]) -> Iterator[None]:
 def _root(x: Any, n: int) -> Any:
     from gmpy2 import root
 
-    if x < 0:  # MPFR takes the real root if n is odd; here a root is of what is not negative
+    if x < 0:  # MPFR would return the real root for an odd n; here roots of x < 0 are undefined
         raise ValueError("the root of a negative number")
     return root(x, n)
 

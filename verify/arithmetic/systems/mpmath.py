@@ -11,7 +11,7 @@ from typing import Any
 
 from verify.arithmetic.number_system import (
     ESCAPE_BITS,
-    MOST_EXPONENT,
+    MAX_EXPONENT,
     Arithmetic,
     NumberSystem,
     bits_for,
@@ -29,7 +29,8 @@ def make(digits: int) -> Arithmetic:
 
 
 def at_bits(bits: int) -> Arithmetic:
-    # A context takes 1 ms, and is no other thread's: mpmath's functions change it for a while.
+    # A new context takes 1 ms, so it is cached, but for one thread: mpmath's functions change it
+    # while they run.
     return _arithmetic(bits, get_ident())
 
 
@@ -64,16 +65,15 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
         bits=bits,
         number=number,
         exact=of_mpf,
-        finite=lambda x: bool(
-            context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MOST_EXPONENT
-        ),
-        context=gmpy2.context,  # mpmath's roots use gmpy2, and would raise what its user traps
+        finite=lambda x: bool(context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MAX_EXPONENT),
+        # mpmath's roots use gmpy2: a fresh context, so that a user's traps do not raise in them.
+        context=gmpy2.context,
         functions={
             **{f: getattr(context, f) for f in everywhere},
             **{f: real(getattr(context, f)) for f in (*inside, "root", "sqrt")},
             "cos_sin": context.cos_sin,
             "approx": float,
-            "wide": context.mpf,  # the exact value of a float64: 53 bits at least are there
+            "wide": context.mpf,  # exact for a float64: there are at least 53 bits
             "pi": +context.pi,
         },
         compile=interpret,
@@ -82,7 +82,7 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
         guard=f"{{x}}._mpf_[2] + {{x}}._mpf_[3] <= {ESCAPE_BITS}",
         pipelined=False,
         chunk=1 << 12,
-        rounding=relative(bits, functions=8),  # the conformance suite holds them to 4 units
+        rounding=relative(bits, functions=8),  # twice the 4 units that the conformance suite allows
     )
 
 

@@ -1,12 +1,12 @@
 """Products of wide integers from 64-bit limbs, as LLVM IR; only the limbs that are kept are formed.
 
-LLVM has integers of any width, and adds and shifts them well. Its product of two of them forms
-every partial product twice over (once for the sign), so products are written here.
+LLVM has integers of any width, and adds and shifts them well. But it forms every partial product of
+two of them twice (once for the sign), so products are written here.
 
 A product xᵢ yⱼ of limbs stands in column i + j. If the low columns are not kept, the lowest kept
-column still needs the carry from below: of the column beneath it only the high halves are added.
-What is left out is less than 2·`count` units of the lowest kept column, where `count` is the number
-of limbs; each routine says what that means for its result.
+column still needs the carry from below: the high halves of the column beneath it are added, and
+nothing else. The omitted part is less than 2·`count` units of the lowest kept column, where `count`
+is the number of limbs; each routine says what that means for its result.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from typing import NamedTuple, TypeAlias
 
 from llvmlite import ir
 
-from verify.arithmetic.wide.size import MORE_OF_SUMS, WORD, size_of, width_of
+from verify.arithmetic.wide.size import EXTRA_SUM_BITS, WORD, size_of, width_of
 
 I64 = ir.IntType(64)
 I128 = ir.IntType(128)
@@ -31,8 +31,8 @@ def constant(value: int, width: int) -> Value:
 
 
 def words(values: Sequence[int]) -> ir.Constant:
-    """Return a table of 64-bit words, written once: of an `ir.Constant` each module makes and
-    writes every word again."""
+    """Return a table of 64-bit words as one text: an `ir.Constant` would make and write every word
+    again in each module."""
     text = ", ".join(f"i64 {value}" for value in values)
     return ir.FormattedConstant(ir.ArrayType(I64, len(values)), f"[{text}]")
 
@@ -53,7 +53,7 @@ def shifted_up(b: ir.IRBuilder, x: Value, shift: int) -> Value:
 
 
 def resize(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> Value:
-    """Return x in so many bits: extended, or cut to its low ones."""
+    """Return x in `width` bits: extended, or cut to its low bits."""
     if x.type.width == width:
         return x
     if x.type.width > width:
@@ -61,18 +61,19 @@ def resize(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> Va
     return (b.sext if signed else b.zext)(x, bits(width))
 
 
-def more_before_point(x: Value, fraction: int) -> int:
-    """Return the bits that x has before the point beyond a number's: those of a sum, or none."""
-    return MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
+def extra_integer_bits(x: Value, fraction: int) -> int:
+    """Return the number of bits that x has before the point beyond those of a number: 64 for a sum,
+    else 0."""
+    return EXTRA_SUM_BITS if x.type.width > width_of(fraction) else 0
 
 
 def leading(b: ir.IRBuilder, x: Value, fraction: int, beneath: int = 0) -> Value:
-    """Return the leading 64 bits of a number with so many fraction bits, the sign among them, 48 of
-    them fraction bits; or so many words beneath these.
+    """Return the leading 64 bits of a number with `fraction` fraction bits; or, with `beneath`, the
+    64 bits that stand so many words below these.
 
-    Of a sum the leading 64 bits are whole.
+    The leading bits of a number have the sign and 48 fraction bits; those of a sum are an integer.
     """
-    size = size_of(fraction) + more_before_point(x, fraction)
+    size = size_of(fraction) + extra_integer_bits(x, fraction)
     first = size - WORD * (beneath + 1)
     return b.trunc(b.ashr(x, ir.Constant(x.type, first)) if first else x, I64)
 
@@ -86,9 +87,9 @@ def _columns(
     b: ir.IRBuilder, x: Value, y: Value, lowest: int, *, signed: bool, start: int = 0
 ) -> Value:
     """Return Σ xᵢ yⱼ 2^(64 (i + j − lowest)) over the columns ≥ lowest, plus `start` and the high
-    halves of the column below: 2·count − lowest limbs.
+    halves of the column below, in 2·count − lowest limbs.
 
-    Row by row, as one multiplies by hand. `lowest` is `count` at most.
+    The rows are added one by one, as in long multiplication by hand. `lowest` is at most `count`.
     """
     count = x.type.width // WORD
     xs, ys = _limbs(b, x), _limbs(b, y)
@@ -96,13 +97,13 @@ def _columns(
     for i in range(count):
         row = {i + j: (xs[i], ys[j]) for j in range(max(0, lowest - 1 - i), count)}
         total = _with_row(b, total, row, lowest, i + count)
-    for first, second in [(xs, ys), (ys, xs)] if signed else []:
-        total = _subtract_sign(b, total, first[-1], second, lowest)
+    for one_factor, other in [(xs, ys), (ys, xs)] if signed else []:
+        total = _subtract_sign(b, total, one_factor[-1], other, lowest)
     return total
 
 
 def _square_columns(b: ir.IRBuilder, x: Value, lowest: int, *, start: int, signed: bool) -> Value:
-    """Return `_columns` of x·x, each mixed product formed once and doubled."""
+    """Return `_columns` of x and x; each mixed product is formed once and doubled."""
     count = x.type.width // WORD
     xs = _limbs(b, x)
     mixed = constant(0, WORD)
@@ -128,29 +129,29 @@ def _with_row(
     highest: int,
     start: int = 0,
 ) -> Value:
-    """Return total + start + Σ u v 2^(64 (c − lowest)) over a row's products, c their columns, in
-    the columns up to `highest`; of one in the column below the lowest the high half.
+    """Return total + start + Σ u v 2^(64 (c − lowest)) over the products of a row, c their columns,
+    in the columns up to `highest`; of a product in the column below `lowest` only the high half.
 
-    The low halves are one number and the high ones another: each takes a chain of carries, which
-    makes four instructions a product.
+    The low halves are added as one number, the high halves as another: two chains of carries, and
+    four instructions for each product.
     """
     low, high = {}, {}
     for c, factors in row.items():
         # LLVM compiles a 128-bit product of two zero-extended words to one instruction; a product
         # of wider integers it would form twice over.
-        whole = b.mul(*(b.zext(v, I128) for v in factors))
-        low[c], high[c + 1] = b.trunc(whole, I64), limb(b, whole, 1)
+        double_word = b.mul(*(b.zext(v, I128) for v in factors))
+        low[c], high[c + 1] = b.trunc(double_word, I64), limb(b, double_word, 1)
     low.pop(lowest - 1, None)
     width = WORD * (highest - lowest + 1)
     total = resize(b, total, width)
     if row:
-        first, second = (_place_words(b, halves, lowest, width) for halves in (low, high))
-        total = b.add(total, b.add(first, second))
+        low_sum, high_sum = (_place_words(b, halves, lowest, width) for halves in (low, high))
+        total = b.add(total, b.add(low_sum, high_sum))
     return b.add(total, constant(start, width)) if start else total
 
 
 def _place_words(b: ir.IRBuilder, words: Mapping[int, Value], lowest: int, width: int) -> Value:
-    """Return Σ word·2^(64 (c − lowest)) in so many bits."""
+    """Return Σ word·2^(64 (c − lowest)) in `width` bits, c the words' columns."""
     total = constant(0, width)
     for c, word in words.items():
         total = b.or_(total, shifted_up(b, resize(b, word, width), WORD * (c - lowest)))
@@ -160,8 +161,8 @@ def _place_words(b: ir.IRBuilder, words: Mapping[int, Value], lowest: int, width
 def _subtract_sign(
     b: ir.IRBuilder, total: Value, sign: Value, ys: Sequence[Value], lowest: int
 ) -> Value:
-    """Return total − Y 2^(64 (count − lowest)) if the highest limb `sign` of x is negative:
-    its word without a sign is too large by 2^64, and Y is multiplied by it."""
+    """Return total − Y 2^(64 (count − lowest)) if the highest limb `sign` of x is negative, else
+    total: a negative highest limb was multiplied without its sign, which is 2^64 too large."""
     negative = b.ashr(sign, constant(WORD - 1, WORD))
     words = {len(ys) + i: b.and_(y, negative) for i, y in enumerate(ys)}
     return b.sub(total, _place_words(b, words, lowest, total.type.width))
@@ -172,8 +173,11 @@ def join(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
 
 
 class NearProduct(NamedTuple):
-    """A product without its lowest columns, and whether it may be rounded otherwise than the whole
-    one; None: nothing is left out."""
+    """A product without its lowest columns.
+
+    `unsure`: the condition that it may be rounded otherwise than the product from all columns;
+    None if nothing is left out.
+    """
 
     value: Value
     unsure: Value | None
@@ -182,9 +186,10 @@ class NearProduct(NamedTuple):
 def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> NearProduct:
     """Return x y / 2^fraction rounded to the nearest, halves upwards.
 
-    Signed, `fraction` in the second highest limb's column or above. The columns below it are left
-    out, which is less than 2·count units of the lowest that is kept: it matters if these units
-    carry into the result, in one of 2^44 products, or of 700 if few bits lie below.
+    x and y are signed, and `fraction` is at least 64·(count − 2). The columns below that of bit
+    `fraction` are left out, which is less than 2·count units of the lowest kept column. It matters
+    if these units carry into the result: in one of 2^44 products, or in one of 700 if few bits lie
+    below.
     """
     width = x.type.width
     count, lowest = width // 64, fraction // 64
@@ -195,7 +200,7 @@ def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> NearProduct:
     else:
         total = _columns(b, x, y, lowest, signed=True, start=half)
     rounded = resize(b, shifted_down(b, total, drop), width)
-    if count < 3:  # of the column below, a single product's low half is left out
+    if count < 3:  # only the low half of a single product is left out: it cannot carry
         return NearProduct(rounded, None)
     dropped = b.and_(limb(b, total, 0), constant((1 << drop) - 1, 64))
     unsure = b.icmp_unsigned(">=", dropped, constant((1 << drop) - 2 * count, 64))
@@ -203,15 +208,15 @@ def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> NearProduct:
 
 
 def whole_product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> Value:
-    """Return the same, from all columns."""
+    """Return x y / 2^fraction rounded to the nearest, halves upwards, from all columns."""
     total = _columns(b, x, y, 1, signed=True)
     total = b.add(total, constant(1 << (fraction - 65), total.type.width))
     return resize(b, shifted_down(b, total, fraction - 64), x.type.width)
 
 
 def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
-    """Return the high half of x y: for fractions their product, too small by less than 2·count
-    units."""
+    """Return the high half of x y, too small by less than 2·count units: the product, if x and y
+    are fractions."""
     width = x.type.width
     count = width // 64
     if count == 1:
@@ -223,6 +228,6 @@ def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -
 
 
 def times_word(b: ir.IRBuilder, x: Value, word: Value) -> Value:
-    """Return x·word / 2^64 rounded down, neither with a sign."""
+    """Return x·word / 2^64 rounded down, for x and word without signs."""
     row = {i: (limb_, word) for i, limb_ in enumerate(_limbs(b, x))}
     return _with_row(b, constant(0, WORD), row, 1, len(row))

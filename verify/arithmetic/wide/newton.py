@@ -1,8 +1,8 @@
-"""log, sqrt and 1/x of fixed-point numbers as LLVM functions, and functions made of others.
+"""log, sqrt and 1/x of fixed-point numbers as LLVM functions, and functions composed of others.
 
-log: from float64's logarithm ℓ, as ℓ + log(1 + δ) with δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x:
-Newton's iteration from float64. A function that is made of others is computed in finer numbers,
-with 64 bits more after the point: what is lost in those is far below the last place of the result,
+log x is ℓ + log(1 + δ), with the logarithm ℓ of float64 and δ = x e^−ℓ − 1 below 2^−44. sqrt and
+1/x are Newton's iteration from the value of float64. A composed function is computed in finer
+numbers, with 64 bits more after the point: their errors are far below the last place of the result,
 which is rounded once.
 """
 
@@ -20,18 +20,20 @@ from verify.arithmetic.wide.size import INTEGER_BITS, WORD, size_of, width_of
 from verify.arithmetic.wide.table_series import Functions, arb_integer
 from verify.functions import by_name
 
-MORE = WORD  # bits after the point that the finer numbers have
+FINER_BITS = WORD  # additional bits after the point of the finer numbers
 DOUBLE = ir.DoubleType()
-LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
-LEAST_DIVISOR = 14
+# sqrt is defined for x ≥ 2^−26, and 1/x for |x| ≥ 2^−14: their slopes are in range there.
+LEAST_ROOT_PLACES = 26
+LEAST_DIVISOR_PLACES = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """Return x / 2^fraction as float64, from its leading 128 bits: within 2^−52 |x| + 2^−100.
+    """Return the number x as float64, from its leading 128 bits.
 
-    The second part is 2^−36 for a sum, whose bits stand for 2^64 times as much.
+    The error is below 2^−52 |x| + 2^−100; for a sum, whose leading bits stand for 2^64 times as
+    much, below 2^−52 |x| + 2^−36.
     """
-    more = limbs.more_before_point(x, fraction)
+    more = limbs.extra_integer_bits(x, fraction)
     high = b.sitofp(limbs.leading(b, x, fraction), DOUBLE)
     low = b.uitofp(limbs.leading(b, x, fraction, 1), DOUBLE)
     unit, below = (ir.Constant(DOUBLE, x) for x in units_of_words(more))
@@ -39,32 +41,35 @@ def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
 
 
 def units_of_words(more: int) -> tuple[float, float]:
-    """Return the units of a number's leading two words, with so many more bits before the point."""
+    """Return the units of a number's two leading words, for a number with `more` additional bits
+    before the point."""
     return 2.0 ** (INTEGER_BITS + more - 64), 2.0 ** (INTEGER_BITS + more - 128)
 
 
 def from_double(b: ir.IRBuilder, value: Value, fraction: int) -> Value:
-    """Return the float64 as a number; exact but for bits below 2^−fraction, which are cut.
+    """Return a float64 as a number; bits below 2^−fraction are cut.
 
     |value| must be below 2^15.
     """
     floor = b.module.declare_intrinsic("llvm.floor", [DOUBLE])
     absolute = b.module.declare_intrinsic("llvm.fabs", [DOUBLE])
     width = width_of(fraction)
-    # The size first: what a small negative number is above −1 would be no float64.
+    # The size is converted, and then its sign applied: by how much a small negative number is above
+    # −1 would not be a float64.
     rest = b.fmul(b.call(absolute, [value]), ir.Constant(DOUBLE, 2.0 ** (fraction - width + 64)))
     total = constant(0, width)
     for i in reversed(range(width // 64)):
-        whole = b.call(floor, [rest])
-        part = resize(b, b.fptoui(whole, I64), width)
+        integer = b.call(floor, [rest])
+        part = resize(b, b.fptoui(integer, I64), width)
         total = b.or_(total, limbs.shifted_up(b, part, 64 * i))
-        rest = b.fmul(b.fsub(rest, whole), ir.Constant(DOUBLE, 2.0**64))
+        rest = b.fmul(b.fsub(rest, integer), ir.Constant(DOUBLE, 2.0**64))
     negative = b.fcmp_ordered("<", value, ir.Constant(DOUBLE, 0.0))
     return b.select(negative, b.neg(total), total)
 
 
 def iterations(fraction: int, *, quadratic: bool) -> int:
-    """Return the steps from 2^−48 to 16 bits below the last; each doubles the bits, or adds 48."""
+    """Return the number of iterations from an error of 2^−48 to one 16 bits below the last bit;
+    each doubles the right bits (`quadratic`), or adds 48."""
     done, steps = 48, 0
     while done < size_of(fraction):
         done = 2 * done if quadratic else done + 48
@@ -74,7 +79,7 @@ def iterations(fraction: int, *, quadratic: bool) -> int:
 
 @dataclass
 class FinerNumber:
-    """A finer number, with + and * rounded as in its format."""
+    """A number of the finer format, with the operators + and *."""
 
     numbers: "FinerNumbers"
     value: Value
@@ -88,9 +93,10 @@ class FinerNumber:
 
 
 class FinerNumbers:
-    """Finer numbers in which a function is composed: see `verify.functions.function.FixedPoint`.
+    """The finer numbers in which a function is composed (see
+    `verify.functions.function.FixedPoint`).
 
-    `valid`: whether every function that was applied has a value.
+    `valid`: the condition that every function applied so far has a value.
     """
 
     def __init__(self, b: ir.IRBuilder, functions: Functions) -> None:
@@ -108,14 +114,14 @@ class FinerNumbers:
         return FinerNumber(self, self.b.extract_value(packed, 0))
 
     def absolute(self, x: FinerNumber) -> FinerNumber:
-        """Return |x|; the least number has no absolute value."""
+        """Return |x|; the least number has no absolute value, and makes `valid` false."""
         size, functions = self.signed(x, x), self.functions
-        top = constant(1 << functions.fraction + INTEGER_BITS - 1, functions.width)
-        self.valid = self.b.and_(self.valid, self.b.icmp_unsigned("<", size.value, top))
+        limit = constant(1 << functions.fraction + INTEGER_BITS - 1, functions.width)
+        self.valid = self.b.and_(self.valid, self.b.icmp_unsigned("<", size.value, limit))
         return size
 
     def signed(self, size: FinerNumber, like: FinerNumber) -> FinerNumber:
-        """Return the number with its sign changed if `like` is negative."""
+        """Return −size if `like` is negative, else size."""
         negative = self.b.icmp_signed("<", like.value, constant(0, self.functions.width))
         return self.choose(negative, FinerNumber(self, self.b.neg(size.value)), size)
 
@@ -129,7 +135,8 @@ class FinerNumbers:
 
 
 class MoreFunctions(Functions):
-    """The functions of `Functions`, those computed by iteration, and those composed of others."""
+    """A writer of all functions in fixed point: those of `Functions`, those computed by iteration,
+    and those composed of others."""
 
     def get(self, name: str) -> ir.Function:
         function = by_name().get(name)
@@ -140,27 +147,27 @@ class MoreFunctions(Functions):
 
     @cached_property
     def _finer(self) -> "MoreFunctions":
-        return MoreFunctions(self.module, self.fraction + MORE, "finer")
+        return MoreFunctions(self.module, self.fraction + FINER_BITS, "finer")
 
     def _compose(
         self, name: str, rule: Callable[[FinerNumbers, FinerNumber], FinerNumber]
     ) -> ir.Function:
-        """Return a function by its rule in finer numbers, rounded to the nearest."""
+        """Return the function that evaluates `rule` in finer numbers and rounds to the nearest."""
         b, x = self._define(name, 1)
         finer, width = FinerNumbers(b, self._finer), self._finer.width
-        widened = limbs.shifted_up(b, resize(b, x, width, signed=True), MORE)
+        widened = limbs.shifted_up(b, resize(b, x, width, signed=True), FINER_BITS)
         total = b.add(
-            rule(finer, FinerNumber(finer, widened)).value, constant(1 << MORE - 1, width)
+            rule(finer, FinerNumber(finer, widened)).value, constant(1 << FINER_BITS - 1, width)
         )
-        value = resize(b, b.ashr(total, constant(MORE, width)), self.width)
+        value = resize(b, b.ashr(total, constant(FINER_BITS, width)), self.width)
         return self._result(b, finer.valid, value)
 
     def _inverse(self) -> ir.Function:
         b, x = self._define("inverse", 1)
         size = self._copy_sign(b, x, x)
-        valid = b.icmp_unsigned(">=", size, self._power(-LEAST_DIVISOR))
+        valid = b.icmp_unsigned(">=", size, self._power(-LEAST_DIVISOR_PLACES))
         one = ir.Constant(DOUBLE, 1.0)
-        # If x is out of range 1 is divided by, so that no infinity is turned into an integer.
+        # An x out of range is replaced by 1, so that no infinity is converted to an integer.
         guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
         y = from_double(b, guess, self.fraction)
         product = self.products.product
@@ -172,7 +179,7 @@ class MoreFunctions(Functions):
 
     def _sqrt(self) -> ir.Function:
         b, x = self._define("sqrt", 1)
-        valid = b.icmp_signed(">=", x, self._power(-LEAST_ROOT))
+        valid = b.icmp_signed(">=", x, self._power(-LEAST_ROOT_PLACES))
         root = self.module.declare_intrinsic("llvm.sqrt", [DOUBLE])
         one = ir.Constant(DOUBLE, 1.0)
         guess = b.call(root, [b.select(valid, to_double(b, x, self.fraction), one)])
@@ -206,7 +213,7 @@ class MoreFunctions(Functions):
         # δ = m e^−guess − 1 is small: log m = guess + log(1 + δ).
         delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
         total = b.add(b.neg(b.shl(minus, constant(self.spare - 2, width))), self._log1p(b, delta))
-        # The guess may lie on either side of −½; the sum may be large: one limb more.
+        # e·ln 2 may be larger than a fraction can be: the sum has one limb more.
         wide = width + 64
         with working_precision(width + 128):
             two = constant(arb_integer(flint.arb(2).log(), places + 32), wide)
@@ -218,7 +225,7 @@ class MoreFunctions(Functions):
         return self._result(b, valid, resize(b, total, width))
 
     def _log1p(self, b: ir.IRBuilder, delta: Value) -> Value:
-        """Return log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
+        """Return log(1 + δ) by its series, for |δ| < 2^−44; both have W − 2 fraction bits."""
         width, places, high = self.width, self.width - 2, self.products.high
         stretched = limbs.shifted_up(b, delta, 40)
         terms = -(-width // 44)

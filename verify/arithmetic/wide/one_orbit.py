@@ -10,27 +10,30 @@ from llvmlite import ir
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resize
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
-from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, width_of
+from verify.arithmetic.wide.size import EXTRA_SUM_BITS, INTEGER_BITS, width_of
 from verify.functions import in_rings
 
 BOOL = ir.IntType(1)
-# Those of float64 that are written as LLVM's own; others are those of the C library that this
-# process has. LLVM would make `sincos` of its own sin and cos of one number, which in glibc differs
-# from `sin` at 1.6762…, and takes longer.
+# Functions of float64 that are LLVM's intrinsics; the others are calls to the C library of this
+# process. LLVM would merge its sin and cos of one number into a call of `sincos`, which in glibc
+# differs from `sin` at 1.6762…, and takes longer.
 _INTRINSICS = ("exp", "log", "sqrt")
 
 
 class OneOrbit:
-    """See `verify.arithmetic.wide.translator.Target`; a value is LLVM's, and so is its kind."""
+    """A target (see `verify.arithmetic.wide.translator.Target`) for one orbit.
+
+    A value is an LLVM value, and its LLVM type tells its kind.
+    """
 
     def __init__(self, fraction: int) -> None:
         self.fraction, self.module, width = fraction, ir.Module(), width_of(fraction)
         self.functions = MoreFunctions(self.module, fraction)
-        self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + MORE_OF_SUMS),
+        self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + EXTRA_SUM_BITS),
                       "float": DOUBLE, "int": I64}  # fmt: skip
         self._kinds = {str(kind_type): kind for kind, kind_type in self.types.items()}
         self._variables: dict[str, Value] = {}
-        self._ends: list[ir.Block] = []  # of the loops that are being written
+        self._loop_ends: list[ir.Block] = []  # the blocks behind the loops around this point
 
     # -- the function -------------------------------------------------------------------------
 
@@ -76,16 +79,16 @@ class OneOrbit:
         index = self.load(name)
         self.b.cbranch(self.b.icmp_signed("<", index, limit), inside, after)
         self.b.position_at_end(inside)
-        # The innermost loop's end is the target of `break`; loops of one orbit may be nested.
-        self._ends.append(after)
+        # `break` jumps to the end of the innermost loop; loops of one orbit may be nested.
+        self._loop_ends.append(after)
         body()
-        self._ends.pop()
+        self._loop_ends.pop()
         self.assign(name, self.b.add(index, constant(1, 64)))
         self.b.branch(head)
         self.b.position_at_end(after)
 
     def leave(self) -> None:
-        self.b.branch(self._ends[-1])
+        self.b.branch(self._loop_ends[-1])
 
     def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return statements
@@ -162,7 +165,7 @@ class OneOrbit:
         return compare(order, x, y)
 
     def inside(self, x: Value, limit: Value) -> Value:
-        """Return |x| < limit, by the leading 64 bits alone: true only if it holds; limit > 0."""
+        """Return a condition that implies |x| < limit, from the leading 64 bits; limit > 0."""
         b = self.b
         x, limit = (limbs.leading(b, v, self.fraction) for v in (x, limit))
         # −limit < x < limit for integers is 0 < x + limit < 2·limit.
@@ -183,8 +186,8 @@ class OneOrbit:
         if name == "shifted":
             return [self._shift_down(x, values[1])]
         if name == "wide":
-            top = ir.Constant(DOUBLE, 2.0 ** (INTEGER_BITS - 1))
-            self._require(b.fcmp_ordered("<", self._absolute(x), top))
+            limit = ir.Constant(DOUBLE, 2.0 ** (INTEGER_BITS - 1))
+            self._require(b.fcmp_ordered("<", self._absolute(x), limit))
             return [from_double(b, x, self.fraction)]
         if name == "root" and x.type == DOUBLE:
             return [self._float_root(x, values[1])]
@@ -203,20 +206,20 @@ class OneOrbit:
         return self.b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
 
     def _shift_down(self, x: Value, shift: Value) -> Value:
-        """Return x / 2^shift rounded down, 0 ≤ shift < 64: limb by limb, as LLVM would not."""
+        """Return x / 2^shift rounded down, 0 ≤ shift < 64, limb by limb: LLVM would shift a wide
+        integer more slowly."""
         b, count = self.b, x.type.width // 64
         kind = ir.FunctionType(I64, [I64] * 3)
         funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
         words = [limbs.limb(b, x, i) for i in range(count)]
-        # The word above the highest is its sign, repeated in all bits.
+        # Above the highest word stands its sign, repeated in all bits.
         above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
         pairs = zip(above, words, strict=True)
         shifted = [b.call(funnel, [high, low, shift]) for high, low in pairs]
         return limbs.join(b, shifted)
 
     def _float_root(self, x: Value, n: Value) -> Value:
-        """Return the root as `verify.arithmetic.systems.float64` computes it, operation by
-        operation."""
+        """Return the n-th root with the operations of `verify.arithmetic.systems.float64`."""
         b, zero, one = self.b, ir.Constant(DOUBLE, 0.0), ir.Constant(DOUBLE, 1.0)
         power = _libm_function(self.module, "pow", 2)
         n = b.sitofp(n, DOUBLE)
@@ -229,18 +232,21 @@ class OneOrbit:
 
 
 def float_function(module: ir.Module, name: str) -> ir.Function:
-    """Return the function of one float64 that a source calls by that name; else raise
-    NotImplementedError."""
+    """Return the function of one float64 that a source calls by that name, perhaps with the prefix
+    `f_`.
+
+    Raises NotImplementedError if it is unknown.
+    """
     plain = name.removeprefix("f_")
     if plain in _INTRINSICS:
         return module.declare_intrinsic(f"llvm.{plain}", [DOUBLE])
-    if plain not in {*in_rings(), "log1p"}:  # which kernels take beside those of formulas
+    if plain not in {*in_rings(), "log1p"}:  # the functions of formulas, and one that kernels use
         raise NotImplementedError(name)
     return _libm_function(module, plain, 1)
 
 
 def _libm_function(module: ir.Module, name: str, count: int) -> ir.Function:
-    """Return the C library's function of so many float64."""
+    """Return the C library's function of that name, of `count` float64."""
     if name not in module.globals:
         ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * count), name)
     return module.globals[name]

@@ -1,14 +1,14 @@
 """sin, cos, exp, sinh and cosh of fixed-point numbers as LLVM functions, by tables and series.
 
-A number has F fraction bits and 16 integer bits, the sign among them, in W = 64 n bits; one unit is
-2^−F. Inside, values are fractions of W bits, or mantissas with W − 2 fraction bits, so that what
-products leave out stays far below one unit. A function's own file, in `verify.functions`, bounds
-its error.
+A number has F fraction bits and 16 integer bits, the sign among them, in W = 64 n bits; its unit is
+2^−F. The functions compute with fractions of W bits, or with mantissas of W − 2 fraction bits: the
+errors of products stay far below one unit. Each function's file in `verify.functions` has a bound
+on its error.
 
-sin and cos: x = k·2π/2^14 + r; sin and cos of the first from a table, of |r| ≤ π/2^14 by Taylor
-polynomials. exp: x = k·ln 2/2^12 + r likewise. In the polynomials a high term is small, so that its
-leading limbs are zero, and they are not computed; even terms and odd ones are two of them, since
-neither has to wait for the other.
+sin and cos: x = k·2π/2^14 + r; sin and cos of the first term come from a table, those of
+|r| ≤ π/2^14 from Taylor polynomials. exp: x = k·ln 2/2^12 + r likewise. The leading limbs of a high
+term of a polynomial are zero, and are not computed. The even terms are one polynomial and the odd
+terms another, which are computed side by side.
 """
 
 from collections.abc import Sequence
@@ -25,12 +25,12 @@ from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resize
 from verify.arithmetic.wide.products import ProductWriter
 from verify.arithmetic.wide.size import INTEGER_BITS, WORD, width_of
 
-_ANGLES = 1 << 14  # table steps of a full turn
-_QUARTER = _ANGLES // 4
-_OCTAVE = 1 << 12  # table steps of a factor 2
-_SHIFT = 12  # half a step of a turn, and a step of a factor 2, are below 2^−12
-_SURELY_POSITIVE = 1 << 28  # table steps, whole turns and factors of 2
-_NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
+_STEPS_PER_TURN = 1 << 14  # table steps
+_STEPS_PER_QUARTER = _STEPS_PER_TURN // 4
+_STEPS_PER_OCTAVE = 1 << 12  # table steps for a factor 2
+_STRETCH_BITS = 12  # r, at most half a step of a turn or a step of an octave, is below 2^−12
+_POSITIVE_OFFSET = 1 << 28  # table steps, a multiple of turns and of octaves, added to make k ≥ 0
+_NEGLIGIBLE_UNITS = 32  # units 2^−W of a fraction; smaller coefficients are left out
 
 
 def arb_integer(value: flint.arb, shift: int) -> int:
@@ -41,7 +41,7 @@ def arb_integer(value: flint.arb, shift: int) -> int:
 
 
 def _table_of(values: Sequence[int], width: int) -> ir.Constant:
-    """Return integers of so many bits as a table, each its limbs from the lowest."""
+    """Return a table of integers of `width` bits: the limbs of each, the lowest first."""
     return limbs.words([(v >> 64 * i) & (2**64 - 1) for v in values for i in range(width // 64)])
 
 
@@ -51,32 +51,32 @@ def _negate(b: ir.IRBuilder, condition: Value, x: Value) -> Value:
     return b.sub(b.xor(x, mask), mask)
 
 
-# The tables of a width are the same in all modules, and take longer to make than to compile.
+# The tables of a width are the same in all modules; they take longer to compute than to compile.
 
 
 @cache
 def _sines(width: int) -> ir.Constant:
-    """Return sin of all table steps of a quarter, with W − 2 fraction bits."""
+    """Return the table of sin at the steps of a quarter turn, with W − 2 fraction bits."""
     with working_precision(width + 128):
-        unit = 2 * flint.arb.pi() / _ANGLES
-        values = [arb_integer((unit * k).sin(), width - 2) for k in range(_QUARTER + 1)]
+        unit = 2 * flint.arb.pi() / _STEPS_PER_TURN
+        values = [arb_integer((unit * k).sin(), width - 2) for k in range(_STEPS_PER_QUARTER + 1)]
     return _table_of(values, width)
 
 
 @cache
 def _powers(width: int) -> ir.Constant:
-    """Return 2^x of all table steps below 1, with W − 2 fraction bits."""
+    """Return the table of 2^(k/_STEPS_PER_OCTAVE) with W − 2 fraction bits."""
     with working_precision(width + 128):
-        unit = flint.arb(2).log() / _OCTAVE
-        values = [arb_integer((unit * k).exp(), width - 2) for k in range(_OCTAVE)]
+        unit = flint.arb(2).log() / _STEPS_PER_OCTAVE
+        values = [arb_integer((unit * k).exp(), width - 2) for k in range(_STEPS_PER_OCTAVE)]
     return _table_of(values, width)
 
 
 class Functions:
-    """A writer of functions of one format into a module, each when it is first needed.
+    """A writer of the functions of one format into a module; each is written when it is first used.
 
-    `spare`: the bits in front of a number's fraction. `label`: what their names begin with, another
-    for each format of a module.
+    `spare`: the bits of W before the point. `label`: the prefix of the functions' names, one for
+    each format of a module.
     """
 
     def __init__(self, module: ir.Module, fraction: int, label: str = "fixed") -> None:
@@ -97,8 +97,8 @@ class Functions:
     # -- helpers ------------------------------------------------------------------------------
 
     def _define(self, name: str, results: int) -> tuple[ir.IRBuilder, Value]:
-        """Define a new function of one number that returns so many numbers and whether they are
-        valid."""
+        """Begin a function of one number, which returns `results` numbers and whether they are
+        valid; return its builder and its argument."""
         kind = ir.LiteralStructType([self.type] * results + [ir.IntType(1)])
         function = ir.Function(
             self.module, ir.FunctionType(kind, [self.type]), f"{self.label}_{name}"
@@ -131,31 +131,31 @@ class Functions:
     def _multiple(
         self, b: ir.IRBuilder, x: Value, unit: flint.arb, offset: Fraction
     ) -> tuple[Value, Value]:
-        """Return (k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W
+        """Return (k, r) with x = k·unit + r; k is the floor of x/unit + offset, as i64, and r has W
         fraction bits.
 
-        k is found from the leading bits alone, so that it is the floor within 2^−18, or within
-        2^−28 if |x| < 16; k·unit is right to a unit of r. What is multiplied is k + 2^28, which
-        is not negative: |x| < 2^15, and the unit, an arb, is above 2^−13.
+        k comes from the leading bits alone: it is the floor of a number within 2^−18 of
+        x/unit + offset, or within 2^−28 if |x| < 16. The error of k·unit is at most a unit of r.
+        The product is formed of k + 2^28, which is not negative: |x| < 2^15 and unit > 2^−13.
         """
         high = resize(b, limbs.leading(b, x, self.fraction), 128, signed=True)
         k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
         k = b.ashr(b.add(k, constant(int(offset * 2**80), 128)), constant(80, 128))
         k = b.trunc(k, I64)
         stretched = constant(arb_integer(unit, self.width + WORD), self.width + WORD)
-        multiple = limbs.times_word(b, stretched, b.add(k, constant(_SURELY_POSITIVE, WORD)))
+        multiple = limbs.times_word(b, stretched, b.add(k, constant(_POSITIVE_OFFSET, WORD)))
         scaled = limbs.shifted_up(b, x, self.spare)
-        start = constant(arb_integer(unit * _SURELY_POSITIVE, self.width), self.width)
+        start = constant(arb_integer(unit * _POSITIVE_OFFSET, self.width), self.width)
         return k, b.sub(b.add(scaled, start), resize(b, multiple, self.width))
 
     def _series(
         self, b: ir.IRBuilder, t: Value, series: Sequence[Sequence[Fraction]], shift: int, sign: int
     ) -> list[Value]:
-        """Return c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + … of each, where t = τ·2^shift is a
-        fraction, and so is the result; the c are positive and fall fast, `sign` is ±1.
+        """Return c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + … for each series; t = τ·2^shift and the
+        results are fractions, the c are positive and decrease fast, `sign` is ±1.
 
-        A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
-        All go on together: what one waits for, another has time for.
+        The leading limbs of high coefficients cⱼ 2^(−j·shift), and of their sums, are zero. The
+        series are summed side by side: none waits for another.
         """
         totals: list[Value] = [None] * len(series)
         for j in reversed(range(max(map(len, series)))):
@@ -163,8 +163,8 @@ class Functions:
                 if j >= len(coefficients):
                     continue
                 scaled = round(coefficients[j] * Fraction(2) ** (self.width - j * shift))
-                scaled = min(scaled, 2**self.width - 1)  # 1 is no fraction; the next is near enough
-                if scaled < _NEGLIGIBLE:
+                scaled = min(scaled, 2**self.width - 1)  # 1 becomes the largest fraction
+                if scaled < _NEGLIGIBLE_UNITS:
                     continue
                 size = 64 * -(-scaled.bit_length() // 64)
                 value = constant(scaled, size)
@@ -195,12 +195,12 @@ class Functions:
     def _cos_sin(self) -> ir.Function:
         b, x = self._define("cos_sin", 2)
         with working_precision(self.width + 128):
-            k, r = self._multiple(b, x, 2 * flint.arb.pi() / _ANGLES, Fraction(1, 2))
+            k, r = self._multiple(b, x, 2 * flint.arb.pi() / _STEPS_PER_TURN, Fraction(1, 2))
         sine, versine = self._small(b, self._copy_sign(b, r, r))
-        # A quarter further cos is −sin and sin is cos, two further both change their signs.
-        odd, half = (self._has(b, k, quarters * _QUARTER) for quarters in (1, 2))
-        index = b.and_(k, constant(_QUARTER - 1, WORD))
-        rest = b.sub(constant(_QUARTER, WORD), index)
+        # After a quarter turn cos becomes −sin and sin becomes cos; after two both change signs.
+        odd, half = (self._has(b, k, quarters * _STEPS_PER_QUARTER) for quarters in (1, 2))
+        index = b.and_(k, constant(_STEPS_PER_QUARTER - 1, WORD))
+        rest = b.sub(constant(_STEPS_PER_QUARTER, WORD), index)
         table = self._table("sines", _sines(self.width))
         s = self._entry(b, table, b.select(odd, rest, index))
         c = self._entry(b, table, b.select(odd, index, rest))
@@ -216,14 +216,17 @@ class Functions:
     def _small(self, b: ir.IRBuilder, r: Value) -> tuple[Value, Value]:
         """Return sin r and 1 − cos r of 0 ≤ r < 2^−12."""
         high = self.products.high
-        u = limbs.shifted_up(b, r, _SHIFT)
+        u = limbs.shifted_up(b, r, _STRETCH_BITS)
         t = high(b, u, u)
-        by_u, by_t = self._series(b, t, self._inverse_factorials(1, 2), 2 * _SHIFT, -1)
+        by_u, by_t = self._series(b, t, self._inverse_factorials(1, 2), 2 * _STRETCH_BITS, -1)
         sine, versine = high(b, u, by_u), high(b, t, by_t)
-        return (limbs.shifted_down(b, sine, _SHIFT), limbs.shifted_down(b, versine, 2 * _SHIFT))
+        return (
+            limbs.shifted_down(b, sine, _STRETCH_BITS),
+            limbs.shifted_down(b, versine, 2 * _STRETCH_BITS),
+        )
 
     def _inverse_factorials(self, *first: int) -> list[list[Fraction]]:
-        """Return the inverse factorials of every second number from each of these."""
+        """Return for each first number k the inverse factorials of k, k + 2, k + 4, …."""
         many = range(8 * self.count)
         return [[Fraction(1, factorial(2 * j + k)) for j in many] for k in first]
 
@@ -241,28 +244,30 @@ class Functions:
         values = b.call(self.get(pair), [x])
         return self._result(b, b.extract_value(values, 2), b.extract_value(values, index))
 
-    # -- exp and its like -----------------------------------------------------------------------
+    # -- exp, sinh and cosh ---------------------------------------------------------------------
 
     def _exponential(self, b: ir.IRBuilder, x: Value) -> tuple[Value, Value]:
-        """Return (m, a): e^x = m·2^a with m in W − 2 fraction bits, a as i64.
+        """Return (m, a) with e^x = m·2^a; m has W − 2 fraction bits, a is an i64.
 
-        m is in [1, 2], and may exceed 2 by 2^−28 just above an x for which it would be 1.
+        m is in [1, 2]; just above an x with m = 1 it may exceed 2 by 2^−28.
         """
         with working_precision(self.width + 128):
-            unit = flint.arb(2).log() / _OCTAVE
+            unit = flint.arb(2).log() / _STEPS_PER_OCTAVE
             # A little less than the floor, so that r is surely not negative.
             k, r = self._multiple(b, x, unit, Fraction(-1, 2**20))
         if "powers" not in self._tables:
             self._tables["powers"] = self._table("powers", _powers(self.width))
-        base = self._entry(b, self._tables["powers"], b.and_(k, constant(_OCTAVE - 1, WORD)))
+        base = self._entry(
+            b, self._tables["powers"], b.and_(k, constant(_STEPS_PER_OCTAVE - 1, WORD))
+        )
         high = self.products.high
-        u = limbs.shifted_up(b, r, _SHIFT)
+        u = limbs.shifted_up(b, r, _STRETCH_BITS)
         t = high(b, u, u)
-        even, odd = self._series(b, t, self._inverse_factorials(2, 3), 2 * _SHIFT, 1)
-        rest = high(b, t, b.add(even, limbs.shifted_down(b, high(b, u, odd), _SHIFT)))
-        growth = b.add(r, limbs.shifted_down(b, rest, 2 * _SHIFT))  # e^r − 1
+        even, odd = self._series(b, t, self._inverse_factorials(2, 3), 2 * _STRETCH_BITS, 1)
+        rest = high(b, t, b.add(even, limbs.shifted_down(b, high(b, u, odd), _STRETCH_BITS)))
+        growth = b.add(r, limbs.shifted_down(b, rest, 2 * _STRETCH_BITS))  # e^r − 1
         mantissa = b.add(base, high(b, base, growth))
-        return mantissa, b.ashr(k, constant(_OCTAVE.bit_length() - 1, WORD))
+        return mantissa, b.ashr(k, constant(_STEPS_PER_OCTAVE.bit_length() - 1, WORD))
 
     def _exp(self) -> ir.Function:
         b, x = self._define("exp", 1)
@@ -275,21 +280,20 @@ class Functions:
         return self._result(b, b.and_(fits, b.icmp_signed(">=", shift, constant(0, 64))), value)
 
     def _cosh(self) -> ir.Function:
-        return self._half_sum("cosh", b_minus=False)
+        return self._half_sum("cosh", is_difference=False)
 
     def _sinh(self) -> ir.Function:
-        return self._half_sum("sinh", b_minus=True)
+        return self._half_sum("sinh", is_difference=True)
 
-    def _half_sum(self, name: str, *, b_minus: bool) -> ir.Function:
+    def _half_sum(self, name: str, *, is_difference: bool) -> ir.Function:
         b, x = self._define(name, 1)
         up = b.call(self.get("exp"), [x])
         down = b.call(self.get("exp"), [b.neg(x)])
         e_up, e_down = b.extract_value(up, 0), b.extract_value(down, 0)
-        total = b.sub(e_up, e_down) if b_minus else b.add(e_up, e_down)
+        total = b.sub(e_up, e_down) if is_difference else b.add(e_up, e_down)
         valid = b.and_(b.extract_value(up, 1), b.extract_value(down, 1))
         half = b.ashr(total, constant(1, self.width))
-        # Below 2^14 each, so that their sum stays in range; and not both 0, as they are if −x
-        # is not in range.
+        # Each is below 2^14, so that the sum stays in range; both are 0 if −x is not in range.
         any_bits = b.or_(e_up, e_down)
         fits = b.icmp_unsigned("<", any_bits, self._power(INTEGER_BITS - 2))
         is_positive = b.icmp_unsigned("!=", any_bits, constant(0, self.width))

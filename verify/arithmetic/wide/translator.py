@@ -1,20 +1,22 @@
 """A kernel's source → LLVM IR in which wide fixed-point numbers and float64 stand side by side.
 
-The source is the small language that `verify.kernels.kernel` writes: assignments, + − * /,
+The source is in the small language that `verify.kernels.kernel` writes: assignments, + − * /,
 comparisons, calls by name, `if`, one loop `for k in range(steps)`, `return`; for one orbit also
-loops within that one, and `break`. A variable's kind is that of what is first assigned to it, an
-argument's is its annotation:
+loops within that one, and `break`. The kind of a variable is that of its first value, the kind of
+an argument its annotation:
 
-- `wide`  (if there is none): a number of the format;
-- `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
-- `float` IEEE double precision; `int` a 64-bit integer.
+- `wide`, or no annotation: a number of the format;
+- `sum`: a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
+- `float`: IEEE double precision;
+- `int`: a 64-bit integer.
 
-`wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
-`verify.arithmetic.wide.newton` says. The name `valid` is true as long as every function had a
-value, in all passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the
-highest limbs, and `shifted(x, s)` is x/2^s.
+`wide(x)` converts a float64 and cuts bits below the last place. `approx(x)` is a float64 near x;
+`verify.arithmetic.wide.newton` has the error. `valid` is true as long as every function had a
+value, before the loop and in all its passes. `inside(x, limit)` implies |x| < limit; it looks at
+the leading bits only. `shifted(x, s)` is x/2^s, rounded down.
 
-What a number is and how an operation is written is the target's: one orbit, or one in each lane.
+A target decides how numbers are represented and how operations are written: for one orbit, or for
+one orbit in each lane.
 """
 
 import ast
@@ -24,26 +26,27 @@ from typing import Any, Protocol, TypeAlias
 
 from llvmlite import ir
 
-Ours: TypeAlias = Any  # a node of a source that we wrote, whose parts are known
-Value: TypeAlias = Any  # a target's own
-KINDS = ("int", "float", "wide", "sum")  # of two numbers the first becomes what the second is
+SourceNode: TypeAlias = Any  # an ast node; its parts are not checked, since we wrote the source
+Value: TypeAlias = Any  # a target's representation of a number
+KINDS = ("int", "float", "wide", "sum")  # of two operands the earlier kind is converted
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 _SUMS = {ast.Add: "+", ast.Sub: "-"}
 
 
 class Target(Protocol):
-    """A writer of a module `i64 main(i64* in, i64* out)`, by the operations of one function."""
+    """A writer of a module with `void main(i64* in, i64* out)`, operation by operation."""
 
     module: ir.Module
 
     def begin(self, arguments: Sequence[tuple[str, str]], products: int) -> None:
-        """Write the function's head, its arguments by name and kind; it has so many products."""
+        """Write the function's head. `arguments`: (name, kind) of each; `products`: the number of
+        multiplications in the source."""
 
     def end(self) -> None:
-        """Write the function's end, if it is reached."""
+        """Write the function's end, if control reaches it."""
 
     def has(self, name: str) -> bool:
-        """Return True if there is a variable of that name; `valid` is one, and true at first."""
+        """Return True if a variable of that name exists; `valid` does, and is true at first."""
 
     def load(self, name: str) -> Value: ...
 
@@ -58,7 +61,7 @@ class Target(Protocol):
         """Return one of `KINDS`."""
 
     def convert(self, value: Value, kind: str) -> Value:
-        """Convert a number to a kind further on in `KINDS`; TypeError if that is impossible."""
+        """Convert a number to a later kind of `KINDS`. Raises TypeError if that is impossible."""
 
     def negative(self, x: Value) -> Value: ...
 
@@ -71,8 +74,8 @@ class Target(Protocol):
         """Return the quotient of two float64."""
 
     def function(self, name: str, values: Sequence[Value]) -> list[Value]:
-        """Return the values of a call; `valid` is false from then on if the function has no
-        value."""
+        """Return the values of a call; if the function has no value, `valid` becomes false for
+        good."""
 
     def compare(self, order: str, x: Value, y: Value) -> Value: ...
 
@@ -90,17 +93,17 @@ class Target(Protocol):
         """Write `for name in range(limit)`; `assigned`: all variables that the body assigns."""
 
     def leave(self) -> None:
-        """End the innermost loop; NotImplementedError if orbits would part."""
+        """Leave the innermost loop. Raises NotImplementedError if some orbits would stay in it."""
 
     def order(self, statements: list[ast.stmt]) -> list[ast.stmt]:
-        """Return a loop's statements in the order in which they are best written."""
+        """Return a loop's statements in the best order to write them."""
 
     def give(self, values: Callable[[], Sequence[Value]]) -> None:
-        """Return the values, and whether they are valid."""
+        """Write a `return` of the values, and of whether they are valid."""
 
 
 class Translator:
-    """A translator of one function; `results` then has the kinds of its results."""
+    """A translator of one function; after `translate`, `results` has the kinds of its results."""
 
     def __init__(self, source: str, names: Mapping[str, Any], target: Target) -> None:
         parsed = ast.parse(source).body[0]
@@ -122,7 +125,7 @@ class Translator:
 
     def _block(self, statements: list[ast.stmt]) -> None:
         for statement in statements:
-            handlers: dict[type, Callable[[Ours], None]] = {
+            handlers: dict[type, Callable[[SourceNode], None]] = {
                 ast.Assign: self._assignment, ast.If: self._if, ast.For: self._for,
                 ast.Break: self._break, ast.Return: self._return,
             }  # fmt: skip
@@ -130,7 +133,7 @@ class Translator:
                 raise NotImplementedError(ast.dump(statement))
             handlers[type(statement)](statement)
 
-    def _assignment(self, statement: Ours) -> None:
+    def _assignment(self, statement: SourceNode) -> None:
         names = statement.targets
         if hasattr(names[0], "elts"):
             names, values = names[0].elts, self._call(statement.value)
@@ -140,10 +143,10 @@ class Translator:
             self.target.assign(name.id, value)
 
     def _if(self, statement: ast.If) -> None:
-        # The target decides how: one orbit branches, lanes execute the body and select.
+        # The target decides how: one orbit branches; lanes execute the body, and select its values.
         self.target.when(self._condition(statement.test), lambda: self._block(statement.body))
 
-    def _for(self, statement: Ours) -> None:
+    def _for(self, statement: SourceNode) -> None:
         """Translate `for name in range(limit)`."""
         assigned = {
             node.id
@@ -155,10 +158,10 @@ class Translator:
         body = self.target.order(statement.body)
         self.target.loop(statement.target.id, limit, lambda: self._block(body), assigned)
 
-    def _break(self, _: Ours) -> None:
+    def _break(self, _: SourceNode) -> None:
         self.target.leave()
 
-    def _return(self, statement: Ours) -> None:
+    def _return(self, statement: SourceNode) -> None:
         value = statement.value
 
         def values() -> list[Value]:
@@ -198,7 +201,7 @@ class Translator:
             case ast.Add() | ast.Sub():
                 return target.sum(_SUMS[type(node.op)], x, y)
             case ast.Mult():
-                # A square needs only half of the partial products: it is recognised by its text.
+                # A square is recognised by its text: it needs only half of the partial products.
                 same = ast.dump(node.left) == ast.dump(node.right)
                 return target.product(x, x if same else y)
             case ast.Div() if target.kind(x) == "float":
@@ -212,7 +215,7 @@ class Translator:
         raise NotImplementedError(ast.dump(node))
 
     def _alike(self, x: Value, y: Value) -> tuple[Value, Value]:
-        """Return both in the wider of the two kinds; an integer becomes what the other is."""
+        """Return both numbers in the later of their kinds in `KINDS`."""
         kinds = [self.target.kind(v) for v in (x, y)]
         wider = max(kinds, key=KINDS.index)
         x, y = (
@@ -221,7 +224,7 @@ class Translator:
         )
         return x, y
 
-    def _call(self, node: Ours) -> list[Value]:
+    def _call(self, node: SourceNode) -> list[Value]:
         return self.target.function(node.func.id, [self._expression(a) for a in node.args])
 
     # -- conditions ---------------------------------------------------------------------------

@@ -1,11 +1,15 @@
-"""Other people's integrators, to be held against what they claim; one file each, found by
-themselves.
+"""Other libraries whose integrators are compared with their claims; each is one file here.
 
-A file defines `TITLE`, what people call it; `LIBRARY`, the package that it needs and imports only
-where it is used, or None where it needs none; `PACKAGE`, what pip calls it, where that is another
-name; `EXTRA`, of ours, that installs it, unless that is `peers`; `LEFT_OUT`, what of it cannot be
-driven as a one-step map, each with the reason; and `integrators()`, which yields what is verified
-(see `verify.audits.methods.integrator`). Adding a library is adding one file.
+A file defines
+
+- `TITLE`: the library's name for people;
+- `LIBRARY`: the package that it needs, imported only when it is used; None if it needs none;
+- `PACKAGE`: the name of the package for pip, if that is another one;
+- `EXTRA`: our extra that installs it, if that is not `peers`;
+- `LEFT_OUT`: the integrators that cannot be called as a one-step map, each with the reason;
+- `integrators()`: yields those that are verified (see `verify.audits.methods.integrator`).
+
+The files are discovered: to add a library, add one file.
 """
 
 from functools import cache
@@ -20,7 +24,7 @@ _FILES = Catalogue(__name__, __path__)
 
 @cache
 def names() -> tuple[str, ...]:
-    """Return the files' names; those that need no library last."""
+    """Return the names of the files, those that need no library last."""
     return tuple(sorted(_FILES.names, key=lambda name: (get(name).LIBRARY is None, name)))
 
 
@@ -31,7 +35,7 @@ def get(name: str) -> ModuleType:
 
 
 def installed_version(name: str) -> str | None:
-    """Return the version of the library that it needs; "" where it needs none, None where it is not
+    """Return the version of the library that a file needs; "" if it needs none, None if it is not
     installed."""
     library = get(name).LIBRARY
     if library is None:

@@ -1,7 +1,7 @@
-"""pyAT's pass methods: an element of length h, cut once, is one step along the beam's axis.
+"""pyAT's pass methods: an element of length h in one slice is one step along the beam's axis.
 
-At the design energy, in (x, p_x, y, p_y): drifts and kicks of H = p²/2 + V, or with the square root
-of exact drifts. V is that of a quadrupole and a sextupole.
+At the design energy, in (x, p_x, y, p_y), the steps are drifts and kicks of H = p²/2 + V, or of an
+H with the square root of exact drifts. V is that of a quadrupole and a sextupole.
 """
 
 from collections.abc import Iterator

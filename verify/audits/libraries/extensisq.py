@@ -8,13 +8,13 @@ from verify.audits.methods.integrator import ReleasedIntegrator, full, table_int
 
 TITLE = "extensisq"
 LIBRARY = "extensisq"
-_HIGHEST = 8
+_MAX_ORDER = 8
 LEFT_OUT = (
     ("SWAG", "is a multistep method of variable order: no one-step map"),
     ("SSV2stab", "chooses the number of its stages by itself"),
     ("CKdisc", "chooses its order by itself; its table of order 5 is CK5's"),
     ("Ro…", "Rosenbrock methods: a Jacobian stands in their steps, which the tables do not take"),
-    ("Pr9", f"is of order 9; orders above {_HIGHEST} are not looked at"),
+    ("Pr9", f"is of order 9; orders above {_MAX_ORDER} are not looked at"),
     ("BS5, Ts5, Fi5N, Pr7 …, as steps", "their errors are too small in float64; their tables are"),
     ("ESDIRK methods, as steps", "solve their equations to a tolerance of their own"),
 )
@@ -57,7 +57,7 @@ def _solvers() -> Iterator[tuple[str, Any]]:
         if not isinstance(each, type) or not issubclass(each, RungeKutta | ESDIRK):
             continue
         order = getattr(each, "order", None)
-        if isinstance(order, int) and order <= _HIGHEST and name == each.__name__ != "CKdisc":
+        if isinstance(order, int) and order <= _MAX_ORDER and name == each.__name__ != "CKdisc":
             yield name, each
 
 

@@ -1,10 +1,11 @@
-"""galpy's integrators of orbits in one dimension, with `dt` held at the length of the one step.
+"""galpy's integrators of orbits in one dimension, with `dt` equal to the length of the one step.
 
-The potential is galpy's KGPotential, amp (K √(x² + D²) + F x²), of which galpy subtracts nothing.
-Units are galpy's natural ones, so that H = v²/2 + amp (K √(x² + D²) + F x²).
+The potential is galpy's KGPotential, amp (K √(x² + D²) + F x²), from which galpy subtracts nothing.
+The units are galpy's natural ones, so that H = v²/2 + amp (K √(x² + D²) + F x²).
 
-An amplitude that depends on time is taken in the plane: an orbit on an axis is of one degree of
-freedom, as long as it does not pass the centre: H = v²/2 + A(t) log(x² + 1/4)/2, with a Gaussian A.
+For an amplitude A(t) that depends on time, an orbit in galpy's plane is used: on an axis it has one
+degree of freedom as long as it does not pass the centre, with H = v²/2 + A(t) log(x² + 1/4)/2 and a
+Gaussian A.
 """
 
 from collections.abc import Iterator
@@ -80,7 +81,8 @@ def step(p, q, t, h):
     return float(o.vx(t + h)), float(o.x(t + h))
 """
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
-_SAMPLES = {2: ((), ()), 4: ((), ()), 6: (_POINTS, FINE)}  # points, and steps, by the order
+# Points and step sizes by the claimed order; () for the usual ones.
+_SAMPLES = {2: ((), ()), 4: ((), ()), 6: (_POINTS, FINE)}
 _SAMPLES_IN_THE_PLANE = {2: ((), USUAL_LADDER), 4: ((), USUAL_LADDER), 6: ((), LONG_LADDER)}
 _SAMPLES_IN_TIME = {order: (_AHEAD, sizes) for order, sizes in _STEPS.items()}
 _PROBLEMS = (

@@ -1,8 +1,11 @@
-"""heyoka's Taylor integrator held at one order η and one step: it is the scheme lieη.
+"""heyoka's Taylor integrator with a fixed order η and step size: it is the scheme lieη.
 
-The tolerance selects the order, max(2, ⌈1 − ln(tol)/2⌉); `max_delta_t` limits the step. A Taylor
-step of order η of the variational equations is the exact Jacobian of that map. Both are held
-against lieη, evaluated exactly at the same dyadic numbers.
+lieη is the Lie-derivative scheme of the paper: p and q become their Taylor series in h, up to h^η.
+heyoka's tolerance selects its order, max(2, ⌈1 − ln(tol)/2⌉): with tol = exp(3 − 2η) this is
+⌈η − 1/2⌉ = η for η ≥ 2, so that rounding of tol does not change it. `max_delta_t` limits the step.
+A Taylor step of the variational equations, of the same order, gives the Jacobian of that map.
+The state and the Jacobian are compared with those of lieη, which are evaluated in balls of 400 bits
+at the same dyadic numbers.
 """
 
 import math
@@ -21,12 +24,13 @@ TITLE = "heyoka"
 LIBRARY = "heyoka"
 LEFT_OUT = (("taylor_adaptive with its own steps", "chooses them by itself: no map of a fixed h"),)
 _SOURCE = "the documentation of heyoka.taylor_adaptive"
-_DRIVEN = "taylor_adaptive with tol = exp(3 − 2η) and step(max_delta_t = h)"
-# Slow, since heyoka takes a shorter step than it is given where its tolerance asks for one.
-_SLOW = "p**2/32 - cos(q)/16"
-_SLOWLY_DRIVEN = "p**2/32 - cos(q)/16 - q*cos(t/4)/16"
-_SLOW_IN_SPACE = "p1**2/32 + p2**2/32 - cos(q1)/16 - cos(q1 - q2)/16"
-_ON_A_LINE = """\
+_SOURCE_WITH_TIME = "the documentation of heyoka.py, Non-autonomous systems"
+_DESCRIPTION = "taylor_adaptive with tol = exp(3 − 2η) and step(max_delta_t = h)"
+# The systems are slow, since heyoka shortens a step if its tolerance needs this.
+_SLOW_FORMULA = "p**2/32 - cos(q)/16"
+_SLOW_FORMULA_WITH_TIME = "p**2/32 - cos(q)/16 - q*cos(t/4)/16"
+_SLOW_FORMULA_TWO_DEGREES = "p1**2/32 + p2**2/32 - cos(q1)/16 - cos(q1 - q2)/16"
+_SCRIPT = """\
 import math
 import heyoka as hy
 
@@ -41,7 +45,7 @@ def step(p, q, h):
     assert taken == h
     return tuple(t.state)
 """
-_IN_TIME = """\
+_SCRIPT_WITH_TIME = """\
 import math
 import heyoka as hy
 
@@ -58,7 +62,7 @@ def step(p, q, t, h):
     assert taken == h
     return tuple(y.state)
 """
-_IN_SPACE = """\
+_SCRIPT_TWO_DEGREES = """\
 import math
 
 import heyoka as hy
@@ -81,39 +85,44 @@ _SYSTEMS = {"pendulum": "p**2/2 - cos(q)", "not separable": "p**2/2 + q**2/2 + p
 _POINTS = [(Fraction(p, 8), Fraction(q, 8)) for p, q in ((4, 10), (-6, 3), (2, -12))]
 _STEP = Fraction(1, 128)
 _ORDERS = (2, 3, 4)
-_UNIT = 2.0**-53
-_SURE = 100  # units: more is no rounding
-_ALLOWED = 2  # units: one rounding of z', and a few dozen in the increment, each smaller by h
+_UNIT_ROUNDOFF = 2.0**-53
+_BALL_BITS = 400  # the radius of a ball is then far below a unit roundoff
+# Differences in unit roundoffs. Up to 2 are rounding: one of z', and a few dozen in the increment,
+# each smaller by the factor h. More than 100 are no rounding.
+_MEASURED_UP_TO = 2
+_REFUTED_ABOVE = 100
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for tag, more, source, formula, text in (
-        ("", "", _SOURCE, _SLOW, _ON_A_LINE),
-        (", driven", ", with heyoka.time in the equations",
-         "the documentation of heyoka.py, Non-autonomous systems", _SLOWLY_DRIVEN, _IN_TIME),
-        (", two degrees", "", _SOURCE, _SLOW_IN_SPACE, _IN_SPACE),
+    for tag, more, source, formula, script in (
+        ("", "", _SOURCE, _SLOW_FORMULA, _SCRIPT),
+        (", driven", ", with heyoka.time in the equations", _SOURCE_WITH_TIME,
+         _SLOW_FORMULA_WITH_TIME, _SCRIPT_WITH_TIME),
+        (", two degrees", "", _SOURCE, _SLOW_FORMULA_TWO_DEGREES, _SCRIPT_TWO_DEGREES),
     ):  # fmt: skip
         for eta in _ORDERS:
-            name, driven = f"Taylor, order {eta}{tag}", f"{_DRIVEN}{more}"
-            yield integrator_from_script(name, driven, source, formula, text.format(eta=eta), eta)
+            name, driven = f"Taylor, order {eta}{tag}", f"{_DESCRIPTION}{more}"
+            yield integrator_from_script(name, driven, source, formula, script.format(eta=eta), eta)
     yield ReleasedIntegrator(
         "Taylor and lieη",
-        f"{_DRIVEN}, with the variational equations",
+        f"{_DESCRIPTION}, with the variational equations",
         "both are the Taylor series of the flow, cut off after h^η",
-        LibraryComparison("One step and its Jacobian are those of lieη, to rounding", _agreement),
+        LibraryComparison(
+            "One step and its Jacobian are those of lieη, to rounding", _compare_with_lie
+        ),
     )
 
 
-def _integrator(formula: str, eta: int) -> Any:
+def _build_integrator(formula: str, eta: int) -> Any:
     """Build a Taylor integrator of the system's variational equations."""
     import heyoka as hy
 
     p, q = hy.make_vars("p", "q")
-    h = {
+    hamiltonian = {
         _SYSTEMS["pendulum"]: lambda: p**2 / 2 - hy.cos(q),
         _SYSTEMS["not separable"]: lambda: p**2 / 2 + q**2 / 2 + p**2 * q / 4 + p * q**3 / 8,
     }[formula]()
-    equations: Any = [(p, -hy.diff(h, q)), (q, hy.diff(h, p))]
+    equations: Any = [(p, -hy.diff(hamiltonian, q)), (q, hy.diff(hamiltonian, p))]
     varied = hy.var_ode_sys(equations, hy.var_args.vars, order=1)
     integrator = hy.taylor_adaptive(varied, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
     if integrator.order != eta:
@@ -121,48 +130,56 @@ def _integrator(formula: str, eta: int) -> Any:
     return integrator
 
 
-def _agreement() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+def _compare_with_lie() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+    """Return the verdict, the evidence, and a table with one row for each H and η."""
     rows = [("H", "η", "p′, q′", "Jacobian")]
     worst = 0.0
     for name, formula in _SYSTEMS.items():
         for eta in _ORDERS:
-            state, tangent = _distance(formula, eta)
+            state, tangent = _largest_differences(formula, eta)
             worst = max(worst, state, tangent)
             rows.append((name, str(eta), f"{state:.2f} u", f"{tangent:.2f} u"))
     verdict = _verdict(worst)
     evidence = (
         f"the largest difference from lieη, evaluated exactly, is {worst:.2f} u max(1, |x|), "
         f"u = 2⁻⁵³, over {len(_SYSTEMS)} Hamiltonians, η = 2, 3, 4 and {len(_POINTS)} points, "
-        f"h = {_STEP}; {_ALLOWED} are what rounding may make"
+        f"h = {_STEP}; {_MEASURED_UP_TO} are what rounding may make"
     )
     return verdict, evidence, tuple(rows)
 
 
 def _verdict(worst: float) -> Verdict:
-    """Judge a distance in units of rounding; other machines may round a little worse, which is no
-    other method: one term more than order 4 has is h⁵/120, some 2,000 units."""
-    if worst <= _ALLOWED:
+    """Judge the largest difference, in unit roundoffs.
+
+    Between the limits it is UNDECIDED: another machine may round a little worse. A Taylor series
+    with one term more would differ by more: after order 4 the next term is of the size h⁵/120,
+    some 2,000 units.
+    """
+    if worst <= _MEASURED_UP_TO:
         return Verdict.MEASURED
-    return Verdict.UNDECIDED if worst <= _SURE else Verdict.REFUTED
+    return Verdict.UNDECIDED if worst <= _REFUTED_ABOVE else Verdict.REFUTED
 
 
-def _distance(formula: str, eta: int) -> tuple[float, float]:
-    """Return the largest differences of the state and of the Jacobian, in units of rounding."""
+def _largest_differences(formula: str, eta: int) -> tuple[float, float]:
+    """Return the largest differences of the state and of the Jacobian, in unit roundoffs, relative
+    to the value if it is larger than 1."""
     from verify.schemes import get
 
-    taylor = _integrator(formula, eta)
+    taylor = _build_integrator(formula, eta)
     step_map = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).flat
     largest = [0.0, 0.0]
     for p, q in _POINTS:
         for k, x in enumerate((p, q, 1, 0, 0, 1)):
             taylor.state[k] = float(x)
         taylor.step(max_delta_t=float(_STEP))
-        # The state first, then the Jacobian by rows, as heyoka's variational state has them.
+        # heyoka's variational state has the state first, then the Jacobian by rows.
         elements = (*step_map.elements, *(x for row in step_map.jacobian for x in row))
         for k, element in enumerate(elements):
-            ball = enclose_defined(step_map.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
-            middle, _ = midpoint_and_radius(ball)
-            gap = abs(Fraction(float(taylor.state[k])) - middle)
-            units = float(gap) / (_UNIT * max(1.0, abs(float(middle))))
-            largest[k >= 2] = max(largest[k >= 2], units)
+            point = {"p": p, "q": q, "h": _STEP}
+            ball = enclose_defined(step_map.ring, element, point, _BALL_BITS)
+            midpoint, _ = midpoint_and_radius(ball)
+            difference = abs(Fraction(float(taylor.state[k])) - midpoint)
+            units = float(difference) / (_UNIT_ROUNDOFF * max(1.0, abs(float(midpoint))))
+            is_jacobian = k >= 2
+            largest[is_jacobian] = max(largest[is_jacobian], units)
     return largest[0], largest[1]

@@ -31,7 +31,8 @@ q, p = np.asarray(state.position), np.asarray(state.momentum)
 """,
     "one call of simulate.velocity_verlet with the step h",
 )
-_ORDERS = {3: 4, 5: 4, 7: 6}  # of Suzuki's and Yoshida's compositions with so many steps
+# The orders of Suzuki's and Yoshida's compositions, by their number of steps.
+_ORDER_BY_STEPS = {3: 4, 5: 4, 7: 6}
 _SOURCE = (
     "the documentation of simulate.nose_hoover_chain: “we follow the Suzuki-Yoshida scheme”, whose "
     "composition with {} steps is of order {}"
@@ -54,9 +55,9 @@ def _weights() -> Iterator[ReleasedIntegrator]:
                 f"SUZUKI_YOSHIDA_WEIGHTS[{count}]",
                 "composition",
                 "the weights as they stand in simulate",
-                _SOURCE.format(count, _ORDERS[count]),
+                _SOURCE.format(count, _ORDER_BY_STEPS[count]),
                 _WEIGHTS_SCRIPT.replace("{count}", str(count)),
-                order=_ORDERS[count],
+                order=_ORDER_BY_STEPS[count],
                 of_parts=True,
                 sizes=[repr(float(w)) for w in weights],
             )

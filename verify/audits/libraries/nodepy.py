@@ -1,10 +1,10 @@
 """nodepy's Runge–Kutta methods, by their coefficients: all that `loadRKM` loads.
 
-A claimed order is that of the method's name: the first number of a pair such as Fehlberg's RK5(4)6,
-the last digit of RK44 or SSPRK(10,4), p of the one-stage and collocation methods as nodepy's
-documentation lists them. What `order()` computes is held against what is proved as a whole: it
-takes conditions for met that hold to within its tolerance, and is not blamed where rounding is
-larger.
+The claimed order is that in the method's name: the first number of a pair such as Fehlberg's
+RK5(4)6, the last digit of RK44 or SSPRK(10,4); for the one-stage and collocation methods it is the
+p that nodepy's documentation lists. The results of nodepy's `order()` are compared with the proofs
+for all methods together. It accepts conditions that hold up to its tolerance, and is not blamed for
+methods whose rounding is larger.
 """
 
 import contextlib
@@ -27,7 +27,7 @@ LEFT_OUT = (
     ("multistep and two-step Runge–Kutta methods", "are no one-step maps"),
     ("splitting or partitioned methods", "nodepy has none"),
 )
-# Orders that names do not tell by their digits.
+# The orders of methods whose names do not tell them.
 _ORDERS = {
     "BE": 1, "FE": 1, "SSP22star": 2, "LobattoIIIA2": 2, "LobattoIIIA3": 4, "LobattoIIIC2": 2,
     "LobattoIIIC3": 4, "LobattoIIIC4": 6, "RadauIIA2": 3, "RadauIIA3": 5, "GL2": 4, "GL3": 6,
@@ -35,7 +35,8 @@ _ORDERS = {
 }  # fmt: skip
 _PAIR = re.compile(r"(\d)\((\d)\)")
 _DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
-_LOOSE = 1e-12  # above the rounding of a dozen floats, far below a wrong method's residues
+# It is larger than the rounding of a dozen floats, and far below the residuals of a wrong method.
+_RESIDUAL_TOLERANCE = 1e-12
 _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
 
@@ -150,7 +151,7 @@ def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
                for i in range(count)]  # fmt: skip
         agreements = [sympy.radsimp(sympy.expand(x)) == 0 for x in gaps]
         if not all(agreements):
-            close = all(abs(float(x)) <= _LOOSE for x in gaps)
+            close = all(abs(float(x)) <= _RESIDUAL_TOLERANCE for x in gaps)
             rounded += close
             wrong += [] if close else [key]
     if wrong:
@@ -179,8 +180,8 @@ def _check_order_method() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
         sentence = f"{key}: {returned}, and it is {order}"
         # The default tolerance is below the rounding of these floats: that is no mistake of the
         # method's order.
-        if table.rounded and _order_by_nodepy(method, tol=_LOOSE) == order:
-            coarse.append(f"{sentence}, which order(tol={_LOOSE}) returns")
+        if table.rounded and _order_by_nodepy(method, tol=_RESIDUAL_TOLERANCE) == order:
+            coarse.append(f"{sentence}, which order(tol={_RESIDUAL_TOLERANCE}) returns")
         else:
             wrong.append(sentence)
     return _order_method(len(methods), wrong, coarse, tuple(rows))

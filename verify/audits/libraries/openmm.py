@@ -1,7 +1,7 @@
 """OpenMM's Verlet integrators, in double precision on its reference platform.
 
-VerletIntegrator's velocities stand half a step before the positions: as a map of both it is
-symplectic, and its order is not that of its positions.
+The velocities of VerletIntegrator belong to a time half a step before that of the positions. As a
+map of both it is symplectic, and its order is not that of its positions.
 """
 
 from collections.abc import Iterator

@@ -28,7 +28,8 @@ LEFT_OUT = (
         "which time their chi reads is not said, and their order may ask for it",
     ),
 )
-_HIGH = 6  # an order that is not seen in the plane in float64; their tables are looked at
+# From this order on methods are judged by their tables: float64 does not show it in the plane.
+_HIGH_ORDER = 6
 _HEAD = """\
 import numpy as np
 from pyhamsys.pyhamsys import SymplecticIntegrator
@@ -74,7 +75,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         for method, order in orders.items():
             source = f"its README, “{method} (order {order}…”; autonomous and non-autonomous"
             yield _table(method, order, source, first)
-            selected_problems = problems if order < _HIGH else problems[1:2]
+            selected_problems = problems if order < _HIGH_ORDER else problems[1:2]
             yield from drive_problems(
                 f"{method}, as a step", driven, method, source, order, True, selected_problems
             )

@@ -41,9 +41,10 @@ LEFT_OUT = (
 )
 _PENDULUM = "p**2/2 - cos(q)"
 _DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
-# Dormand and Prince made the h⁶ of RK45's error small: at most points h⁷ hides it, and not here.
+# The coefficient of h⁶ in the error of RK45 is small: at most points h⁷ hides it, but not here.
 _POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
-_PLAIN: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)  # elsewhere h⁷ hides h⁶
+# For Radau h⁷ hides h⁶ at most points, but not here.
+_POINT_OF_RADAU: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)
 _SOURCE = "the documentation of scipy.integrate.{}"
 _IN_SPACE = Driver(
     """\
@@ -106,7 +107,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     source_text = _SOURCE.format("Radau")
     driven = "the collocation equations of scipy's Radau, by its own solver, to rounding"
     autonomous = FloatStep(_PENDULUM, lambda: _without_time(_radau(_field)))
-    moving = FloatStep(_DRIVEN, lambda: _radau(_driven), _PLAIN)
+    moving = FloatStep(_DRIVEN, lambda: _radau(_driven), _POINT_OF_RADAU)
     yield ReleasedIntegrator("Radau, as a step", driven, source_text, autonomous, 5)
     yield ReleasedIntegrator(
         "Radau, as a step, driven", driven, f"{source_text}: y' = f(t, y)", moving, 5

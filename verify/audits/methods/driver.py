@@ -1,7 +1,7 @@
-"""A step of someone else's library by the few lines that drive it: what is shown is what is run.
+"""Steps of other libraries by a few lines of Python that call them; these lines are also shown.
 
-The systems on which steps are tried are H = p²/2 + V(q, t), so that a step of any kind takes them.
-Of each kind there are two, as what one problem does not show another may.
+The systems on which steps are tried are H = p²/2 + V(q, t), which every kind of step takes. There
+are two of each kind, as one may show a mistake that the other does not.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -13,8 +13,8 @@ from typing import Any
 from verify.audits.methods.integrator import FloatStep, Map, ReleasedIntegrator
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-_HIGH = 5  # an order of which few points and a fine ladder tell more
-_END = {
+_HIGH_ORDER = 5  # from this order on, few points and a fine ladder of step sizes show more
+_RETURN_LINE = {
     1: "return float(np.ravel(p)[0]), float(np.ravel(q)[0])",
     2: "return np.ravel(p), np.ravel(q)",
 }
@@ -24,8 +24,8 @@ _END = {
 class ScriptedProblem:
     """A system on which steps are tried, with its force.
 
-    `description`: what it is, for people. `formula`: of H. `force`: its lines of Python,
-    force(t, q) of an array q, with numpy as np. `tag`: what is appended to a method's name.
+    `description`: a noun phrase for people. `formula`: that of H. `force`: lines of Python that
+    define force(t, q) of an array q, with numpy as np. `tag`: the end of a method's name.
     """
 
     description: str
@@ -50,7 +50,7 @@ class ScriptedProblem:
 
     @property
     def arguments(self) -> str:
-        """The arguments of a step for it."""
+        """The arguments of a step for this system."""
         return "p, q, t, h" if self.depends_on_time else "p, q, h"
 
 
@@ -89,17 +89,14 @@ COUPLED = ScriptedProblem(
     ", two degrees",
 )
 PROBLEMS = TWO_WAVES, DRIVEN, HENON_HEILES
-SECOND_PROBLEMS = {
-    TWO_WAVES: PENDULUM,
-    DRIVEN: SWUNG,
-    HENON_HEILES: COUPLED,
-}  # the second of a kind
-# p, q of the points at which a step is tried where nothing else is said.
+# The second problem of the same kind, for a second look.
+SECOND_PROBLEMS = {TWO_WAVES: PENDULUM, DRIVEN: SWUNG, HENON_HEILES: COUPLED}
+# The usual points (p, q) at which a step is tried.
 POINTS = tuple(
     (Fraction(p), Fraction(q))
     for p, q in (("1/3", "3/5"), ("-1/2", "7/8"), ("1/7", "6/5"), ("3/4", "-2/5"), ("-1/5", "-2/5"))
 )
-# Where a high order is seen in float64, between a step that is too large for it and rounding.
+# At these points a high order shows in float64, for steps between too large ones and rounding.
 POINTS_OF_HIGH_ORDER = ((Fraction(5, 4), Fraction(-1, 2)), (Fraction(-1, 3), Fraction(9, 8)))
 LONG_LADDER = tuple(Fraction(k, 64) for k in (*range(64, 16, -4), *range(16, 3, -1)))
 USUAL_LADDER = tuple(
@@ -111,9 +108,10 @@ USUAL_LADDER = tuple(
 
 
 def step_of(text: str) -> Map:
-    """Return the step(p, q, h), or step(p, q, t, h), that lines of Python define with nothing but
-    the library that they import. They are ours: nothing that is read from elsewhere is in them.
-    Raises what the library raises."""
+    """Run lines of Python, and return the step(p, q, h), or step(p, q, t, h), that they define.
+
+    The lines are our own: no text from elsewhere is in them. Raises what the library raises.
+    """
     names: dict[str, Any] = {}
     exec(compile(text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
     step: Map = names["step"]
@@ -122,10 +120,10 @@ def step_of(text: str) -> Map:
 
 @dataclass(frozen=True)
 class Driver:
-    """A way of driving the steps of a library.
+    """The lines of Python that call the step of a library.
 
-    `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the
-    lines of a step, from p, q, t and h, of arrays, to p and q; `{method}` stands for the method.
+    `head`: the imports, with numpy as np, and the definitions beside force(t, q). `body`: the lines
+    of a step, from arrays p and q, and t and h, to p and q; `{method}` stands for the method.
     `description`: one sentence.
     """
 
@@ -136,7 +134,7 @@ class Driver:
     def script(self, problem: ScriptedProblem, method: str) -> str:
         """Return the lines for one problem and one method."""
         begin = [] if problem.depends_on_time else ["t = 0.0"]
-        inside = [*begin, *self.body.strip().splitlines(), _END[problem.degrees]]
+        inside = [*begin, *self.body.strip().splitlines(), _RETURN_LINE[problem.degrees]]
         lines = [
             self.head.replace("{method}", method).strip(),
             "",
@@ -161,8 +159,7 @@ def integrator_from_script(
     points: Sequence[tuple[Fraction, ...]] = (),
     ladder: Sequence[Fraction] = (),
 ) -> ReleasedIntegrator:
-    """Build the integrator whose step the lines of `text` define, which are also what is shown of
-    it."""
+    """Build the integrator whose step the lines of `text` define, which also reproduce it."""
     step = FloatStep(formula, partial(step_of, text), tuple(points), tuple(ladder))
     return ReleasedIntegrator(name, driven, source, step, order, symplectic, text)
 
@@ -193,7 +190,7 @@ def drive_problems(
 def _points_and_ladder(
     problem: ScriptedProblem, order: int
 ) -> tuple[Sequence[tuple[Fraction, ...]], Sequence[Fraction]]:
-    """Return points and steps with which an order is seen."""
-    high = order >= _HIGH
+    """Return the points and the step sizes at which an order of this height shows."""
+    high = order >= _HIGH_ORDER
     points = (POINTS_OF_HIGH_ORDER if high else POINTS[:2]) if problem.degrees == 1 else ()
     return points, LONG_LADDER if high else USUAL_LADDER

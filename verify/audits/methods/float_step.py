@@ -8,10 +8,10 @@ from verify.audits.methods.driver import POINTS
 from verify.audits.methods.integrator import NOT_CLAIMED, FloatStep
 from verify.errors import InputError
 from verify.integrators.clocks import measure_clock_mistakes
-from verify.integrators.measured_finding import finding_of
+from verify.integrators.measured_finding import finding_from_measurement
 from verify.integrators.measures.distances import Distances
 from verify.integrators.measures.probes import FloatProbe
-from verify.integrators.measures.survey import NOWHERE, places_of_field
+from verify.integrators.measures.survey import NO_REQUEST, places_of_field
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.places.units import FloatField
 from verify.integrators.results import Finding
@@ -25,12 +25,13 @@ from verify.verdict import Verdict
 
 # A library may raise anything, and leave the program too.
 FAILURES = (Exception, SystemExit)
-_SECONDS = 60.0
-_SPAN = 1.9  # times the least step of a stretch its largest must be, for a power to count
+_STEP_SECONDS = 60.0
+# A power counts if it is seen on a stretch whose largest step size is the smallest times this.
+_MIN_STRETCH_RATIO = 1.9
 
 
 def _mark_undecided(finding: Finding, first: float, last: float) -> Finding:
-    """Leave a power undecided that is seen over a short stretch only, as one may be in passing."""
+    """Return the finding without its order, which is seen on too short a stretch of step sizes."""
     text = f"a power of h is seen from h = `{first:.2g}` to `{last:.2g}` only, too short a stretch"
     reason = prose(read_prose(text), "; ", finding.reason.partition("; ")[2])
     return replace(
@@ -39,11 +40,10 @@ def _mark_undecided(finding: Finding, first: float, last: float) -> Finding:
     )  # fmt: skip
 
 
-def _places(method: FloatStep) -> list[TrialPlace]:
-    """Return the places that the method names, with steps of 1 and less; else those that fit its
-    H."""
+def _choose_places(method: FloatStep) -> list[TrialPlace]:
+    """Return the method's own places, or else those that fit its H; the largest step size is 1."""
     hamiltonian = method.hamiltonian
-    usual = places_of_field(FloatField(hamiltonian), hamiltonian.time_dependent, NOWHERE)
+    usual = places_of_field(FloatField(hamiltonian), hamiltonian.time_dependent, NO_REQUEST)
     points = method.points or (POINTS if hamiltonian.degrees == 1 else ())
     if not points:
         return [replace(x, step=Fraction(1)) for x in usual[:6]]
@@ -56,19 +56,21 @@ def _places(method: FloatStep) -> list[TrialPlace]:
 
 @lru_cache(maxsize=256)
 def finding(method: FloatStep) -> Finding:
-    """Measure its order, and if an area defect is seen. UNDECIDED, with the reason, where it cannot
-    be measured."""
+    """Measure the order of a step, and its area defect.
+
+    The finding is UNDECIDED, with the reason, if it cannot be measured.
+    """
     hamiltonian = method.hamiltonian
-    timed = hamiltonian.time_dependent
+    time_dependent = hamiltonian.time_dependent
     try:
         callee = callee_from(
-            method.make(), hamiltonian.coordinates, time_limit=_SECONDS,
-            arguments="p,q,t,h" if timed else "p,q,h",
+            method.make(), hamiltonian.coordinates, time_limit=_STEP_SECONDS,
+            arguments="p,q,t,h" if time_dependent else "p,q,h",
         )  # fmt: skip
         step = callee.step
-        step.moving = timed
-        step.foreign = True  # nothing but floats goes in
-        trial = Trial(step, hamiltonian, _places(method))
+        step.time_dependent = time_dependent
+        step.foreign = True  # libraries take floats alone
+        trial = Trial(step, hamiltonian, _choose_places(method))
         faults, first = find_faults(step, trial.places)
         fatal = next((fault for fault in faults if fault.fatal), None)
         if fatal is not None:
@@ -77,25 +79,26 @@ def finding(method: FloatStep) -> Finding:
             step.evaluate([float(x) for x in trial.places[0].z], 0.125, float(trial.places[0].t))
         structure, distances = trial.measure("floats", [1 / h for h in method.ladder])
         assert distances is not None  # noqa: S101 - there is an H
-        result = finding_of(trial, structure, distances)
-        run = _stretch(distances, result.convergence_order)
-        # Two powers of h may look like a third in passing: only a long stretch counts.
-        if run is not None and run[0] < _SPAN * run[1]:
+        result = finding_from_measurement(trial, structure, distances)
+        run = _longest_stretch(distances, result.convergence_order)
+        # Between the ranges of two powers of h a third may be seen: only a long stretch counts.
+        if run is not None and run[0] < _MIN_STRETCH_RATIO * run[1]:
             return _mark_undecided(result, *run)
         mistakes = []
-        if timed and hamiltonian.degrees == 1:
+        if time_dependent and hamiltonian.degrees == 1:
             order = result.convergence_order
             mistakes = measure_clock_mistakes(FloatProbe(step), hamiltonian, trial.places, order)
         return replace(result, reason=join_prose("; ", (result.reason, *mistakes)))
     except FAILURES as error:
-        problem = error.said if isinstance(error, StepError) else last_line(error)
+        problem = error.clause if isinstance(error, StepError) else last_line(error)
         if isinstance(error, InputError):
             problem = str(error)
         return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", problem), "calls")
 
 
-def _stretch(distances: Distances, order: int | None) -> tuple[float, float] | None:
-    """Return the step sizes on which the order is seen, at the place where it is seen longest."""
+def _longest_stretch(distances: Distances, order: int | None) -> tuple[float, float] | None:
+    """Return the largest and the smallest step size of the longest stretch that shows the order;
+    None if there is none."""
     runs = [x.run for x in distances.places if x.run is not None and x.power == (order or 0) + 1]
     if order is None or not runs:
         return None
@@ -107,7 +110,7 @@ def _stretch(distances: Distances, order: int | None) -> tuple[float, float] | N
 
 
 def judge_measured_order(claimed: int, measured: Finding, area_claimed: bool | None) -> Ruling:
-    """Judge a measured order against the claimed one; what is not known refutes nothing."""
+    """Judge a measured order against the claimed one; an undecided order refutes nothing."""
     order, is_decided = measured.convergence_order, measured.order_decided
     remark = ""
     if area_claimed is None and measured.area_preserving is False:
@@ -115,8 +118,8 @@ def judge_measured_order(claimed: int, measured: Finding, area_claimed: bool | N
     notes = join_prose("", (prose(". ", _capital(note)) for note in measured.notes[:1]))
     if is_decided and (order is None or order >= claimed):
         return Verdict.MEASURED, prose(measured.reason, remark, notes), ()
-    # An order below 1 would mean that no scheme is there at all. It is more likely that we drive
-    # the library wrongly, so that nothing is refuted.
+    # With an order below 1 it would be no scheme. It is more likely that we drive the library
+    # wrongly, so that nothing is refuted.
     if is_decided and order is not None and order < 1:
         prefix = "nothing of H's flow is seen in it, as where it is driven in a wrong way; "
         return Verdict.UNDECIDED, prose(prefix, measured.reason), ()
@@ -126,19 +129,19 @@ def judge_measured_order(claimed: int, measured: Finding, area_claimed: bool | N
 
 
 def report_unclaimed(measured: Finding) -> Ruling:
-    """Report what is measured where nothing is claimed: it refutes nothing, whatever it is."""
+    """Report a measurement for which nothing is claimed: it refutes nothing."""
     verdict = Verdict.MEASURED if measured.order_decided else Verdict.UNDECIDED
     return verdict, measured.reason, ()
 
 
 def _capital(note: Prose) -> Prose:
-    """Return the note with a capital, where it opens with a text."""
+    """Return the note with a capital, if it begins with a text."""
     first, *further_parts = note.parts
     return prose(f"{first[0].upper()}{first[1:]}" if type(first) is str else first, *further_parts)
 
 
 def judge_measured_area(measured: Finding) -> Ruling:
-    """Refute for an area defect above the probe's own error; none that is seen is MEASURED."""
+    """Refute for an area defect above the probe's own error; if none is seen, return MEASURED."""
     error = "unknown" if measured.probe_error is None else f"`{measured.probe_error:.1e}`"
     if measured.area_preserving:
         return Verdict.MEASURED, read_prose(f"no area defect above the probe's error {error}"), ()

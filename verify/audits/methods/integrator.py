@@ -1,9 +1,9 @@
-"""An integrator of others as it is verified: what it is, how it is driven, and what it claims.
+"""An integrator of another library as it is verified: its method, its driver, and its claims.
 
-A table that a library holds as floats is read as the numbers that they stand for. A float that is a
-short quotient but for its own rounding is that quotient: of a formula such as 35/384 in a source
-nothing else is left. Any other stands for a number that its digits are rounded from, so that of
-digits nothing is claimed.
+The floats of a library's table are read as the numbers for which they stand. A float that is the
+rounding of a short quotient is read as this quotient: of a formula such as 35/384 in the source
+only the float is left. Any other float stands for a number with more digits, so that nothing is
+claimed of its digits.
 """
 
 from collections.abc import Callable, Iterable
@@ -18,7 +18,7 @@ from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
 NOT_CLAIMED = "Nothing is claimed of symplecticity"
-Map = Callable[..., Any]  # of p, q, h, or of p, q, t, h; it returns p', q'
+Map = Callable[..., Any]  # a function of p, q, h, or of p, q, t, h, that returns p', q'
 Point = tuple[Fraction, Fraction]  # p, q
 _ROUNDING = Fraction(1, 2**51)
 FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
@@ -26,12 +26,13 @@ FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
 
 @dataclass(frozen=True)
 class FloatStep:
-    """One step in floats, (p, q, h) → (p', q'), for one Hamiltonian by its `formula`; where
-    that has t in it, (p, q, t, h) → (p', q'). Of several degrees of freedom p and q are arrays.
+    """One step in floats, (p, q, h) → (p', q'), for the Hamiltonian with the `formula`.
 
-    `make` imports the library and returns the step. `points`, `ladder`: where it is tried and with
-    which steps, falling; else the usual. A high order shows between a step that is too large for it
-    and one whose error is rounding: there, few points and a fine ladder tell more.
+    If the formula has t, it is (p, q, t, h) → (p', q'). In several degrees of freedom p and q are
+    arrays. `make`: imports the library and returns the step. `points`: the points at which it is
+    tried, `ladder`: the step sizes, falling; () for the usual ones. A high order shows only between
+    steps that are too large for it and steps whose error is rounding: few points and a fine ladder
+    show more of it.
     """
 
     formula: str
@@ -47,8 +48,11 @@ class FloatStep:
 
 @dataclass(frozen=True)
 class ExactTableau:
-    """A Runge–Kutta method by its exact coefficients. `rounded`: they are floats, taken by their
-    exact binary values, so that conditions hold up to rounding at best."""
+    """A Runge–Kutta method by its exact coefficients.
+
+    `rounded`: True if they are the exact binary values of floats, so that conditions hold up to
+    rounding only.
+    """
 
     tableau: ImplicitTableau
     rounded: bool = False
@@ -63,8 +67,10 @@ class FloatTable:
 
 @dataclass(frozen=True)
 class LibraryComparison:
-    """A comparison as a whole: `compare` returns the verdict, the evidence and a table. `kind` ends
-    the claim's id."""
+    """A claim on a library as a whole.
+
+    `compare`: returns the verdict, the evidence and a table. `kind`: the end of the claim's id.
+    """
 
     statement: str
     compare: Callable[[], tuple[Verdict, str, tuple[tuple[str, ...], ...]]]
@@ -73,13 +79,13 @@ class LibraryComparison:
 
 @dataclass(frozen=True)
 class ReleasedIntegrator:
-    """An integrator of a library, with what it claims.
+    """An integrator of a library, with its claims.
 
-    `driven`: one sentence on how it is made a one-step map. `order`: the claimed order of
-    convergence; `area_preserving`: whether it is claimed to be symplectic; None if nothing is
-    claimed: of a force that depends on time the order is then told all the same. `source`: where.
-    `reproduction`: a few lines of Python that show what was found with nothing but the library.
-    `second_step`: the same at a second problem, which is asked before anything is held against it.
+    `driven`: one sentence on how it is called as a one-step map. `source`: the place of its claims.
+    `order`: the claimed order of convergence; `area_preserving`: True if it is claimed to be
+    symplectic; None for no claim. For a force that depends on t the order is reported even without
+    a claim. `reproduction`: a few lines of Python that show the finding with the library alone.
+    `second_step`: the same method at a second problem, which has to confirm a refutation.
     """
 
     name: str
@@ -98,15 +104,17 @@ class ReleasedIntegrator:
 def table_integrator(
     name: str, kind: str, driven: str, source: str, code: str = "", **keys: Any
 ) -> ReleasedIntegrator:
-    """Build the integrator of one table, with the keys of its kind; numbers in lists, of floats or
-    as texts."""
+    """Build the integrator of one table, with the keys of its kind.
+
+    Numbers stand in lists, as floats or as texts.
+    """
     texts = {key: _texts(value) for key, value in keys.items() if value is not None}
     entry = kinds.get(kind).ENTRY.model_validate({"name": name, "kind": kind, **texts})
     return ReleasedIntegrator(name, driven, source, FloatTable(entry), reproduction=code)
 
 
 def _texts(value: Any) -> Any:
-    """Return numbers as texts, within lists and arrays; the rest as it is."""
+    """Return numbers as texts, also within lists and arrays; any other value as it is."""
     if isinstance(value, str | bool | int):
         return value
     if isinstance(value, float) or (
@@ -117,14 +125,16 @@ def _texts(value: Any) -> Any:
 
 
 def text(x: float) -> str:
-    """Return the quotient of a short denominator that rounds to x, but for one unit; else x."""
+    """Return the quotient with a short denominator that is x up to one rounding; if none is, x."""
     short = quotient(x)
     return repr(x) if short is None else str(short)
 
 
 def quotient(x: float, digits: int = 5) -> Fraction | None:
-    """Return the quotient of the smallest denominator, of so many digits at most, that rounds to x
-    but for one unit; None if there is none."""
+    """Return the simplest quotient that is x up to one rounding; None if there is none.
+
+    `digits`: the largest number of digits of its denominator.
+    """
     value = Fraction(x)
     for n in range(1, digits + 1):
         # Short denominators first: of several quotients that round to x the simplest is meant.

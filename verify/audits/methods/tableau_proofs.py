@@ -1,13 +1,13 @@
 """Order and symplecticity of a Runge–Kutta method from its coefficients, for every vector field.
 
-Two proofs of an order p. Butcher's simplifying assumptions B(p), C(η), D(ζ) give it where
-p ≤ η + ζ + 1 and p ≤ 2η + 2 (Butcher 1964; Hairer, Nørsett, Wanner, theorem II.7.4); else the
-conditions of all rooted trees of at most p vertices do. An order is refuted by the first tree whose
-condition fails: each is needed by some vector field.
+There are two proofs of an order p. Butcher's simplifying assumptions B(p), C(η), D(ζ) imply it if
+p ≤ η + ζ + 1 and p ≤ 2η + 2 (Butcher 1964; Hairer, Nørsett, Wanner, theorem II.7.4). Otherwise the
+conditions of all rooted trees of at most p vertices prove it. The first tree whose condition fails
+refutes it, since each condition is necessary for some vector field.
 
-A B-series map is symplectic for every H exactly where b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of
-trees, u∘v being u with v as one more branch of its root (Calvo, Sanz-Serna, Numer. Math. 67 (1994)
-153; Hairer, Lubich, Wanner, theorem VI.7.6). b_i a_ij + b_j a_ji = b_i b_j suffices for that; where
+A B-series map is symplectic for every H if and only if b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of
+trees, where u∘v is u with v as one more branch of its root (Calvo, Sanz-Serna, Numer. Math. 67
+(1994) 153; Hairer, Lubich, Wanner, theorem VI.7.6). b_i a_ij + b_j a_ji = b_i b_j is sufficient; if
 it fails, a pair of trees that fails shows that the method is not symplectic.
 """
 
@@ -33,17 +33,18 @@ from verify.schemes.conditions.tree_conditions import MOST_ORDER, gaps_of, trees
 from verify.schemes.printed.sentences import Ruling
 from verify.verdict import Verdict
 
-ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
-WRONG = Fraction(1, 10**9)  # one above it is not, of 15 digits
-_MOST_PAIR = 8  # vertices of two trees together
+ROUNDING = Fraction(1, 10**13)  # a smaller residual comes from the rounding of coefficients
+WRONG = Fraction(1, 10**9)  # a larger residual does not, if coefficients have 15 digits
+_MAX_PAIR_VERTICES = 8  # of both trees of a pair together
 
 
 @dataclass(frozen=True)
 class TableauOrder:
-    """The order of a method, with what ends it.
+    """The order of a method, with the condition that fails.
 
-    `order`: the highest that holds, of those looked at. `next`: the condition that ends it, with
-    its `residue`. `largest`: the largest residue that was taken for rounding. `by`: what shows it.
+    `order`: the highest that holds, of those examined. `next`: the condition that fails, "" if none
+    does, with its residual `residue`. `largest`: the largest residual that counts as rounding.
+    `by`: the conditions that prove the order.
     """
 
     order: int
@@ -54,13 +55,16 @@ class TableauOrder:
 
 
 def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> TableauOrder:
-    """Return the order, looked at up to `most` at least, by simplifying assumptions if they do."""
+    """Return the order, examined up to `most` + 1, by the simplifying assumptions if they suffice.
+
+    `rounded`: True if the coefficients are floats.
+    """
     if not rounded:
-        simple = _simple(tableau.numbers)
+        simple = _order_by_assumptions(tableau.numbers)
         if simple is not None:
             return simple
-    # One order beyond the claimed one is looked at, so that the report can name the condition that
-    # ends the order.
+    # One order beyond the claimed one is examined, so that the report can name the condition that
+    # fails.
     largest, reach, by = 0.0, min(most + 1, MOST_ORDER), "the conditions of all rooted trees"
     for n in range(1, reach + 1):
         for tree, gap in gaps_of(tableau, n).items():
@@ -78,8 +82,8 @@ def value(numbers: TableauNumbers, x: Poly) -> float:
     return float(numbers.condition("", 0, x).residue)
 
 
-def _simple(numbers: TableauNumbers) -> TableauOrder | None:
-    """Decide the order by B(p), C(η) and D(ζ), where they decide it exactly."""
+def _order_by_assumptions(numbers: TableauNumbers) -> TableauOrder | None:
+    """Return the order by B(p), C(η) and D(ζ); None if they do not imply it."""
     b, a, ring = numbers.b, numbers.a, numbers.ring
     one, s = ring.one, range(len(numbers.b))
     powers = [[one] * len(b)]
@@ -153,7 +157,7 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
 
 
 def _pairs() -> Iterator[tuple[Tree, Tree]]:
-    for n in range(2, _MOST_PAIR + 1):
+    for n in range(2, _MAX_PAIR_VERTICES + 1):
         for k in range(1, n // 2 + 1):
             for u in trees(k):
                 for v in trees(n - k):

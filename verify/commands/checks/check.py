@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.claim import ClaimResult, StatementResult
 
-_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "checked_by", "domain")
-_OF_READINGS = ("statement_id", "reading", "standing")
-_OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
+_CLAIM_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "checked_by", "domain")
+_READING_KEYS = ("statement_id", "reading", "standing")
+_STATEMENT_KEYS = ("id", "source", "statement", "outcome", "readings")
 
 
 @click.command()
@@ -36,7 +36,7 @@ def check(
 ) -> CommandAnswer:
     """Check the claims in CLAIMS (a TOML file, or `paper`).
 
-    Exit status 1 where one is REFUTED, or UNDECIDED without --allow-undecided.
+    Exit status 1 if a claim is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     [defaults]                        # what the claims share
@@ -46,7 +46,7 @@ def check(
     \b
     [[claim]]
     id = "eq-21"
-    kind = "delta_j"                  # a wrong kind lists them
+    kind = "delta_j"                  # an unknown kind lists all
     formula = "3*h**3*delta*p*q"
     up_to = 4                         # + O(h⁴); without it, exactly
 
@@ -80,8 +80,8 @@ def check(
     statements = prepared.statements(results)
     return CommandAnswer(
         lambda: {
-            "claims": [pick(claim, *_KEYS, *_OF_READINGS) for claim in results],
-            "statements": [pick(statement, *_OF_STATEMENTS) for statement in statements],
+            "claims": [pick(claim, *_CLAIM_KEYS, *_READING_KEYS) for claim in results],
+            "statements": [pick(statement, *_STATEMENT_KEYS) for statement in statements],
         },
         lambda: _print(results, statements),
         failed=is_failure((claim.verdict for claim in results), allow_undecided=allow_undecided),
@@ -101,7 +101,7 @@ def _print(results: "list[ClaimResult]", statements: "Sequence[StatementResult]"
 
 
 def _is_counted(claim: "ClaimResult", statements: "Sequence[StatementResult]") -> bool:
-    """Return True for a claim of ours, and for a reading of one of these statements."""
+    """Return True for a claim without a statement, and for a reading of one of `statements`."""
     return not claim.statement_id or claim.statement_id in {
         statement.id for statement in statements
     }

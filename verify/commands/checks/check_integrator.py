@@ -8,7 +8,7 @@ import click
 from verify.commands.checks.check_options import (
     allow_undecided_option,
     is_failure,
-    looking_options,
+    place_options,
     places_json,
     print_measured,
     print_notes,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from verify.integrators.user_code.loading import Callee
     from verify.proof.proof_for_one_h import Proof
 
-_CLAIMED = click.IntRange(1, 12)
+_ORDER_RANGE = click.IntRange(1, 12)
 
 
 @click.command("check-integrator")
@@ -43,21 +43,22 @@ _CLAIMED = click.IntRange(1, 12)
     default="double",
     show_default=True,
     metavar="TYPE",
-    help="Of the numbers of a library or program: double, long-double, float128, double-double.",
+    help="The type of the numbers of a library or program: double, long-double, float128, "
+    "double-double.",
 )
 @with_hamiltonian
 @click.option(
     "--arguments",
     metavar="ORDER",
-    help="How it takes p, q and h, such as q,p,h, or q,p,t,h; it returns p' and q' in that order "
-    "too. Without it the names of its arguments tell.",
+    help="The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
+    "q' in that order too. By default the names of its arguments decide.",
 )
-@looking_options
+@place_options
 @step_size_option
-@click.option("--order", type=_CLAIMED, metavar="K", help="Claimed order of convergence.")
+@click.option("--order", type=_ORDER_RANGE, metavar="K", help="Claimed order of convergence.")
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
 @click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
-@click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
+@click.option("--area-order", type=_ORDER_RANGE, metavar="K", help="Claimed: ΔJ = O(h^K).")
 @time_limit_option
 @allow_undecided_option
 @answering
@@ -73,25 +74,25 @@ def check_integrator(
     area_order: int | None,
     time_limit: float,
     allow_undecided: bool,
-    **looking: str | None,
+    **place_texts: str | None,
 ) -> CommandAnswer:
     """Check a step of your own, in Python or any language: its order and that of ΔJ.
 
     In Python a function step(p, q, h) → (p', q').
 
-    Or step(p, q, t, h), for an H(p, q, t): then its order is that for the motion in time. For an H
-    in p1 … pn, q1 … qn p and q are arrays, and S = JᵀΩJ − Ω is looked at in place of ΔJ.
+    For an H(p, q, t) it is step(p, q, t, h), and its order is that for the motion in time. For an H
+    in p1 … pn, q1 … qn, p and q are arrays, and S = JᵀΩJ − Ω is examined in place of ΔJ.
 
-    Of a library in C, Fortran or another language LIB.so:SYMBOL, which changes p and q in place:
-    void step(int n, double t, double h, double *p, double *q). Or a program, by --command. Both
-    run in a process of their own, limited in time and memory.
+    LIB.so:SYMBOL is a function of a library, in C, Fortran or another language, which changes p and
+    q in place: void step(int n, double t, double h, double *p, double *q). --command names a
+    program. Both run in a process of their own, limited in time and memory.
 
-    THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
-    too, or file.py:FUNCTION is loaded, and the function is called.
+    THIS RUNS YOUR CODE, as no other command but check-map does: MODULE is imported, from the
+    current folder too, or file.py:FUNCTION is loaded, and the function is called.
 
-    Where its code allows it, the function is called with symbols, and all is proved; else it is
-    measured. Exit status 1 where the verdict is REFUTED, or what an option claims is UNDECIDED,
-    without --allow-undecided.
+    If its code allows it, the function is called with symbols, and all is proved; otherwise it is
+    measured. Exit status 1 if the verdict is REFUTED; or if an option claims something, the verdict
+    is UNDECIDED and --allow-undecided is not given.
 
     \b
     verify check-integrator mine:step --system pendulum
@@ -103,13 +104,13 @@ def check_integrator(
     from verify.integrators.step_check import check_integrator as check
 
     start_time = time.perf_counter()
-    request = request_from(hamiltonian.coordinates, **looking)
+    request = request_from(hamiltonian.coordinates, **place_texts)
     if hamiltonian.symbols:
         raise InputError(
             "--param", hamiltonian.symbols[0], "has no value; a step of one's own needs it"
         )
     target_name = command or target or ""
-    callee = _callee(target, command, number_type, arguments, hamiltonian, time_limit)
+    callee = _build_callee(target, command, number_type, arguments, hamiltonian, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
     with clock(target_name):
         finding = check(callee, hamiltonian, claims, request)
@@ -122,7 +123,7 @@ def check_integrator(
     )
 
 
-def _callee(
+def _build_callee(
     target: str | None,
     command: str | None,
     number_type: str,
@@ -130,7 +131,7 @@ def _callee(
     hamiltonian: "Hamiltonian",
     time_limit: float,
 ) -> "Callee":
-    """Return the step as a callee; nothing of it is called yet."""
+    """Return the step as a callee, without calling it."""
     from verify.integrators.foreign.foreign_function import (
         is_library,
         step_of_command,
@@ -164,10 +165,10 @@ def _json(
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
-    proof, example, form_proof = finding.proof, finding.counterexample, _proof_of_form(finding)
-    potential = None if form_proof else potential_of_finding(finding)
+    proof, example, s_proof = finding.proof, finding.counterexample, _proof_of_s(finding)
+    potential = None if s_proof else potential_of_finding(finding)
     witness = proof.witness if proof and finding.symplectic is not True else {}
-    # In n degrees of freedom a measured counterexample stands for the witness of a proof.
+    # In n degrees of freedom a measured counterexample takes the place of a proof's witness.
     if not witness and example is not None and finding.degrees > 1:
         witness = example.z
     against = finding.against
@@ -178,14 +179,14 @@ def _json(
         "integrator": target,
         **show.order_json(finding.order),
         **pick(finding, "how", "leading", "delta_j", "symplectic", "area_preserving"),
-        "volume_order": form_proof.volume_order if form_proof else None,
+        "volume_order": s_proof.volume_order if s_proof else None,
         "convergence_order": finding.convergence_order,
         "convergence_order_known": finding.order_decided,
         "entry": finding.entry,
         "witness": show.point_json(witness),
-        "value": form_proof.enclosure if form_proof else example.found if example else "",
-        "telescopes": form_proof.telescopes if form_proof else potential and potential.holds,
-        "potential": (form_proof.potential or None) if form_proof else potential and potential.text,
+        "value": s_proof.enclosure if s_proof else example.found if example else "",
+        "telescopes": s_proof.telescopes if s_proof else potential and potential.holds,
+        "potential": (s_proof.potential or None) if s_proof else potential and potential.text,
         "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
@@ -201,8 +202,8 @@ def _json(
     }  # fmt: skip
 
 
-def _proof_of_form(finding: "Finding") -> "Proof | None":
-    """Return the finding's proof if it is one of S, in n degrees of freedom."""
+def _proof_of_s(finding: "Finding") -> "Proof | None":
+    """Return the finding's proof if it is one on S = JᵀΩJ − Ω, in n degrees of freedom."""
     return finding.proof if finding.proof and not finding.proof.planar else None
 
 
@@ -211,9 +212,9 @@ def _print(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> None:
 
     from verify.integrators.results import potential_of_finding
 
-    proof, form_proof, degrees = finding.proof, _proof_of_form(finding), finding.degrees
-    if form_proof is not None:
-        proof_view = replace(form_proof, verdict=finding.verdict, reason=finding.reason)
+    proof, s_proof, degrees = finding.proof, _proof_of_s(finding), finding.degrees
+    if s_proof is not None:
+        proof_view = replace(s_proof, verdict=finding.verdict, reason=finding.reason)
         show.print_symplectic(hamiltonian.texts, target, proof_view)
     elif proof is not None and finding.verdict is proof.verdict:
         show.print_proof(hamiltonian, target, proof, potential_of_finding(finding))

@@ -8,7 +8,7 @@ import click
 from verify.commands.checks.check_options import (
     allow_undecided_option,
     is_failure,
-    looking_options,
+    place_options,
     places_json,
     print_measured,
     print_notes,
@@ -25,12 +25,19 @@ if TYPE_CHECKING:
 
 @click.command("check-map")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@click.option("--degrees", type=int, default=1, show_default=True, metavar="N", help="Of freedom.")
+@click.option(
+    "--degrees",
+    type=int,
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="The number of degrees of freedom.",
+)
 @click.option(
     "--arguments",
     metavar="ORDER",
-    help="Of a map(z) of one sequence: where the coordinates stand in it, such as q1,p1,q2,p2. "
-    "Without it p1, …, pn, q1, …, qn.",
+    help="The order of the coordinates in the argument of a map(z), such as q1,p1,q2,p2. "
+    "By default p1, …, pn, q1, …, qn.",
 )
 @click.option(
     "--param",
@@ -39,7 +46,7 @@ if TYPE_CHECKING:
     metavar="NAME=VALUE",
     help="A further argument that it takes by name; repeatable.",
 )
-@looking_options
+@place_options
 @time_limit_option
 @allow_undecided_option
 @answering
@@ -50,18 +57,18 @@ def check_map(
     params: tuple[str, ...],
     time_limit: float,
     allow_undecided: bool,
-    **looking: str | None,
+    **place_texts: str | None,
 ) -> CommandAnswer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
 
-    p and q are numbers, or arrays of N numbers; or it is map(z) → z' of one array of 2 N numbers.
-    Symplectic: JᵀΩJ = Ω at every point, J = ∂(p', q')/∂(p, q).
+    p and q are numbers, or arrays of N numbers; or the function is map(z) → z', where z is one
+    array of 2 N numbers. Symplectic means JᵀΩJ = Ω at every point, J = ∂(p', q')/∂(p, q).
 
     THIS RUNS YOUR CODE: MODULE is imported, from the current folder too, or file.py:FUNCTION is
     loaded, and the function is called.
 
-    Where its code allows it, the function is called with symbols, and all is proved; else it is
-    measured. Exit status 1 where it is REFUTED, or UNDECIDED without --allow-undecided.
+    If its code allows it, the function is called with symbols, and all is proved; otherwise it is
+    measured. Exit status 1 if the verdict is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     verify check-map mine.py:henon --degrees 1
@@ -75,7 +82,7 @@ def check_map(
     start_time = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
-    request = request_from(names, **looking)
+    request = request_from(names, **place_texts)
     parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
     callee = callee_from(
         load(target, "map"), names, stepped=False, arguments=arguments, parameters=parameters,

@@ -1,6 +1,7 @@
 """Options of the commands that check, and what these print of verdicts and measurements.
 
-A check of a user's code looks at places, which options name; every check fails by its verdicts.
+Options name a place, a state with a step size, at which a user's code is to be evaluated. The
+verdicts of a check decide its exit status.
 """
 
 from collections import Counter
@@ -21,15 +22,15 @@ if TYPE_CHECKING:
 
 
 allow_undecided_option = click.option(
-    "--allow-undecided", is_flag=True, help="Exit status 0 also where a claim is UNDECIDED."
+    "--allow-undecided", is_flag=True, help="Exit status 0 even if a claim is UNDECIDED."
 )
 
 
 def is_failure(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
     """Return True if a verdict is REFUTED, or UNDECIDED without --allow-undecided.
 
-    `verdicts`: those of all requested claims. An undecided claim is not a pass: else a check could
-    be passed by a claim that nothing decides.
+    `verdicts`: those of all requested claims. An undecided claim fails: otherwise a claim that
+    nothing decides would pass.
     """
     return any(x == "REFUTED" or (x == "UNDECIDED" and not allow_undecided) for x in verdicts)
 
@@ -41,24 +42,26 @@ def print_tally(verdicts: Iterable[str]) -> None:
     click.echo(f"{count(counts.total(), 'claim')}: {', '.join(words)}")
 
 
-# -- the places at which a user's code is looked at ------------------------------------------------
+# -- the places at which a user's code is evaluated ------------------------------------------------
 
-looking_options = options(
-    click.option("--q", "q", metavar="Q", help="A state to look at first: q, or q1,q2,…"),
+place_options = options(
+    click.option(
+        "--q", "q", metavar="Q", help="The displacements of the first state to try: q, or q1,q2,…"
+    ),
     click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
     click.option(
         "--scale",
         metavar="NAME=SIZE,…",
-        help="Sizes of the coordinates, such as q=7000,p=7.5; else those of H, or of the map.",
+        help="Sizes of the coordinates, such as q=7000,p=7.5; by default those of H or the map.",
     ),
     click.option(
         "--within",
         metavar="SIZE",
-        help="A defect that you allow, such as 1e-8; else that of the numbers' rounding.",
+        help="A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
     ),
 )
 step_size_option = click.option(
-    "--step-size", metavar="H", help="The step size that matters to you: the largest looked at."
+    "--step-size", metavar="H", help="The step size that matters to you, the largest that is tried."
 )
 
 
@@ -71,7 +74,7 @@ def request_from(
     within: str | None,
     step_size: str | None = None,
 ) -> "Request":
-    """Return the request of these options. Raises InputError."""
+    """Return the request that these options describe. Raises InputError."""
     from verify.arithmetic.exact import positive
     from verify.integrators.measures.survey import Request
 
@@ -84,7 +87,10 @@ def request_from(
 
 
 def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Fraction, ...] | None:
-    """Return p1, …, qn of two lists; None if neither is given. Raises InputError."""
+    """Return the state p1, …, qn from the texts of q and p, lists with commas.
+
+    None if neither is given. Raises InputError.
+    """
     from verify.arithmetic.exact import rational
 
     if p is None and q is None:
@@ -120,13 +126,13 @@ def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
     return sizes
 
 
-def places_json(step_names: Sequence[str], places: "Sequence[TrialPlace]") -> list[dict[str, str]]:
-    """Return the places that were looked at, by the names of their coordinates."""
+def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> list[dict[str, str]]:
+    """Return the places at which the code was evaluated, each coordinate by its name."""
     from verify.arithmetic.exact import text
 
     return [
         {
-            **{name: text(x) for name, x in zip(step_names, place.z, strict=True)},
+            **{name: text(x) for name, x in zip(coordinates, place.z, strict=True)},
             "t": text(place.t),
             "step_size": text(place.step),
             "chosen_by": place.source,
@@ -136,7 +142,7 @@ def places_json(step_names: Sequence[str], places: "Sequence[TrialPlace]") -> li
 
 
 def print_measured(finding: "Finding") -> None:
-    """Print the measured defect for a reader."""
+    """Print the largest measured defect, and whether det J was 1."""
     if finding.largest is not None and finding.probe_error is not None:
         name = "ΔJ" if finding.degrees == 1 else "S"
         noise = f"the noise of such a value {finding.probe_error:.1e}"
@@ -148,7 +154,7 @@ def print_measured(finding: "Finding") -> None:
 
 
 def print_notes(finding: "Finding") -> None:
-    """Print the finding's counterexample and notes for a reader."""
+    """Print the finding's counterexample and notes."""
     if finding.counterexample is not None:
         click.echo(f"  against  {finding.counterexample}")
     for note in finding.notes:

@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 def check_table(tables: Path, allow_undecided: bool) -> CommandAnswer:
     """Judge printed tables of coefficients by what they claim.
 
-    Exit status 1 where a claim is REFUTED, or UNDECIDED without --allow-undecided.
+    Exit status 1 if a claim is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     [[table]]
     name = "Ruth 3"
-    kind = "splitting"                # a wrong kind lists them
+    kind = "splitting"                # an unknown kind lists all
     order = 3
     first = "kick"                    # or "drift", or "both"
     sizes = ["7/24", "2/3", "3/4", "-2/3", "-1/24", "1"]
-    times = ["0", "-", "2/3", "-", "0", "-"]     # where it prints them
+    times = ["0", "-", "2/3", "-", "0", "-"]     # may be left out
 
     \b
     [[table]]
@@ -46,9 +46,9 @@ def check_table(tables: Path, allow_undecided: bool) -> CommandAnswer:
     """
     from verify.integrators.tables.table_file import check_table as check
 
-    start = time.perf_counter()
+    start_time = time.perf_counter()
     judgements = check(tables)
-    seconds = f"{time.perf_counter() - start:.6f}"
+    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
         lambda: {"claims": [_json(judgement) for judgement in judgements], "seconds": seconds},
         lambda: _print(judgements),

@@ -21,7 +21,7 @@ class CommandGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name, command, arguments = super().resolve_command(ctx, args)
-        applies = not ctx.resilient_parsing  # a shell that completes the line wants no word of it
+        applies = not ctx.resilient_parsing  # a shell that completes a line must get no message
         if applies and command is not None and not isinstance(command, click.Group):
             _check_single_options(
                 command, click.Context(command, parent=ctx, info_name=name), arguments
@@ -33,33 +33,32 @@ def _check_single_options(
     command: click.Command, context: click.Context, arguments: list[str]
 ) -> None:
     try:
-        # The parser is run once more, only to count the options: click's own pass forgets repeated
-        # ones.
-        _, _, order = command.make_parser(context).parse_args(list(arguments))
-    except click.ClickException:  # which is told when the command itself reads them
+        # The parser runs once more, only to count the options: click itself forgets repeated ones.
+        _, _, typed_options = command.make_parser(context).parse_args(list(arguments))
+    except click.ClickException:  # the command reports it when it parses the arguments itself
         return
-    for option, times in Counter(order).items():
-        # A repeated flag says the same twice, and is no mistake.
+    for option, repeats in Counter(typed_options).items():
+        # A repeated flag means the same as a single one, and is no mistake.
         single = isinstance(option, click.Option) and not (option.multiple or option.is_flag)
-        if single and times > 1:
+        if single and repeats > 1:
             from verify.commands.shared.usage import commands_with
 
             several = commands_with(set(option.opts), context, several=True)
             instead = f"several go with {several}" if several else "call it once for each"
             problem = f"{context.command_path} takes one; {instead}"
-            values = ", ".join(_values(option, arguments)) or NOT_GIVEN
+            values = ", ".join(_values_after(option, arguments)) or NOT_GIVEN
             raise InputError(option.opts[-1], values, problem)
 
 
-def _values(option: click.Parameter, arguments: Sequence[str]) -> list[str]:
-    """Return the values after the option, or after its `=`."""
+def _values_after(option: click.Parameter, arguments: Sequence[str]) -> list[str]:
+    """Return the values of the option: the word after it, or the text after its `=`."""
     parts = [word.partition("=") for word in arguments]
     pairs = zip(parts, [*arguments[1:], ""], strict=True)
-    return [x if equals else after for (name, equals, x), after in pairs if name in option.opts]
+    return [x if equals else word for (name, equals, x), word in pairs if name in option.opts]
 
 
 def with_typed_names(command: click.Command) -> click.Command:
-    """Make the InputErrors of a command, and of those in it, name options as they are typed."""
+    """Make the InputErrors of a command, and of its subcommands, name options as typed."""
     if isinstance(command, click.Group):
         for inner in command.commands.values():
             with_typed_names(inner)

@@ -1,6 +1,6 @@
 """Options that name a file or folder to write, checked before anything is computed.
 
-A missing folder is made, but only in an existing one: a longer path may be mistyped.
+A missing folder is made, but only in an existing one: if more is missing, the path may be mistyped.
 """
 
 import re
@@ -11,20 +11,23 @@ from verify.commands.shared.input import NonemptyPath
 from verify.errors import InputError
 
 STANDARD_OUTPUT = Path("-")
-_KEPT = "kept"  # the folder of what is finished
-# A name that ends so means a file.
-_OF_FILES = ".csv .htm .html .json .md .pdf .png .svg .toml .txt .v .zip".split()  # noqa: SIM905
+_KEPT_FOLDER = "kept"  # the name of the folder of finished results, within that of a report
+# With one of these suffixes a name means a file.
+_FILE_SUFFIXES = ".csv .htm .html .json .md .pdf .png .svg .toml .txt .v .zip".split()  # noqa: SIM905
 
 
 class _OutFile(NonemptyPath):
-    """The type of a file to write, in an existing folder; or -, which an option may take."""
+    """The type of a file to write, in an existing folder.
+
+    A - is not checked: a command may take it for standard output.
+    """
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         from verify.files import check_replaceable
 
         path, option = super().convert(value, param, ctx), param.opts[-1]
         if path != STANDARD_OUTPUT:
-            _check_above(path, option)
+            _check_parent(path, option)
             check_replaceable(path, option)
             try:
                 ensure_writable(path.parent)
@@ -39,17 +42,17 @@ class _OutFolder(NonemptyPath):
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         path = super().convert(value, param, ctx)
         option = param.opts[-1] if param.opts[-1].startswith("-") else param.metavar
-        if path.suffix.lower() in _OF_FILES and not path.is_dir():
+        if path.suffix.lower() in _FILE_SUFFIXES and not path.is_dir():
             problem = f"names a file; give a folder, into which files are written: {path.stem}"
             raise InputError(option, str(path), problem)
-        _check_above(path, option)
+        _check_parent(path, option)
         return path
 
 
 OUT_FILE, OUT_FOLDER = _OutFile(path_type=Path), _OutFolder(path_type=Path)
 
 
-def _check_above(path: Path, option: str = "--output") -> None:
+def _check_parent(path: Path, option: str = "--output") -> None:
     if not path.parent.is_dir():
         problem = f"there is no folder {path.parent}; make it first, or give one that is there"
         raise InputError(option, str(path), problem)
@@ -59,7 +62,7 @@ def ensure_writable(folder: Path, option: str = "--output") -> None:
     """Make the folder, and check that a file can be made in it; InputError if it cannot."""
     from tempfile import TemporaryFile
 
-    _check_above(folder, option)
+    _check_parent(folder, option)
     if folder.exists() and not folder.is_dir():
         raise InputError(option, str(folder), "File exists, and is no folder; give a folder")
     try:
@@ -74,17 +77,19 @@ def ensure_writable(folder: Path, option: str = "--output") -> None:
 
 
 def check_ours(folder: Path, pattern: re.Pattern[str] | None = None, *, advice: str = "") -> None:
-    """Raise InputError if a folder holds files that are not of an earlier report of ours.
+    """Raise InputError if a folder holds files that an earlier report of ours did not write.
 
-    A folder of ours has a report's data, of whatever version; or nothing but the kept results of an
-    interrupted report, and files whose names match `pattern`.
+    A folder of ours has the data of a report, of whatever version; or else nothing but the kept
+    results of an interrupted report, and files whose names match `pattern`.
     """
     from verify.formats import names_format
     from verify.pages.page import DATA
     from verify.scenes.results.report import FORMAT
 
     try:
-        names = {path.name for path in folder.iterdir()} - {_KEPT} if folder.exists() else set()
+        names = (
+            {path.name for path in folder.iterdir()} - {_KEPT_FOLDER} if folder.exists() else set()
+        )
         foreign = [name for name in sorted(names) if pattern is None or not pattern.fullmatch(name)]
         # A report of any version is ours, and may be replaced by a new one.
         if foreign and not names_format(folder / DATA, FORMAT):
@@ -97,8 +102,8 @@ def check_ours(folder: Path, pattern: re.Pattern[str] | None = None, *, advice: 
 def ensure_keepable(folder: Path, option: str = "--keep") -> None:
     """Make a folder where results are kept, as `ensure_writable` does.
 
-    InputError also if it lies in what is shipped: the name of a kept result is a digest of all
-    files there, so that keeping one would change the names of all.
+    InputError also if it lies in what verify ships: the name of a kept result has a digest of all
+    shipped files, so that a result kept there would change the names of all results.
     """
     from verify.content import is_shipped
     from verify.files import clear_abandoned
@@ -111,7 +116,7 @@ def ensure_keepable(folder: Path, option: str = "--keep") -> None:
 
 
 def ensure_writable_later(folder: Path) -> None:
-    """Check --output as `ensure_writable` does, and leave no folder that was not there."""
+    """Check --output as `ensure_writable` does, but remove the folder again if that made it."""
     existed = folder.exists()
     ensure_writable(folder)
     if not existed:

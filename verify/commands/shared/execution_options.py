@@ -29,16 +29,17 @@ if TYPE_CHECKING:
 
 
 def _disable_cache(context: click.Context, _: click.Parameter, is_set: bool) -> None:
-    """Make this process and its workers look for no kept kernels."""
+    """Turn the cache off for this process and its workers if `is_set`; else check its setting."""
     if context.resilient_parsing:  # a shell that completes the line
         return
     if not is_set:
-        folder()  # a VERIFY_CACHE that is no folder's is refused before anything is computed
+        folder()  # for its InputError: a wrong VERIFY_CACHE is refused before anything is computed
         return
-    # Workers inherit the environment; the variable is put back, as tests run several commands.
-    before = os.environ.get(VARIABLE, "")
+    # Workers inherit the environment. The variable is put back, as tests run several commands in
+    # one process; if it was not set it becomes empty, which means the same.
+    previous_setting = os.environ.get(VARIABLE, "")
     os.environ[VARIABLE] = OFF
-    context.call_on_close(lambda: os.environ.update({VARIABLE: before}))
+    context.call_on_close(lambda: os.environ.update({VARIABLE: previous_setting}))
 
 
 cache_option = click.option(
@@ -52,18 +53,18 @@ keep_option = click.option(
     "--keep",
     type=OUT_FOLDER,
     metavar="DIR",
-    help="Keep what is finished there; the same command goes on from it.",
+    help="Keep finished results in this folder; the same command continues from them.",
 )
 workers_option = click.option(
     "--workers",
     type=click.IntRange(1, 256),
     metavar="N",
-    help="Processes; without it, as many as the work is worth.",
+    help="The number of processes; by default as many as the work is worth.",
 )
 cluster_option = click.option(
     "--cluster",
     metavar="ADDRESS",
-    help="Run them on the Dask cluster whose scheduler is there, tcp://HOST:PORT.",
+    help="Run on the Dask cluster with this scheduler, tcp://HOST:PORT.",
 )
 
 
@@ -98,7 +99,8 @@ def kept_tasks(
 ) -> "Iterator[tuple[Store, OnResult]]":
     """Yield the store of results, and the function to call with each finished task.
 
-    A bar shows the progress; after an interruption a line says what is kept where.
+    A bar shows the progress. If KeyboardInterrupt ends the work, a line says how many results are
+    kept, and where.
     """
     from verify.execution.execute import Store
 
@@ -115,7 +117,7 @@ def kept_tasks(
             yield store, on_result
     except KeyboardInterrupt:
         if keep is not None:
-            paths = map(store.path, tasks)  # one may be written and not yet told
+            paths = map(store.path, tasks)  # a result may be written, but not reported yet
             finished = sum(path is not None and path.exists() for path in paths)
             text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
             click.echo(f"{text}; the same command goes on from there", err=True)
@@ -131,7 +133,7 @@ Advance = Callable[[int], None]
 def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advance]:
     """Yield `advance(units)`, which does nothing if standard error is not a terminal.
 
-    The bar shows units per second if they have a name, and the time left.
+    The bar shows the remaining time, and units per second if `unit` is not empty.
     """
     if not (total > 0 and sys.stderr.isatty()):
         yield lambda _: None
@@ -150,7 +152,7 @@ def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advanc
         def render(self, task: Any) -> Text:
             return Text(f"{task.speed:,.0f} {unit}/s" if task.speed and task.speed > 0 else "")
 
-    stream = getattr(sys.stderr, "stream", sys.stderr)  # which takes what moves its cursor
+    stream = getattr(sys.stderr, "stream", sys.stderr)  # without the escapes of `Printable`
     columns: list[ProgressColumn | str] = ["{task.description}", BarColumn(), TaskProgressColumn()]
     columns += [Speed()] if unit else []
     columns.append(TimeRemainingColumn())
@@ -161,27 +163,27 @@ def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advanc
 
 @contextmanager
 def counting_bar(label: str, total: int, unit: str = "steps") -> Iterator[Callable[[int], None]]:
-    """Yield `advance_to(count)`, for work that may begin anew; `count`: units done so far."""
+    """Yield `advance_to(count)`, with the units done so far; it goes back if work begins anew."""
     with progress_bar(label, total, unit) as advance:
-        last = 0
+        previous_count = 0
 
         def advance_to(count: int) -> None:
-            nonlocal last
-            advance(count - last)
-            last = count
+            nonlocal previous_count
+            advance(count - previous_count)
+            previous_count = count
 
         yield advance_to
 
 
 @contextmanager
 def clock(label: str, after: float = 2.0) -> Iterator[None]:
-    """Show the elapsed time in a line on a terminal, from `after` seconds on."""
+    """Show the elapsed time in a line on a terminal, after the first `after` seconds."""
     if not sys.stderr.isatty():
         yield
         return
     # The work runs in this thread; another one writes the line.
     stop_event, start_time = threading.Event(), time.monotonic()
-    stream = getattr(sys.stderr, "stream", sys.stderr)  # which takes what moves its cursor
+    stream = getattr(sys.stderr, "stream", sys.stderr)  # without the escapes of `Printable`
 
     def show_time() -> None:
         wait = after

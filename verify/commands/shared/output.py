@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
-FAILED = 1  # exit status
+FAILED = 1  # the exit status if a check failed
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def answering(command: Callable[..., CommandAnswer]) -> Callable[..., None]:
         answer = command(*args, **options)
         if as_json:
             encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-            # A terminal of another encoding gets escapes, which mean the same in JSON.
+            # If the stream has another encoding, escapes are written, which JSON reads alike.
             ascii_only = encoding.lower().replace("-", "") != "utf8"
             click.echo(json.dumps(answer.data(), ensure_ascii=ascii_only))
         else:
@@ -67,45 +67,46 @@ def pick(source: object, *names: str) -> dict[str, Any]:
 
 # -- as JSON and as text ---------------------------------------------------------------------------
 
-_WIDTH, _NAMES = 88, 10  # of a line, and of the name that it begins with
-_LONGEST = 400  # characters of a formula on the terminal
+_LINE_WIDTH, _NAME_WIDTH = 88, 10  # characters; a line begins with a name
+_MAX_CHARACTERS = 400  # the limit for a formula on a terminal
 
 
 def cut(formula: str) -> str:
     """Return the formula, or its beginning if it is long: the JSON has all of it."""
-    if len(formula) <= _LONGEST:
+    if len(formula) <= _MAX_CHARACTERS:
         return formula
     terms = formula.count(" + ") + formula.count(" - ") + 1
-    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
+    # The last term may be cut: it goes, with the sign before it.
+    return f"{formula[:_MAX_CHARACTERS].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
 
 
 def print_line(name: str, text: str) -> None:
     """Print a name and its text, wrapped."""
-    first, indent = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
-    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))
+    beginning, indent = f"  {name:{_NAME_WIDTH}} ", " " * (_NAME_WIDTH + 3)
+    click.echo(textwrap.fill(text, _LINE_WIDTH, initial_indent=beginning, subsequent_indent=indent))
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:
     from verify.scenes.observables import REPORTED, names
 
-    # Programs can rely on a key for each usual observable, null if it was not computed; the
-    # other observables have a key only if they were computed.
-    every, planar = observables.by_name(), isinstance(result.q, str)
+    # Each usual observable has a key, null if it was not computed, so that programs can rely on it;
+    # another observable has a key only if it was computed.
+    by_name, planar = observables.by_name(), isinstance(result.q, str)
     keys = dict.fromkeys((*names(planar=planar), *REPORTED))
-    selected = (n for n in keys if every[n].usual or n in REPORTED or n in result.values)
+    selected = (n for n in keys if by_name[n].usual or n in REPORTED or n in result.values)
     values = {name: _value_json(result, name) for name in (*selected, "q", "p")}
     return {
         **{name: value for name, (value, _) in values.items()},
         **pick(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
         "error_bound": {name: bound for name, (_, bound) in values.items() if bound},
-        # `exact` names values that a proof gives without a run.
+        # `exact` names the values that come from a proof, not from the run.
         **pick(result, "error_kind", "error_method", "exact", "status", "failed_step"),
         "seconds": f"{result.seconds:.6f}",
     }
 
 
 def _value_json(result: "RunResult", name: str) -> tuple[Any, Any]:
-    """Return a value and its bound; lists of q and of p in n degrees of freedom."""
+    """Return a value and its bound; for q or p in n degrees of freedom a list of each."""
     if name in ("q", "p") and not isinstance(result.q, str):
         coordinates = [x for n, x in result.values.items() if n[0] == name and n[1:].isdigit()]
         return (
@@ -118,7 +119,7 @@ def _value_json(result: "RunResult", name: str) -> tuple[Any, Any]:
 
 
 def explain_unfinished(result: "RunResult") -> str:
-    """Return the reason why a run has no numbers; empty if it has."""
+    """Return the reason why a run has no numbers; an empty text if it has."""
     if result.status == "finished":
         return ""
     if result.status == "unresolved":
@@ -130,7 +131,7 @@ def explain_unfinished(result: "RunResult") -> str:
 
 
 def print_once(notes: Iterable[str]) -> None:
-    """Print each of the notes on a line, once; empty ones are skipped."""
+    """Print each note that is not empty on a line, and equal notes only once."""
     for note in filter(None, dict.fromkeys(notes)):
         click.echo(note)
 
@@ -177,6 +178,8 @@ def print_report(report: "Report", *pages: Path) -> None:
     if report.statements:
         click.echo(describe_counts(report.statements, report.claims))
     for scene in report.scenes:
-        for c in scene.criteria:
-            click.echo(f"{c.verdict:9}  {scene.name}, {c.scheme}, criterion {c.number}")
+        for result in scene.criteria:
+            click.echo(
+                f"{result.verdict:9}  {scene.name}, {result.scheme}, criterion {result.number}"
+            )
     click.echo(f"{', '.join(map(str, pages))} ({report.provenance.seconds:.3g} s)")

@@ -1,4 +1,7 @@
-"""Output of proofs, as JSON and as lines: of ΔJ in the plane, of S in n degrees of freedom."""
+"""Output of proofs, as JSON and as lines.
+
+In the plane a proof is about ΔJ = det J − 1, in n degrees of freedom about S = JᵀΩJ − Ω.
+"""
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
     from verify.proof.proof_for_one_h import Proof
     from verify.proof.special_values import SpecialValue
 
-_LONG = 352  # characters of S, beyond which its formula stands for it
+_MAX_LEADING_CHARACTERS = 352  # instead of a longer leading coefficient of S its formula is printed
 
 
 class Agreeing(Protocol):
@@ -29,7 +32,7 @@ class Agreeing(Protocol):
 
 
 def describe_agreement(proof: Agreeing) -> str:
-    """Return words for the order of consistency, and whether it may be higher."""
+    """Return the order of consistency in words, with a remark if it may be higher."""
     order = proof.convergence_order
     if order is None:
         return "in all powers of h that were looked at"
@@ -38,7 +41,7 @@ def describe_agreement(proof: Agreeing) -> str:
 
 
 def agreement_json(proof: Agreeing) -> dict[str, Any]:
-    """Return the order of consistency as JSON; known if no higher one is possible."""
+    """Return the order of consistency as JSON, and True if it is known that no higher one holds."""
     order = proof.convergence_order
     is_decided = order is not None and proof.convergence_decided
     return {"convergence_order": order, "convergence_order_known": is_decided}
@@ -54,12 +57,11 @@ def proof_json(
     scheme: str,
     proof: "Proof | ProofForEveryH",
     seconds: str,
-    **differs: Any,
+    **more_keys: Any,
 ) -> dict[str, Any]:
-    """Return the keys of every proof.
+    """Return the keys of every proof, and `more_keys`, which also replace keys of the same names.
 
-    `texts`: H and its parameters, or a description of every H; `differs`: further keys, or other
-    values for these.
+    `texts`: H and its parameters, or a description of every H.
     """
     return {
         **pick(proof, "verdict", "reason"),
@@ -72,7 +74,7 @@ def proof_json(
         **agreement_json(proof),
         "domain": proof.domain.texts,
         "special_values": [],
-        **differs,
+        **more_keys,
         "seconds": seconds,
     }
 
@@ -81,10 +83,10 @@ def checks_json(proof: "Proof | ProofForEveryH") -> dict[str, Any]:
     """Return the keys of the leading coefficient and of its checks; for S its entry and det J."""
     from dataclasses import asdict
 
-    of_form = ("degrees", "entry", "volume_order", "volume_leading")
-    point = {"witness": point_json(getattr(proof, "witness", {}))}  # there is none of every H
+    keys_of_s = ("degrees", "entry", "volume_order", "volume_leading")
+    point = {"witness": point_json(getattr(proof, "witness", {}))}  # a proof for every H has none
     return {
-        **({**pick(proof, *of_form), **point} if proof.degrees > 1 else {}),
+        **({**pick(proof, *keys_of_s), **point} if proof.degrees > 1 else {}),
         **pick(proof, "telescopes", "why", "checked"),
         "formula": proof.formula or None,
         "potential": proof.potential or None,
@@ -100,7 +102,7 @@ def point_json(point: "Mapping[str, Fraction]") -> dict[str, str]:
 
 
 def point_text(point: "Mapping[str, Fraction]") -> str:
-    """Return a point as exact numbers, in a line."""
+    """Return a point as a line of names with exact numbers."""
     return ", ".join(f"{name} = {value}" for name, value in point_json(point).items())
 
 
@@ -163,10 +165,14 @@ def print_symplectic(
         print_line(name, value)
     print_line("scheme", scheme)
     if proof.order is not None:
-        long = proof.formula or proof.leading_text
-        formula = proof.leading_text if len(proof.leading_text) < _LONG else long
+        short_formula = proof.formula or proof.leading_text
+        formula = (
+            proof.leading_text
+            if len(proof.leading_text) < _MAX_LEADING_CHARACTERS
+            else short_formula
+        )
         print_line("S", f"({cut(formula)})·h^{proof.order} + O(h^{proof.order + 1})")
-    if getattr(proof, "witness", None) or getattr(proof, "enclosure", ""):  # of one H
+    if getattr(proof, "witness", None) or getattr(proof, "enclosure", ""):  # a proof for one H
         print_line("witness", _describe_witness(cast("Proof", proof)))
     print_line("det J", _describe_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:

@@ -1,4 +1,4 @@
-"""A scene given by options in one line, for commands that otherwise take a file."""
+"""A scene from options on the command line, for commands that otherwise take a file."""
 
 import shlex
 from collections.abc import Callable, Mapping
@@ -20,8 +20,8 @@ from verify.errors import NOT_GIVEN, InputError
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
-_SYSTEM = ("system", "hamiltonian", "params")
-_REQUIRED = ("schemes", "step_sizes")
+_SYSTEM_OPTIONS = ("system", "hamiltonian", "params")
+_REQUIRED_OPTIONS = ("schemes", "step_sizes")
 schemes_option = click.option(
     "--scheme",
     "schemes",
@@ -34,11 +34,17 @@ start_options = options(
     click.option("--q", metavar="Q", help="Initial displacement."),
     click.option("--p", metavar="P", help="Initial momentum."),
 )
-_STEPS = options(
+_step_options = options(
     click.option(
-        "--step-size", "step_sizes", multiple=True, metavar="H", help="Greater than 0; repeatable."
+        "--step-size",
+        "step_sizes",
+        multiple=True,
+        metavar="H",
+        help="The step size, greater than 0; repeatable.",
     ),
-    click.option("--t0", metavar="T", help="When it starts, of an H(p, q, t).  [default: 0]"),
+    click.option(
+        "--t0", metavar="T0", help="The start time, if the Hamiltonian depends on t.  [default: 0]"
+    ),
 )
 
 
@@ -50,7 +56,7 @@ def with_one_line(*extra_options: Callable[..., Any]) -> Callable[..., Any]:
     """
 
     def add_options(command: Callable[..., Any]) -> Callable[..., Any]:
-        command = schemes_option(_STEPS(options(*extra_options)(command)))
+        command = schemes_option(_step_options(options(*extra_options)(command)))
         argument = click.argument("scene", type=SCENE, required=False, metavar="[SCENE]")
         return argument(hamiltonian_options(command))
 
@@ -63,11 +69,11 @@ def scenes_of(
     required: tuple[str, ...],
     sections: Callable[..., Mapping[str, Any]],
 ) -> "list[Scene]":
-    """Return the scenes of SCENE, or the one of the options in `values`.
+    """Return the scenes that SCENE names, or one scene that the options in `values` describe.
 
-    `required`: options that cannot be left out, besides schemes and step sizes. `sections` makes
-    the scene's sections of all options but those of the system and the schemes. Raises InputError
-    if both SCENE and options are given, or neither, or if one is missing.
+    `required`: the options that must be given, besides schemes and step sizes. `sections` builds
+    the scene's sections from all options but those of the system and the schemes. Raises InputError
+    if both SCENE and options are given, or neither, or if a required option is missing.
     """
     if scene is not None:
         check_scene_alone(values)
@@ -77,13 +83,15 @@ def scenes_of(
         raise InputError(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
-    hamiltonian = hamiltonian_of(*(values[name] for name in _SYSTEM))
-    for name in (*_REQUIRED, *required):
+    hamiltonian = hamiltonian_of(*(values[name] for name in _SYSTEM_OPTIONS))
+    for name in (*_REQUIRED_OPTIONS, *required):
         if name not in requested:
             raise InputError(name, NOT_GIVEN, "is missing")
     from verify.calls.inputs import scene_of
 
-    section_values = {n: x for n, x in requested.items() if n not in (*_SYSTEM, "schemes", "t0")}
+    section_values = {
+        n: x for n, x in requested.items() if n not in (*_SYSTEM_OPTIONS, "schemes", "t0")
+    }
     section_values |= {
         n: parse_coordinates(section_values[n], hamiltonian)
         for n in ("q", "p")
@@ -104,12 +112,12 @@ def check_scene_alone(values: Mapping[str, Any]) -> None:
 
 
 def _requested_options(values: Mapping[str, Any]) -> dict[str, Any]:
-    # By identity: 0 == False, and a 0 that is typed is refused, not left out.
+    # None and False by identity: a typed 0 equals False, and must not be left out.
     return {n: x for n, x in values.items() if not (x is None or x is False or x == ())}
 
 
 def line_of(values: Mapping[str, Any]) -> str:
-    """Return the typed options as a line that a shell reads again."""
+    """Return the typed options as text that a shell splits into the same words."""
     context, parts = click.get_current_context(), []
     for option in context.command.params:
         x = values.get(option.name or "")

@@ -10,8 +10,8 @@ from verify.arithmetic.exact import as_whole
 from verify.commands.shared.input import CatalogueName
 from verify.errors import plain_name, unknown_name
 
-# Other programs' names for an option, by its name here.
-_OPTIONS = {
+# Names that other programs have for an option, by its name here.
+_FOREIGN_OPTIONS = {
     "--step-size": ("h", "dt", "step", "stepsize", "delta-t", "tau", "timestep", "time-step"),
     "--steps": ("n", "nsteps", "n-steps", "num-steps", "iterations"),
     "--time": ("t", "tmax", "t-max", "tend", "t-end", "tf", "duration", "total-time"),
@@ -24,18 +24,19 @@ _OPTIONS = {
     "--csv": ("o", "out", "output", "file"),
     "--maximise": ("maximize",),
 }
-_COMMANDS = {
+# Our command for a name that other programs have for it.
+_FOREIGN_COMMANDS = {
     "help": "--help", "simulate": "run", "integrate": "run", "solve": "run", "compute": "run",
     "proof": "prove", "verify": "check", "test": "check", "list": "schemes", "method": "schemes",
     "methods": "schemes", "split": "separate", "benchmark": "bench", "plot": "report",
     # Commands of a group, which are often typed without it.
     "make": "reference", "compare": "reference", "export": "certificate",
 }  # fmt: skip
-_FORMULA = re.compile(r"[^=;]*\b[pq]\d*\*\*[^=;]*")  # with a power of p or q
+_POWER_FORMULA = re.compile(r"[^=;]*\b[pq]\d*\*\*[^=;]*")  # text with a power of p or q
 
 
 def explain_usage_mistake(error: click.ClickException, command_line: Sequence[str]) -> str:
-    """Return the one line for an error of click's; `command_line`: its arguments."""
+    """Return one line for an error of click; `command_line`: the words after `verify`."""
     if match := re.match(r"Option '(.*?)' (requires|does not)", error.message):
         needs = (
             "has no value; write {} VALUE" if match[2] == "requires" else "takes no value; write {}"
@@ -57,9 +58,9 @@ def explain_usage_mistake(error: click.ClickException, command_line: Sequence[st
         return _explain_bad_value(error.param, message)
     if match := re.match(r"No such command '(.*?)'\.", message):
         names = context.command.list_commands(context)
-        return str(unknown_name("command", match[1], names, aliases=_COMMANDS))
+        return str(unknown_name("command", match[1], names, aliases=_FOREIGN_COMMANDS))
     if match := re.match(r"Got unexpected extra arguments? \((.*)\)", message):
-        # Words without their options have a full remedy; other superfluous words only a hint.
+        # For words without their options the message has the corrected words, else only a hint.
         return _explain_bare_words(context, command_line) or _explain_extra_words(
             match[1], context, command_line
         )
@@ -67,13 +68,13 @@ def explain_usage_mistake(error: click.ClickException, command_line: Sequence[st
 
 
 def _explain_unknown_option(name: str, context: click.Context, command_line: Sequence[str]) -> str:
-    capital = name in ("-H", "--H")  # the Hamiltonian's letter; h is a step size
+    means_hamiltonian = name in ("-H", "--H")  # in lower case h is the step size
     if len(name) == 2:  # click takes -system for -s -y …
         name = next((x for x in command_line if x.startswith(name)), name).partition("=")[0]
     options = _option_names(context.command)
-    plain = "hamiltonian" if capital else plain_name(name.lstrip("-"))
-    aliases = {foreign_name: ours for ours, foreign_names in _OPTIONS.items() if ours in options
-               for foreign_name in foreign_names}  # fmt: skip
+    plain = "hamiltonian" if means_hamiltonian else plain_name(name.lstrip("-"))
+    aliases = {alias: ours for ours, foreign_names in _FOREIGN_OPTIONS.items() if ours in options
+               for alias in foreign_names}  # fmt: skip
     spellings = {**aliases, **{option.lstrip("-"): option for option in options}}
     if plain in spellings:
         return f"{name}: no such option; write {spellings[plain]}"
@@ -98,23 +99,23 @@ def _option_names(command: click.Command) -> list[str]:
 
 
 def _find_elsewhere(plain: str, context: click.Context) -> str:
-    """Return the other commands that have the option, under this name or a usual other one."""
+    """Return the commands that have the option, under this name or one that other programs use."""
     ours = {
         f"--{plain}",
-        *(name for name, foreign_names in _OPTIONS.items() if plain in foreign_names),
+        *(name for name, foreign_names in _FOREIGN_OPTIONS.items() if plain in foreign_names),
     }
     return "" if context.parent is None else commands_with(ours, context)
 
 
 def commands_with(names: set[str], context: click.Context, *, several: bool = False) -> str:
     """Return the commands with an option of these names; `several`: with a repeatable one."""
-    having = [
+    command_names = [
         f"verify {command.name}"
         for command in _all_commands(context).values()
         for parameter in command.params
         if names & set(parameter.opts) and (getattr(parameter, "multiple", False) or not several)
     ]
-    return ", ".join(dict.fromkeys(having))
+    return ", ".join(dict.fromkeys(command_names))
 
 
 def _all_commands(context: click.Context) -> Mapping[str, click.Command]:
@@ -128,9 +129,10 @@ def _explain_missing(
     parameter: click.Parameter, context: click.Context, command_line: Sequence[str]
 ) -> str:
     name = _shown_name(parameter)
-    if name in command_line[1:]:  # it was taken for the value of the option before it
-        before = command_line[command_line.index(name) - 1]
-        return f"{before}={name}: has no value; write {_usage_of(_find_option(before, context))}"
+    if name in command_line[1:]:  # click took it for the value of the option before it
+        previous_option = command_line[command_line.index(name) - 1]
+        usage = _usage_of(_find_option(previous_option, context))
+        return f"{previous_option}={name}: has no value; write {usage}"
     if bare := _explain_bare_words(context, command_line):
         return bare
     if isinstance(parameter, click.Option):
@@ -155,28 +157,30 @@ def _explain_bad_value(parameter: click.Parameter, message: str) -> str:
 
 
 def _explain_bare_words(context: click.Context, command_line: Sequence[str]) -> str:
-    """Return the message for words without their options, which it adds; else empty."""
+    """Return the message that adds the options missing before words; empty if one fits none."""
     command, typed_words = context.command, command_line[len(context.command_path.split()) - 1 :]
-    _, words, order = command.make_parser(context).parse_args(list(typed_words))
-    suggestion = _add_options(words, command, order)
+    _, words, typed_options = command.make_parser(context).parse_args(list(typed_words))
+    suggestion = _add_options(words, command, typed_options)
     return f"{' '.join(words)}: not allowed here; write {suggestion}" if suggestion else ""
 
 
 def _add_options(
-    words: Sequence[str], command: click.Command, order: Sequence[click.Parameter] = ()
+    words: Sequence[str], command: click.Command, typed_options: Sequence[click.Parameter] = ()
 ) -> str:
     """Return each word after the option that takes it; empty if one fits none.
 
-    `order`: the options that the command line already has.
+    `typed_options`: those that the command line already has.
     """
-    free = [(_shown_name(x), x.type) for x in command.params if x not in order]
-    fits = [
-        [name for name, kind in free if isinstance(kind, CatalogueName) and kind.takes(word)]
-        or [name for name, _ in free if name == "--hamiltonian" and _FORMULA.fullmatch(word)]
+    unused = [(_shown_name(x), x.type) for x in command.params if x not in typed_options]
+    fitting_options = [
+        [name for name, kind in unused if isinstance(kind, CatalogueName) and kind.takes(word)]
+        or [
+            name for name, _ in unused if name == "--hamiltonian" and _POWER_FORMULA.fullmatch(word)
+        ]
         for word in words
     ]
-    pairs = zip(fits, words, strict=True)
-    return " ".join(f"{n[0]} {shlex.quote(x)}" for n, x in pairs) if all(fits) else ""
+    pairs = zip(fitting_options, words, strict=True)
+    return " ".join(f"{n[0]} {shlex.quote(x)}" for n, x in pairs) if all(fitting_options) else ""
 
 
 def _explain_extra_words(extra: str, context: click.Context, command_line: Sequence[str]) -> str:
@@ -198,8 +202,8 @@ def _explain_extra_words(extra: str, context: click.Context, command_line: Seque
         if isinstance(parameter, click.Argument)
     ]
     takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
-    about = "" if arguments else _add_options([extra], _all_commands(context)["prove"])
-    takes += about and f" for all of them, or verify prove {about} … for this one"
+    added = "" if arguments else _add_options([extra], _all_commands(context)["prove"])
+    takes += added and f" for all of them, or verify prove {added} … for this one"
     return f"{extra}: not allowed here; write {takes}"
 
 

@@ -1,8 +1,9 @@
-"""What holds of every scene: the properties that `verify explore` looks at, one file each.
+"""Properties that hold for every scene, which `verify explore` checks; one file each.
 
-A file's first line of text is the property's sentence. `holds(sample)` looks at one sample, of the
-plane or in n degrees of freedom, and raises what is to be said of it (see
-`verify.exploration.property`). Adding a property is adding one file.
+The first line of a file's docstring is the property's sentence, which is shown to users.
+`holds(sample)` checks one sample, in the plane or in n degrees of freedom; it raises Violation if
+the property fails, and Silent if it does not apply (see `verify.exploration.property`). To add a
+property, add one file.
 """
 
 import ast
@@ -16,8 +17,8 @@ from verify.exploration.property import Property
 from verify.exploration.sample import Sample
 
 _FILES = Catalogue(__name__, __path__)
-# Of which samples the properties in a folder speak; those in others do of all.
-_SPEAK_OF: Mapping[str, Callable[[Sample], bool]] = {
+# The samples to which the properties in a folder apply; those in other folders apply to all.
+_APPLIES_IN_FOLDER: Mapping[str, Callable[[Sample], bool]] = {
     "plane": lambda sample: sample.hamiltonian.planar,
     "several": lambda sample: not sample.hamiltonian.planar,
     "time": lambda sample: sample.depends_on_time,
@@ -41,5 +42,5 @@ def get(name: str) -> Property:
     module = _FILES.module(name)
     text = ast.get_docstring(ast.parse(getsource(module)))  # python -OO keeps no __doc__
     sentence = (text or "").splitlines()[0]
-    speaks_of = _SPEAK_OF.get(_FILES.folder(name), lambda _: True)
+    speaks_of = _APPLIES_IN_FOLDER.get(_FILES.folder(name), lambda _: True)
     return Property(name, sentence, module.holds, speaks_of=speaks_of)

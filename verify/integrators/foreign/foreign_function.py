@@ -19,14 +19,22 @@ from typing import TypeAlias
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import coordinates_in
 from verify.integrators.foreign import host
-from verify.integrators.foreign.lines import digits_of, line_of, numbers_of, read_digits, short_line
+from verify.integrators.foreign.lines import (
+    format_line,
+    format_memory,
+    parse_line,
+    parse_memory,
+    short_line,
+)
 from verify.integrators.foreign.process import ForeignProgram
 from verify.integrators.user_code.layout import CallLayout
 from verify.integrators.user_code.loading import list_functions
 from verify.integrators.user_code.step import StepError, Theirs
 from verify.integrators.user_code.user_map import DOUBLE_DOUBLE, FLOAT128, NumberType, UserMap
 
-_DYNAMIC, _CODE = 11, (0, 2, 10)  # a section of dynamic symbols; kinds of symbols that are called
+# ELF: the type of a section of dynamic symbols, and the types of symbols that can be functions
+# (STT_NOTYPE, STT_FUNC, STT_GNU_IFUNC).
+_DYNAMIC_SYMBOLS, _FUNCTION_TYPES = 11, (0, 2, 10)
 
 
 def functions_of(library: str) -> list[str]:
@@ -45,18 +53,18 @@ def _read_symbols(content: bytes) -> Iterator[str]:
     # and their number at byte 60.
     begin, size, count = struct.unpack_from("<Q10xHH", content, 40)
     sections = [struct.unpack_from("<IIQQQQI", content, begin + k * size) for k in range(count)]
-    for _, kind, _, _, offset, length, link in sections:
-        for k in range(offset, offset + length, 24) if kind == _DYNAMIC else ():
+    for _, section_type, _, _, offset, length, link in sections:
+        for k in range(offset, offset + length, 24) if section_type == _DYNAMIC_SYMBOLS else ():
             # A symbol has 24 bytes, which begin with st_name, st_info, st_other and st_shndx.
             # Section 0 means that another library defines it.
             name, info, section = struct.unpack_from("<IBxH", content, k)
-            if section and info & 15 in _CODE:
+            if section and info & 15 in _FUNCTION_TYPES:
                 start = sections[link][4] + name
                 yield content[start : content.index(b"\0", start)].decode("ascii", "replace")
 
 
-def why_missing(symbol: str, names: list[str]) -> str:
-    """Explain what to do where a library has these functions and not the requested one."""
+def explain_missing(symbol: str, names: list[str]) -> str:
+    """Explain what to do if a library has these functions, but not the requested one."""
     part, lower = f"{len(symbol)}{re.escape(symbol)}", re.escape(symbol.lower())
     bound = "declare it bind(c), with n, t and h by value"
     for pattern, language, advice in (
@@ -77,30 +85,30 @@ LIBRARIES = (".so", ".dylib", ".dll")
 
 
 class ForeignFunction:
-    """(p, q, t, h) → p', q', of numbers or sequences of n: floats for floats, else fractions.
+    """A function (p, q, t, h) → (p', q') that a program computes.
 
-    `write` and `read`: how numbers of its type stand in the program's lines.
+    p and q are numbers or sequences of n numbers. The results are floats if p has floats, and
+    fractions otherwise. `write` and `read`: format and parse the lines of the program.
     """
 
     def __init__(
         self,
         program: ForeignProgram,
-        kind: NumberType,
-        write: Write = line_of,
-        read: Read = numbers_of,
+        number_type: NumberType,
+        write: Write = format_line,
+        read: Read = parse_line,
     ) -> None:
-        self.program, self.kind, self.write, self.read = program, kind, write, read
+        self.program, self.number_type, self.write, self.read = program, number_type, write, read
         program.begin()
         atexit.register(program.close)
 
     def another(self) -> "ForeignFunction":
-        """Return the same function in a process of its own, which knows nothing of earlier
-        calls."""
-        old = self.program
-        fresh = ForeignProgram(
-            old.words, old.called, old.seconds, old.greeting, old.advice, old.show_line
+        """Return the same function in a new process, which has seen no earlier call."""
+        same = self.program
+        program = ForeignProgram(
+            same.words, same.display_name, same.seconds, same.greeting, same.advice, same.show_line
         )
-        return ForeignFunction(fresh, self.kind, self.write, self.read)
+        return ForeignFunction(program, self.number_type, self.write, self.read)
 
     def close(self) -> None:
         """End its process."""
@@ -113,10 +121,12 @@ class ForeignFunction:
         return result
 
     def several(self, states: Sequence[Arguments]) -> list[tuple[Theirs, Theirs] | StepError]:
-        """Return (p', q') of each (p, q, t, h), or the error in place of it: in a fraction of the
-        time that as many calls take."""
+        """Return (p', q') of each (p, q, t, h), or an error in its place.
+
+        One exchange takes a fraction of the time of as many calls.
+        """
         lines = [
-            self.write([t, h, *(x for z in (p, q) for x in _as_sequence(z))], self.kind)
+            self.write([t, h, *(x for z in (p, q) for x in _as_sequence(z))], self.number_type)
             for p, q, t, h in states
         ]
         answers = self.program.answers(lines)
@@ -130,7 +140,7 @@ class ForeignFunction:
         first, *further = _as_sequence(p)
         n = 1 + len(further)
         try:
-            numbers = self.read(answer, 2 * n, self.kind)
+            numbers = self.read(answer, 2 * n, self.number_type)
         except StepError as error:
             return error
         floats = isinstance(first, float)
@@ -142,8 +152,10 @@ def _as_sequence(z: Theirs) -> Sequence[Theirs]:
     return z if hasattr(z, "__len__") else [z]
 
 
-def step_of_command(command: str, kind: NumberType, seconds: float, degrees: int = 1) -> UserMap:
-    """Return the step of the program. Raises InputError where it does not start."""
+def step_of_command(
+    command: str, number_type: NumberType, seconds: float, degrees: int = 1
+) -> UserMap:
+    """Return the step of the program. Raises InputError if it does not start."""
     try:
         words = shlex.split(command)
     except ValueError as error:
@@ -154,7 +166,7 @@ def step_of_command(command: str, kind: NumberType, seconds: float, degrees: int
         problem = "there is no such program; write ./NAME for one in this folder"
         raise InputError("--command", words[0], problem)
     program = ForeignProgram(words, command, seconds)
-    return _step(ForeignFunction(program, kind), kind, seconds, degrees)
+    return _build_step(ForeignFunction(program, number_type), number_type, seconds, degrees)
 
 
 def is_library(target: str) -> bool:
@@ -164,41 +176,62 @@ def is_library(target: str) -> bool:
     return Path(place or target).suffix in LIBRARIES or ".so." in name
 
 
-def step_of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> UserMap:
-    """Return the step of LIB.so:SYMBOL. Raises InputError where it does not load."""
+def step_of_library(target: str, degrees: int, number_type: NumberType, seconds: float) -> UserMap:
+    """Return the step of LIB.so:SYMBOL. Raises InputError if it does not load."""
     place, _, symbol = target.rpartition(":")
     if not place or not symbol.isidentifier():
         raise InputError("integrator", target, "write it as LIB.so:SYMBOL")
     if not Path(place).is_file():
         raise InputError("integrator", target, f"there is no file {place}")
-    expected = f"; wanted: {prototype(symbol, kind)}"
+    expected = f"; wanted: {prototype(symbol, number_type)}"
     names = functions_of(place)
-    if names and symbol not in names:  # another library, as C's, may have one of that name
-        raise InputError("integrator", target, why_missing(symbol, names) + expected)
+    # Without this check the loader might take a symbol of that name from another library, as C's.
+    if names and symbol not in names:
+        raise InputError("integrator", target, explain_missing(symbol, names) + expected)
     library_path = str(Path(place).resolve())
     script = str(Path(host.__file__).resolve())
-    words = [sys.executable, "-I", "-S", script, library_path, symbol, kind.name, str(degrees)]
+    words = [
+        sys.executable,
+        "-I",
+        "-S",
+        script,
+        library_path,
+        symbol,
+        number_type.name,
+        str(degrees),
+    ]
 
     def show_line(line: str) -> str:
-        with contextlib.suppress(ValueError):  # it is the greeting that is waited for
-            return short_line(line_of(read_digits(line, 2 + 2 * degrees, kind), kind))
+        with contextlib.suppress(ValueError):  # the greeting has no numbers
+            return short_line(
+                format_line(parse_memory(line, 2 + 2 * degrees, number_type), number_type)
+            )
         return line
 
     program = ForeignProgram(words, target, seconds, "ready", expected, show_line)
-    return _step(ForeignFunction(program, kind, digits_of, read_digits), kind, seconds, degrees)
+    return _build_step(
+        ForeignFunction(program, number_type, format_memory, parse_memory),
+        number_type,
+        seconds,
+        degrees,
+    )
 
 
-def prototype(symbol: str, kind: NumberType) -> str:
+def prototype(symbol: str, number_type: NumberType) -> str:
     """Return the C declaration of a step in numbers of this type."""
-    real = kind.declared
-    argument = f"const {real} *" if kind in (FLOAT128, DOUBLE_DOUBLE) else f"{real} "
+    real = number_type.declared
+    argument = f"const {real} *" if number_type in (FLOAT128, DOUBLE_DOUBLE) else f"{real} "
     return f"void {symbol}(int n, {argument}t, {argument}h, {real} *p, {real} *q)"
 
 
-def _step(function: ForeignFunction, kind: NumberType, seconds: float, degrees: int) -> UserMap:
+def _build_step(
+    function: ForeignFunction, number_type: NumberType, seconds: float, degrees: int
+) -> UserMap:
     layout = CallLayout(
-        _ORDER, shape=() if degrees == 1 else (degrees,), kind="list" if degrees > 1 else "array"
+        _ORDER,
+        shape=() if degrees == 1 else (degrees,),
+        kind="list" if degrees > 1 else "array",
     )
     return UserMap(
-        function, layout, coordinates_in(degrees), limit=seconds, numbers=kind, foreign=True
+        function, layout, coordinates_in(degrees), limit=seconds, numbers=number_type, foreign=True
     )

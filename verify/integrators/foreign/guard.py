@@ -1,10 +1,11 @@
-"""A guard that lets nothing outlive the program that it runs: a program of its own, without us.
+"""A guard that lets nothing outlive the program that it runs; a script without imports of ours.
 
     python guard.py SOCKET SECONDS PROGRAM ARGUMENTS …
 
-It ends as the program does, or when the other end of the socket is closed, as it is where we end
-ourselves; before that it ends all that is left. On Linux a process whose parent has ended becomes
-the guard's child, however it was started, so that none escapes.
+It ends when the program ends, with the same status, or when the other end of the socket is closed,
+as it is when the process that has started the guard ends. Before that it ends all processes that
+the program has started. On Linux a process whose parent has ended becomes the guard's child,
+however it was started, so that none escapes.
 """
 
 import contextlib
@@ -24,60 +25,61 @@ def main() -> None:
     """Run until the program or the socket ends."""
     control, seconds = socket.socket(fileno=int(sys.argv[1])), int(sys.argv[2])
     control.set_inheritable(False)
-    ending = control.fileno()
+    socket_end = control.fileno()
     wakeup, wakes = os.pipe()
     os.set_blocking(wakes, False)
-    # A signal writes a byte into this pipe, which wakes `select`: else a child that ends between
-    # two looks would be missed.
+    # A signal writes a byte into this pipe, which wakes `select`: otherwise a child that ends
+    # between two calls of it would be missed.
     signal.set_wakeup_fd(wakes)
     signal.signal(signal.SIGCHLD, lambda *_: None)
-    # Should we be ended, it is too, at last; and there is no file of its memory where it crashes.
+    # Limits that the program inherits: it ends even if the guard is killed, and a crash writes no
+    # file of its memory.
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_BECOME_PARENT_OF_ORPHANS, 1, 0, 0, 0)
-    first, status = _start(sys.argv[3:], control), None
-    while status is None and ending not in select.select([ending, wakeup], [], [])[0]:
+    program_pid, status = _start_program(sys.argv[3:], control), None
+    while status is None and socket_end not in select.select([socket_end, wakeup], [], [])[0]:
         os.read(wakeup, 512)
-        status = _reap(first)
-    _end_all(first)
+        status = _reap(program_pid)
+    _end_all(program_pid)
     code = os.waitstatus_to_exitcode(status or 0)
-    if code < 0:  # as the program: by the same signal
+    if code < 0:  # the program was ended by a signal: the guard ends by the same one
         with contextlib.suppress(OSError):
             signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
     os._exit(code)
 
 
-def _start(words: list[str], control: socket.socket) -> int:
+def _start_program(words: list[str], control: socket.socket) -> int:
     """Start the program in a process group of its own; report a failure through the socket."""
-    ignored = [signal.SIGPIPE, signal.SIGXFSZ]  # by Python, and by what it starts
+    # Python ignores these signals, and the program would inherit that.
+    ignored = [signal.SIGPIPE, signal.SIGXFSZ]
     try:
-        first = os.posix_spawnp(words[0], words, os.environ, setpgroup=0, setsigdef=ignored)
+        program_pid = os.posix_spawnp(words[0], words, os.environ, setpgroup=0, setsigdef=ignored)
     except (OSError, ValueError) as error:
         control.send((getattr(error, "strerror", None) or str(error)).encode())
         sys.exit(1)
-    nothing = os.open(os.devnull, os.O_RDWR)
-    for stream in range(3):  # the pipes are the program's alone
-        os.dup2(nothing, stream)
+    null = os.open(os.devnull, os.O_RDWR)
+    for stream in range(3):  # the pipes belong to the program alone
+        os.dup2(null, stream)
     control.send(b"\n")
-    return first
+    return program_pid
 
 
-def _reap(first: int) -> int | None:
-    """Return the first process's exit status, None while it runs; collect all others that have
-    ended."""
+def _reap(program_pid: int) -> int | None:
+    """Collect all children that have ended; return the program's status, None while it runs."""
     status = None
     with contextlib.suppress(ChildProcessError):
         while (child := os.waitpid(-1, os.WNOHANG))[0]:
-            status = child[1] if child[0] == first else status
+            status = child[1] if child[0] == program_pid else status
     return status
 
 
-def _end_all(first: int) -> None:
-    """End all children; children of what is ended become ours, so repeat until there is none."""
+def _end_all(program_pid: int) -> None:
+    """End all children, until none is left: the children of an ended one become the guard's."""
     with contextlib.suppress(OSError):
-        os.killpg(first, signal.SIGKILL)
+        os.killpg(program_pid, signal.SIGKILL)
     children = Path(f"/proc/self/task/{os.getpid()}/children")
     while children.exists() and (remaining := children.read_text().split()):
         for child in remaining:

@@ -1,7 +1,8 @@
-"""Notes beside a finding: where the map was measured, and what it may be where it is refuted.
+"""Notes on a finding: where the map was measured, and likely reasons of a refutation.
 
-A matrix that a program prints with few digits is not symplectic, and one that is may lie within
-half a unit of its last digit. A map of positions and velocities may keep Σ m_i dv_i∧dx_i.
+A matrix that a program prints with few digits is seldom symplectic, but a symplectic one may lie
+within half a unit of its last digits. A map of positions x and velocities v may preserve
+Σ m_i dv_i∧dx_i.
 """
 
 from collections.abc import Sequence
@@ -20,17 +21,21 @@ from verify.prose import Number, Prose, join_prose, prose
 if TYPE_CHECKING:
     import numpy as np
 
-_SAME_JACOBIAN = 1e-13  # of J at two places, of a linear map
+# A map is linear if its J at two places agree up to this part of the largest entry.
+_LINEAR_TOLERANCE = 1e-13
 _MOST_DIGITS = 14
-_TURNS = 40  # of a search for the least largest change
-_LEAST_WEIGHT = 1e-3  # of an entry in it
-_NOTHING, _SOMETHING = 1e-9, 1e-5  # parts of the largest singular value
-_MOST_MASS = 10**6
-_SHOWN_DIGITS = 3  # decimals of a number that is shown
+# The search for the smallest change of an entry: its iterations, and the least weight of an entry.
+_SEARCH_ITERATIONS = 40
+_MIN_WEIGHT = 1e-3
+# A singular value counts as 0 up to the first part of the largest one, and not from the second on;
+# so do differences of masses.
+_NULL_SHARE, _MIN_SHARE = 1e-9, 1e-5
+_MAX_MASS_RATIO = 10**6
+_SIGNIFICANT_DIGITS = 3  # of a number in a note
 
 
 def describe_numbers(step: UserMap, doubles: str = "doubles") -> str:
-    """Name the numbers that the step computes in; `doubles`: the name of those."""
+    """Name the number type of the step; `doubles` is the name to use for doubles."""
     return doubles if step.numbers is DOUBLE else step.numbers.declared_as
 
 
@@ -41,7 +46,7 @@ def describe_places(step: UserMap, places: Sequence[TrialPlace]) -> Prose:
     for name, part in (("p", slice(0, n)), ("q", slice(n, 2 * n))):
         largest = max(max(abs(x) for x in place.z[part]) for place in places)
         ranges.append(f"|{name}| ≤ {_plain(largest)}")
-    if step.moving:
+    if step.time_dependent:
         times = [place.t for place in places]
         ranges.append(f"{_plain(min(times))} ≤ t ≤ {_plain(max(times))}")
     count = f"{len(places)} place" + ("s" if len(places) != 1 else "")
@@ -55,7 +60,7 @@ def describe_places(step: UserMap, places: Sequence[TrialPlace]) -> Prose:
 def _plain(x: Fraction) -> str:
     if x.denominator <= 1000 and abs(x.numerator) < 10**5:
         return str(x)
-    return Number(f"{float(x):.{_SHOWN_DIGITS}g}")
+    return Number(f"{float(x):.{_SIGNIFICANT_DIGITS}g}")
 
 
 def note_places(step: UserMap, structure: StructureMeasurement) -> list[str]:
@@ -76,8 +81,10 @@ def note_places(step: UserMap, structure: StructureMeasurement) -> list[str]:
         notes.append(
             f"left out, as the probe's own error is not small against 1: {'; '.join(blind_places)}"
         )
-    if structure.lost:
-        notes.append(f"at {len(structure.lost)} calls it returned no state: {structure.lost[0]}")
+    if structure.failures:
+        notes.append(
+            f"at {len(structure.failures)} calls it returned no state: {structure.failures[0]}"
+        )
     return notes
 
 
@@ -111,17 +118,17 @@ def note_unseen(step: UserMap, distances: Distances) -> list[str]:
 
 
 def note_digits(readings: Sequence[DefectReading]) -> list[str]:
-    """Return a sentence where the map is a matrix of few digits that a symplectic one rounds to."""
+    """Return a sentence if the map is a matrix of few digits to which a symplectic one rounds."""
     import numpy as np
 
     first = np.array(readings[0].jacobian)
     size = np.abs(first).max()
     if len(readings) < 2 or any(
-        np.abs(np.array(x.jacobian) - first).max() > _SAME_JACOBIAN * size for x in readings
+        np.abs(np.array(x.jacobian) - first).max() > _LINEAR_TOLERANCE * size for x in readings
     ):
         return []
-    digits = _digits(first)
-    if digits is None or _change(first) > 0.5 * 10.0**-digits * (1 + 1e-6):
+    digits = _decimal_places(first)
+    if digits is None or _smallest_change(first) > 0.5 * 10.0**-digits * (1 + 1e-6):
         return []
     ending = {1: "st", 2: "nd", 3: "rd"}.get(digits if digits < 4 else 0, "th")
     return [
@@ -129,12 +136,12 @@ def note_digits(readings: Sequence[DefectReading]) -> list[str]:
     ]
 
 
-def _digits(matrix: "np.ndarray") -> int | None:
-    """Return how many digits after the point the entries have at most; None where they have
-    more."""
+def _decimal_places(matrix: "np.ndarray") -> int | None:
+    """Return the largest number of decimal places of the entries; None if it exceeds
+    `_MOST_DIGITS`."""
     import numpy as np
 
-    # 4e-16 is about two units of a double's last place: what a printed decimal may be off by.
+    # A decimal that is read as a double is off by up to two units of the last place, 4e-16.
     for digits in range(_MOST_DIGITS + 1):
         scaled = matrix * 10.0**digits
         if np.all(np.abs(scaled - np.round(scaled)) <= 4e-16 * np.abs(scaled)):
@@ -142,11 +149,11 @@ def _digits(matrix: "np.ndarray") -> int | None:
     return None
 
 
-def _change(matrix: "np.ndarray") -> float:
-    """Minimize the largest change of an entry by which a symplectic matrix is reached.
+def _smallest_change(matrix: "np.ndarray") -> float:
+    """Return the largest entry of a small change that makes the matrix M symplectic to first order.
 
-    The change δ of least norm solves MᵀΩδ + δᵀΩM = −S; its large entries get more weight in each
-    turn.
+    A change δ solves MᵀΩδ + δᵀΩM = −S. Iterated least squares look for the δ whose largest entry is
+    least: in each iteration large entries get a lower weight.
     """
     import numpy as np
 
@@ -164,20 +171,20 @@ def _change(matrix: "np.ndarray") -> float:
         row[a::size] -= left[b]
     target = -defect[upper_triangle]
     weights, smallest = np.ones(size * size), np.inf
-    for _ in range(_TURNS):
+    for _ in range(_SEARCH_ITERATIONS):
         change = weights * np.linalg.lstsq(rows * weights, target, rcond=None)[0]
         largest = np.abs(change).max()
         smallest = min(smallest, largest)
         if largest == 0:
             return 0.0
         weights *= (np.abs(change) / largest + 0.05) ** -0.3
-        # An entry that need not change would else outgrow all others, which were then left out.
-        weights = np.maximum(weights / weights.max(), _LEAST_WEIGHT)
+        # Without this limit, an entry that need not change would outgrow all others in weight.
+        weights = np.maximum(weights / weights.max(), _MIN_WEIGHT)
     return float(smallest)
 
 
 def note_masses(readings: Sequence[DefectReading], names: Sequence[str]) -> list[str]:
-    """Return a sentence where the map keeps Σ m_i dp_i∧dq_i with masses that are not all alike."""
+    """Return a sentence if the map preserves Σ m_i dp_i∧dq_i with masses that are not all equal."""
     import numpy as np
 
     half = len(names) // 2
@@ -192,16 +199,16 @@ def note_masses(readings: Sequence[DefectReading], names: Sequence[str]) -> list
             if b == a + half:
                 row[a] -= 1
             rows.append(row * reading.scales[a, b])
-    # A null vector of this system are masses with which Σ m dp∧dq is preserved; it must be the only
-    # one, or the masses are not determined.
+    # A null vector of this system consists of masses with which Σ m dp∧dq is preserved. It must be
+    # the only one, or the masses are not determined.
     _, sizes, directions = np.linalg.svd(np.array(rows))
-    if sizes[-1] > _NOTHING * sizes[0] or sizes[-2] < _SOMETHING * sizes[0]:
+    if sizes[-1] > _NULL_SHARE * sizes[0] or sizes[-2] < _MIN_SHARE * sizes[0]:
         return []
     smallest = min(directions[-1], key=abs)
-    if abs(smallest) * _MOST_MASS < 1:
+    if abs(smallest) * _MAX_MASS_RATIO < 1:
         return []
     masses = directions[-1] / smallest
-    if not np.all(masses > 0) or np.ptp(masses) < _SOMETHING:
+    if not np.all(masses > 0) or np.ptp(masses) < _MIN_SHARE:
         return []
     masses_text = ", ".join(f"{x:.6g}" for x in masses)
     return [
@@ -211,7 +218,7 @@ def note_masses(readings: Sequence[DefectReading], names: Sequence[str]) -> list
 
 
 def masses_of(hamiltonian: Hamiltonian) -> tuple[Fraction, ...]:
-    """Return m_i of an H = Σ p_i²/(2 m_i) + V(q); () where H is another, or all are 1."""
+    """Return m_i of an H = Σ p_i²/(2 m_i) + V(q); () if H is of another form, or all m_i are 1."""
     from verify.algebra.formula import symbol
 
     half, masses = hamiltonian.degrees, []

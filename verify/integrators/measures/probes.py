@@ -1,14 +1,14 @@
-"""The two probes of a user's map, which measure its end and its Jacobian at a place.
+"""The two probes of a user's map, which measure its end z' and its Jacobian J at a place.
 
-Dual numbers of 200 bits have no noise of their own that counts. What users run is double: what a
-rounding of every operation to 53 bits does to J at a place is the noise that J has there, however
-many digits it is measured with.
+Dual numbers of 200 bits carry J along, with a rounding error that does not count. But users run
+doubles. The noise of J is therefore the change of J if every operation is rounded to 53 bits,
+however many digits the measurement has.
 
-Floats, or numbers of another type, give J by extrapolated central differences. Those of each
-coordinate begin at the width over which the motion changes there, and are halved; Richardson's
-extrapolation (Ridders, Adv. Eng. Softw. 4 (1982)) takes of each entry the value whose error, by its
-neighbours in the tableau and by the rounding of the numbers, is least. What is made of the numbers
-that come back is exact.
+Floats, or numbers of another type, yield J by extrapolated central differences. The widths of the
+differences begin at that over which the motion changes, and are halved. Of the values of Richardson
+extrapolation (Ridders, Adv. Eng. Softw. 4 (1982)) that with the least error is taken, as estimated
+from the neighbours in the extrapolation table and the rounding of the numbers. The differences
+themselves are computed without rounding.
 """
 
 from collections.abc import Sequence
@@ -25,17 +25,18 @@ from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.user_code.step import StepError, Theirs, lift_numbers, limit_time
 from verify.integrators.user_code.user_map import DOUBLE, UserMap
 
-_EPSILON = 2.0**-53  # half a unit of a double's last place
-_ROUNDINGS, _TIMES_SEEN = 8, 3  # of each entry at least; and times what is seen of them
-_SECONDS = 2.0  # for a call with 53 bits, whose loops may not end
-OWN_NOISE = 2.0 ** -(DUAL_BITS - 30)  # of a value of 200 bits, in parts of its size
-_LEVELS = 8  # halvings of a difference's width, at least
-_MOVES = 8  # tiny ones, by which it is seen how far its numbers scatter
-_SPREAD = 2.0  # times the scatter that is seen
+_UNIT_ROUNDOFF = 2.0**-53  # of a double
+# The noise of an entry of J: this number of roundings, and this multiple of the change at 53 bits.
+_MIN_ROUNDINGS, _ROUNDING_FACTOR = 8, 3
+_MAX_SECONDS_OF_COARSE_CALL = 2.0  # with 53 bits a loop of the code may not end
+DUAL_NOISE = 2.0 ** -(DUAL_BITS - 30)  # the noise of a value of 200 bits, relative to its size
+_MIN_HALVINGS = 8  # of the width of a difference
+_SCATTER_STATES = 8  # states a tiny distance apart, from which the scatter of z' is measured
+_SCATTER_FACTOR = 2.0  # the noise is this multiple of the measured scatter
 
 
 class DualProbe:
-    """The map at dual numbers. `comparisons`: those of the last call."""
+    """The map at dual numbers: of 200 bits, and of 53 bits for the noise (`coarse`)."""
 
     how = "duals"
 
@@ -65,33 +66,35 @@ class DualProbe:
             return [fraction(x.value) for x in ended]
 
     def round_number(self, x: Fraction) -> Fraction:
-        """Return x as it stands: dual numbers have digits enough."""
+        """Return x unchanged: dual numbers have enough digits."""
         return x
 
     def noise(self, place: TrialPlace, state: Sequence[Fraction]) -> list[float]:
-        """Return the noise of z' that our own numbers have."""
-        return [OWN_NOISE * float(max(abs(x), abs(y)) + u)
+        """Return the noise of z' that the rounding of dual numbers causes."""
+        return [DUAL_NOISE * float(max(abs(x), abs(y)) + u)
                 for x, y, u in zip(state, place.z, place.units, strict=True)]  # fmt: skip
 
     def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
         """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
         fine = self._jacobian(self.kind, place, h)
         comparisons = self.kind.comparisons
-        errors = [[_ROUNDINGS * _EPSILON * abs(float(x)) for x in row] for row in fine]
+        errors = [[_MIN_ROUNDINGS * _UNIT_ROUNDOFF * abs(float(x)) for x in row] for row in fine]
         self._add_rounding(errors, fine, place, h)
         self.kind.comparisons = comparisons
-        return reading_of(place, h, fine, errors, 2 * _EPSILON)
+        return reading_of(place, h, fine, errors, 2 * _UNIT_ROUNDOFF)
 
     def _add_rounding(
         self, errors: list[list[float]], fine: Matrix, place: TrialPlace, h: Fraction
     ) -> None:
-        """Add the noise that 53 bits cause in each row, at a place that has no more, in units of
-        the columns."""
+        """Add to each row the change of J at 53 bits; a row has one noise, in units of the place.
+
+        The place is rounded to doubles for this.
+        """
         rounded_place = place.with_rounded_state(DOUBLE.round_number)
         try:
-            with limit_time(_SECONDS, "rounded to doubles it does not end"):
+            with limit_time(_MAX_SECONDS_OF_COARSE_CALL, "rounded to doubles it does not end"):
                 coarse = self._jacobian(self.coarse, rounded_place, h)
-        except Exception:  # the user's code may raise anything; then its least noise has to do
+        except Exception:  # the user's code may raise anything: the errors stay at their minimum
             return
         # Both precisions must be compared at the same state: where rounding moves it, the fine
         # Jacobian is computed again.
@@ -100,7 +103,7 @@ class DualProbe:
         units = [float(x) for x in place.units]
         for row, one, two in zip(errors, coarse, fine, strict=True):
             gaps = [abs(float(x) - float(y)) * u for x, y, u in zip(one, two, units, strict=True)]
-            largest = _TIMES_SEEN * max(gaps)
+            largest = _ROUNDING_FACTOR * max(gaps)
             for j, unit in enumerate(units):
                 row[j] += largest / unit
 
@@ -147,39 +150,38 @@ class FloatProbe:
         return ended
 
     def noise(self, place: TrialPlace, state: Sequence[Fraction]) -> list[float]:
-        """Return the least noise of z': a rounding of each operation."""
+        """Return the least noise of z': one unit of the last place of each component."""
         epsilon = self.step.numbers.epsilon
         return [epsilon * float(max(abs(x), abs(y)))
                 for x, y in zip(state, place.z, strict=True)]  # fmt: skip
 
     def scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
-        """Measure how far the components of z' scatter about a smooth curve: their noise as
-        seen."""
+        """Return the measured noise of z': the scatter of each component about a smooth curve."""
         key = place, h
         if key not in self._scatter:
-            self._scatter[key] = self._seen_scatter(place, h)
+            self._scatter[key] = self._measure_scatter(place, h)
         return self._scatter[key]
 
-    def _seen_scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
+    def _measure_scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
         z, epsilon = place.with_rounded_state(self.round_number).z, self.step.numbers.epsilon
-        # Over so little a smooth map bends below its numbers' rounding.
+        # Over so small a distance the curvature of a smooth map is below the rounding.
         tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
         states = [
             [self.round_number(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
-            for k in range(_MOVES)
+            for k in range(_SCATTER_STATES)
         ]
         ends = self._ends(states, place, h)
         noises = []
         for i in range(len(z)):
             values = [end[i] for end in ends]
-            # Third differences of a smooth curve are nothing at such a distance.
+            # Third differences of a smooth curve vanish at such a distance.
             thirds = [
                 float(abs(d - 3 * c + 3 * b - a))
                 for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
             ]
             smallest_noise = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
             jump = self.step.coarseness * max(float(place.units[i]), abs(float(ends[0][i])))
-            noises.append(smallest_noise + _SPREAD * max(thirds) / 8 + jump)
+            noises.append(smallest_noise + _SCATTER_FACTOR * max(thirds) / 8 + jump)
         return noises
 
     def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
@@ -203,7 +205,7 @@ class FloatProbe:
         self, place: TrialPlace, h: Fraction, z: Sequence[Fraction], j: int, scatter: list[float]
     ) -> tuple[list["gmpy2.mpfr"], list[float]]:
         """Return ∂z'/∂z_j, and the errors of its entries."""
-        levels = max(_LEVELS, self.step.numbers.bits // 8)
+        levels = max(_MIN_HALVINGS, self.step.numbers.bits // 8)
         widths = [place.reach[j] / 2**k for k in range(1, levels + 1)]
         tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
         # Two tiny widths stand beside those that are extrapolated: they stay on one side of a jump,
@@ -224,7 +226,7 @@ class FloatProbe:
                 for ahead, behind, step in zip(ends[::2], ends[1::2], steps, strict=True)
             ]
             noises = [2 * scatter[i] / float(step) for step in steps]
-            value, error = _best(slopes, noises, self.step.coarseness > 0)
+            value, error = _select_derivative(slopes, noises, self.step.coarseness > 0)
             column.append(value)
             blur.append(error)
         return column, blur
@@ -233,19 +235,20 @@ class FloatProbe:
         self, states: Sequence[Sequence[Fraction]], place: TrialPlace, h: Fraction
     ) -> list[list[Fraction]]:
         ends = self.step.exactly(states, self.round_number(h), self.round_number(place.t))
-        if self.step.periods:  # all on one side of where it wraps
+        if self.step.periods:  # all ends are moved next to the first one
             first = ends[0]
             ends = [list(map(unwrap, end, first, self.step.periods)) for end in ends]
         return ends
 
 
-def _best(
+def _select_derivative(
     slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float], coarse: bool
 ) -> tuple["gmpy2.mpfr", float]:
-    """Return the extrapolated value, where the last slopes, of tiny widths, do not contradict it.
+    """Return the extrapolated value unless the last two slopes, of tiny widths, contradict it.
 
-    Where the map jumps within the wider differences, as where it wraps or a loop does one turn
-    more, the tiny ones are on one side of it. Of coarse numbers neither is known to be right.
+    They contradict it if the map jumps within the wider differences, as where it wraps or a loop
+    does one iteration more: the tiny ones lie on one side of the jump. With coarse numbers, neither
+    is certain.
     """
     *wide, twice, tiny = slopes
     value, error = _extrapolate(wide, noises)
@@ -261,7 +264,7 @@ def _best(
 def _extrapolate(
     slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float]
 ) -> tuple["gmpy2.mpfr", float]:
-    """Return the value of the tableau whose error is least, and that error."""
+    """Return the value of the extrapolation table whose error is least, and that error."""
     best, least_error = slopes[-1], float("inf")
     previous_row: list[gmpy2.mpfr] = []
     for k, slope in enumerate(slopes):

@@ -1,7 +1,7 @@
-"""S = JᵀΩJ − Ω and det J − 1 of a Jacobian that was measured, each with the noise that it may have.
+"""S = JᵀΩJ − Ω and det J − 1 of a measured Jacobian J, each with its noise.
 
-The noise of an entry follows from that of J's entries, one by one, so that no unit enters: what is
-said of S is the same in kilometres and in metres.
+The noise of an entry of S is computed from that of each entry of J, so that the result does not
+depend on the units of the coordinates: it is the same in kilometres and in metres.
 """
 
 from collections.abc import Sequence
@@ -18,19 +18,21 @@ from verify.integrators.tracing.replacements import eliminate
 
 if TYPE_CHECKING:
     Real: TypeAlias = gmpy2.mpfr
-Indices = tuple[int, int]  # of an entry of S, a < b
-Matrix: TypeAlias = "Sequence[Sequence[Real]]"  # rows
+Indices = tuple[int, int]  # a < b, the row and the column of an entry of S
+Matrix: TypeAlias = "Sequence[Sequence[Real]]"  # by rows
 READING_BITS = 250
-_ROUNDINGS = 32  # of an entry of Ω: what tens of operations in its numbers leave
+# The roundings, in the numbers of the code, that are allowed in each entry of JᵀΩJ.
+_ROUNDINGS_OF_ENTRY = 32
+_NOISE_FACTOR = 4  # an entry is clear of its noise if it exceeds it by this factor
 
 
 @dataclass(frozen=True)
 class DefectReading:
-    """The entries a < b of S, and det J − 1, at a place with step size h (0 of a map that has
-    none).
+    """The entries a < b of S, and det J − 1, at a place with step size h (0 for a map without h).
 
-    `defect` and `noise` are of entries in the units of the place, where those of Ω are about 1;
-    `entries` are as they stand. `jacobian`: J by rows, as floats.
+    `entries` and `noise` are in the user's units. `scales` convert an entry to units of the place,
+    in which the entries of Ω are about 1: `defect` and `blur` are in these. `volume`: det J − 1,
+    with its noise. `jacobian`: J by rows, as floats.
     """
 
     place: TrialPlace
@@ -44,13 +46,13 @@ class DefectReading:
 
     @property
     def worst(self) -> Indices:
-        """The entry that is farthest beyond its noise."""
+        """The entry with the largest ratio to its noise."""
         return max(self.entries, key=lambda at: abs(self.entries[at]) / self.noise[at])
 
     @property
     def largest_entry(self) -> Indices:
-        """The largest entry in units of the place, of those beyond their noise where there are."""
-        clear = [at for at, x in self.entries.items() if abs(x) > 4 * self.noise[at]]
+        """The largest entry in units of the place, among those clear of their noise if any are."""
+        clear = [at for at, x in self.entries.items() if abs(x) > _NOISE_FACTOR * self.noise[at]]
         return max(clear or self.entries, key=lambda at: abs(self.entries[at]) * self.scales[at])
 
     @property
@@ -60,7 +62,7 @@ class DefectReading:
 
     @property
     def defect(self) -> float:
-        """The largest entry in units of the place, of those beyond their noise where there are."""
+        """The absolute value of `largest_entry`, in units of the place."""
         return abs(self.entries[self.largest_entry]) * self.scales[self.largest_entry]
 
     @property
@@ -72,8 +74,10 @@ class DefectReading:
 def reading_of(
     place: TrialPlace, h: Fraction, jacobian: Matrix, errors: list[list[float]], epsilon: float
 ) -> DefectReading:
-    """Compute the reading from J and the errors of its entries, both by rows; `epsilon`: of the
-    numbers that the code computes in. Some dozens of roundings are allowed in each entry of Ω."""
+    """Compute the reading from J and the errors of its entries, both by rows.
+
+    `epsilon`: that of the numbers in which the code computes.
+    """
     size, half = len(jacobian), len(jacobian) // 2
     units = [float(x) for x in place.units]
     with gmpy2.context(precision=READING_BITS):
@@ -81,7 +85,8 @@ def reading_of(
         blurs = list(zip(*errors, strict=True))
         sizes = [[abs(float(x)) for x in column] for column in columns]
         entries, noise, scales = {}, {}, {}
-        # Pairs may have different units of action: Ω's entries are then held against their mean.
+        # Pairs (p_i, q_i) may have different units of action. An entry of S between two pairs,
+        # where Ω is 0, is compared with the mean of these units.
         action = [units[i] * units[half + i] for i in range(half)]
         mean = sum(action) / half
         for a, b in combinations(range(size), 2):
@@ -96,9 +101,9 @@ def reading_of(
                 blur += e[i] * y[j] + e[j] * y[i] + f[j] * x[i] + f[i] * x[j]
             entries[a, b] = float(total)
             scales[a, b] = units[a] * units[b] / (action[a % half] if b == a + half else mean)
-            noise[a, b] = blur + _ROUNDINGS * epsilon / scales[a, b]
+            noise[a, b] = blur + _ROUNDINGS_OF_ENTRY * epsilon / scales[a, b]
         volume, blur = _volume(jacobian, errors, place.units)
-        blur += _ROUNDINGS * epsilon
+        blur += _ROUNDINGS_OF_ENTRY * epsilon
     rows = tuple(tuple(map(float, row)) for row in jacobian)
     return DefectReading(place, h, entries, noise, scales, volume, blur, rows)
 
@@ -106,13 +111,13 @@ def reading_of(
 def _volume(
     jacobian: Matrix, errors: list[list[float]], units: Sequence[Fraction]
 ) -> tuple[float, float]:
-    """Return det J − 1, and its noise by the entries of the inverse (Jacobi's formula)."""
+    """Return det J − 1, and its noise to first order by Jacobi's formula, with the inverse of J."""
     scale = [gmpy2.mpfr(float(x)) for x in units]
     rows = [[x * scale[j] / scale[i] for j, x in enumerate(row)] for i, row in enumerate(jacobian)]
     size, one = len(rows), gmpy2.mpfr(1)
     wide = [[*row, *(one * (i == k) for i in range(size))] for k, row in enumerate(rows)]
-    # The identity is carried along: one elimination leaves the determinant as the product of the
-    # pivots, and the inverse beside them.
+    # One elimination of (J | identity) leaves the pivots, whose product is the determinant, and
+    # beside them the inverse.
     determinant = eliminate(wide, abs) * prod((row[k] for k, row in enumerate(wide)), start=one)
     if not determinant or not gmpy2.is_finite(determinant):  # a pivot is 0
         return -1.0, max(map(max, errors), default=0.0)

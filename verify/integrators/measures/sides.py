@@ -1,8 +1,8 @@
-"""The comparisons that a user's code makes, and places on the side of them that was not seen.
+"""The comparisons of a user's code, and places on those sides of them that no place has reached.
 
-Code that compares numbers has branches. A branch that no place reaches is looked for: the numbers
-that were compared are known with their derivatives, so that the state at which they change places
-is solved for. What lies out of all proportion, as q > 1e300, is named and not visited.
+Code that compares numbers has branches. The gap between two compared numbers is known with its
+derivatives, so that a state at which it has the other sign can be solved for. A side that is out of
+all proportion, as q > 1e300, is reported and not visited.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,14 +16,19 @@ from verify.integrators.tracing.dual import Comparison
 from verify.integrators.user_code.step import unless_it_fails
 
 Line = tuple[str, int, int]  # file, line, instruction
-_BEYOND = 1.25  # times the way to where the sides meet
-_TRIES, _MOST_LINES = 6, 12
-_ITERATED = 4  # comparisons of one line in one call are those of a loop
+_OVERSHOOT = 1.25  # a Newton step is longer by this factor, so that it ends on the other side
+_MAX_NEWTON_STEPS, _MAX_LINES = 6, 12
+_MIN_COMPARISONS_OF_LOOP = 4  # a line with as many comparisons in one call belongs to a loop
+_MAX_BRANCHES_OF_LINE = 50
 
 
 @dataclass(frozen=True)
 class Branch:
-    """One comparison of a call at a place, which took one side: `sign`. `slopes`: of the gap."""
+    """One comparison of a call at a place.
+
+    `sign`: that of the gap, the side that the call took; `slopes`: the derivatives of the gap by
+    the coordinates. `limit`: the number with which a value was compared, if it was a constant.
+    """
 
     line: Line
     sign: int
@@ -35,8 +40,10 @@ class Branch:
 
 
 class Sides:
-    """The comparisons that were made at each place. `far_conditions`: sides that are
-    named and not visited, as conditions."""
+    """The comparisons that were made at each place.
+
+    `far_conditions`: the conditions of sides that are reported and not visited.
+    """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = names
@@ -53,41 +60,41 @@ class Sides:
         for line, several in by_line.items():
             # A line that compares many times in one call, or with both signs, belongs to a loop,
             # whose end is no branch of the map.
-            if len({x.sign for x in several}) == 1 and len(several) < _ITERATED:
+            if len({x.sign for x in several}) == 1 and len(several) < _MIN_COMPARISONS_OF_LOOP:
                 signs[line] = several[0].sign
                 branches = self.branches.setdefault(line, [])
-                if len(branches) < 50:
+                if len(branches) < _MAX_BRANCHES_OF_LINE:
                     branches += [_branch(x, place, h) for x in several[:2]]
 
     def unseen(self) -> Iterator[tuple[Line, list[Branch]]]:
-        """Yield the lines of which one side was seen alone, with their branches, the nearest
-        first."""
-        for line, branches in list(self.branches.items())[:_MOST_LINES]:
+        """Yield the lines of which only one side was seen, each with its three nearest branches."""
+        for line, branches in list(self.branches.items())[:_MAX_LINES]:
             if len({x.sign for x in branches}) == 1 and branches[0].sign:
                 yield line, sorted(branches, key=_distance)[:3]
 
     def separating(
         self, places: Sequence[TrialPlace], other_places: Sequence[TrialPlace]
     ) -> Branch | None:
-        """Find a comparison that has one sign at all of the first places, and another at the
-        second."""
+        """Return a comparison with one sign at all of `places`, and the other at all of
+        `other_places`; None if there is none."""
         for line, branches in self.branches.items():
-            first = {self.signs_at.get(x, {}).get(line, 0) for x in places}
-            second = {self.signs_at.get(x, {}).get(line, 0) for x in other_places}
-            if len(first) == len(second) == 1 and first != second and 0 not in first | second:
-                return next(x for x in branches if x.sign in first)
+            signs = {self.signs_at.get(x, {}).get(line, 0) for x in places}
+            others = {self.signs_at.get(x, {}).get(line, 0) for x in other_places}
+            if len(signs) == len(others) == 1 and signs != others and 0 not in signs | others:
+                return next(x for x in branches if x.sign in signs)
         return None
 
     def condition(self, branch: Branch) -> str:
         """Return the side of a branch as a condition: q ≤ 50, or the line of code that compares."""
-        moving = [k for k, x in enumerate(branch.slopes) if x]
-        if len(moving) == 1 and branch.limit is not None:
-            slope = branch.slopes[moving[0]]
-            coordinate = float(branch.place.z[moving[0]])
+        compared = [k for k, x in enumerate(branch.slopes) if x]
+        if len(compared) == 1 and branch.limit is not None:
+            slope = branch.slopes[compared[0]]
+            coordinate = float(branch.place.z[compared[0]])
             bound = coordinate - branch.gap / slope
+            # A slope of ±1 means that the coordinate itself is compared.
             if abs(slope) == 1:
                 sign = "≥" if branch.sign * slope > 0 else "≤"
-                return f"{self.names[moving[0]]} {sign} `{bound:.6g}`"
+                return f"{self.names[compared[0]]} {sign} `{bound:.6g}`"
         name, line, _ = branch.line
         side = "this" if branch in self.branches.get(branch.line, ()) else "the other"
         return f"{side} side of the comparison in line {line} of {name}"
@@ -100,7 +107,7 @@ def _branch(x: Comparison, place: TrialPlace, h: Fraction) -> Branch:
 
 
 def _distance(branch: Branch) -> float:
-    """Return the distance to the other side, in units of the place, by the gap's derivatives."""
+    """Return the distance to the other side to first order, in units of the place."""
     norm = (
         sum((s * float(u)) ** 2 for s, u in zip(branch.slopes, branch.place.units, strict=True))
         ** 0.5
@@ -109,9 +116,9 @@ def _distance(branch: Branch) -> float:
 
 
 def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -> list[TrialPlace]:
-    """Find a place on each side that was not seen, where one can be solved for.
+    """Return a place on each side that was not seen, if one can be solved for.
 
-    `farthest`: of each coordinate, up to where it is followed.
+    `farthest`: the largest absolute value of each coordinate that is visited.
     """
     places = []
     for line, branches in list(sides.unseen()):
@@ -126,17 +133,17 @@ def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -
 def _solve_for_other_side(
     probe: DualProbe, sides: Sides, branch: Branch, line: Line, farthest: Mapping[str, float]
 ) -> TrialPlace | None:
-    """Solve for a place on the other side by Newton's method along the gap's gradient, in units of
-    the place."""
+    """Return a place on the other side by Newton's method along the gradient of the gap; None if
+    none is reached."""
     current = branch
-    for _ in range(_TRIES):
+    for _ in range(_MAX_NEWTON_STEPS):
         units = [float(u) for u in current.place.units]
         norm = sum((s * u) ** 2 for s, u in zip(current.slopes, units, strict=True))
         if norm == 0 or norm != norm:
             return None
         # Newton's step in units of the place: the state moves along u² s, s the gap's gradient, by
         # gap/Σ (s u)², and a little farther, so that it ends on the other side.
-        share = _BEYOND * current.gap / norm
+        share = _OVERSHOOT * current.gap / norm
         new_state = [
             float(x) - share * s * u * u
             for x, s, u in zip(current.place.z, current.slopes, units, strict=True)
@@ -154,7 +161,7 @@ def _solve_for_other_side(
             return None
         at_line = [x for x in probe.comparisons if x.line == line]
         if not at_line:
-            return place  # the line is not reached: it is another side all the same
+            return place  # the line is not reached, so that an earlier comparison took another side
         if at_line[0].sign != branch.sign:
             return place
         current = _branch(at_line[0], place, current.h)

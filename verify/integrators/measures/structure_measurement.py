@@ -1,7 +1,7 @@
-"""The defect S of the symplectic form at the places, compared with its noise.
+"""The defect S = JᵀΩJ − Ω of the symplectic form at the places, compared with its noise.
 
-Only the noise of the numbers that the code computes in, measured at each place, or the defect that
-the user allows may be ignored.
+S counts as 0 only up to the noise of the numbers in which the code computes, measured at each
+place, or up to the defect that the user allows.
 """
 
 from collections.abc import Sequence
@@ -10,8 +10,8 @@ from fractions import Fraction
 from functools import partial
 from itertools import pairwise
 
-from verify.integrators.measures.distances import SPACED
-from verify.integrators.measures.error_powers import Row, slopes_of
+from verify.integrators.measures.distances import STEP_DIVISORS
+from verify.integrators.measures.error_powers import Row, find_stretches
 from verify.integrators.measures.probes import DualProbe, Probe
 from verify.integrators.measures.reading import DefectReading
 from verify.integrators.measures.sides import Sides, other_sides
@@ -19,37 +19,46 @@ from verify.integrators.places.trial_places import USER, TrialPlace, select_spre
 from verify.integrators.user_code.step import StepError, describe_error, unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 
-REFUTES = 4.0  # times its noise that an entry is where it is not 0
-_BLIND = 1e-3  # noise beside entries of Ω, which are 1, with which nothing is seen at a place
-_SHARP = 1e-7  # the least that a probe has to see for a map to be said to keep anything
-_SIZES = 1, 8  # parts of a place's largest step
-_LADDER = 3  # places at which S is followed as h falls
-_RISES = 1.5  # times the defect of a larger step: no power of h does so
+REFUTING_RATIO = 4.0  # an entry of S is not 0 if it exceeds its noise by more than this factor
+# The noise of entries of S, in units in which those of Ω are 1. With more than the first, nothing
+# is seen at a place; with more than the second, a map is not said to preserve anything.
+_MAX_BLUR = 1e-3
+_SHARP_BLUR = 1e-7
+_READING_DIVISORS = 1, 8  # S is read with a place's largest step size divided by each
+_MAX_LADDER_PLACES = 3  # places at which S is followed as h falls
+# S jumps if a smaller step has a defect larger by this factor: with a power of h it would fall.
+_JUMP_FACTOR = 1.5
 
 
 @dataclass(frozen=True)
 class StructureMeasurement:
-    """`readings` at all places that were seen; `blind`, those at which the probe's own noise hides
-    all; `rows`: S as h falls; `lost`: what was raised elsewhere."""
+    """The measurement of S at all places.
+
+    `how`: the kind of probe. `readings`: all that show anything; `blind`: those in which the noise
+    of the probe hides S. `ladder`: the places at which S is followed as h falls; `rows` and
+    `counts`, for each of them: the defects with their noise, and the numbers of comparisons.
+    `failures`: the messages of calls that failed. `sides`: the comparisons of the code.
+    """
 
     how: str
     readings: tuple[DefectReading, ...]
     blind: tuple[DefectReading, ...] = ()
     ladder: tuple[TrialPlace, ...] = ()
-    rows: tuple[tuple[Row, ...], ...] = ()  # of each place of `ladder`
-    counts: tuple[tuple[int, ...], ...] = ()  # of comparisons, beside `rows`
-    lost: tuple[str, ...] = ()
+    rows: tuple[tuple[Row, ...], ...] = ()
+    counts: tuple[tuple[int, ...], ...] = ()
+    failures: tuple[str, ...] = ()
     sides: Sides = field(default_factory=lambda: Sides(()))
 
     @property
     def worst(self) -> DefectReading:
-        """The reading whose entry is farthest beyond its noise."""
+        """The reading in which an entry has the largest ratio to its noise."""
         return max(self.readings, key=lambda reading: reading.beyond)
 
     @property
     def largest(self) -> DefectReading:
-        """The reading of the largest defect, in units of its place."""
-        clear = [x for x in self.readings if x.beyond > REFUTES]
+        """The reading of the largest defect in units of its place, among those that refute S ≡ 0 if
+        any do."""
+        clear = [x for x in self.readings if x.beyond > REFUTING_RATIO]
         return max(clear or self.readings, key=lambda reading: reading.defect)
 
     @property
@@ -58,8 +67,8 @@ class StructureMeasurement:
         return max(reading.blur for reading in self.readings)
 
     def is_kept(self, within: Fraction | None = None) -> bool | None:
-        """Return True if S is 0 up to the noise, or up to the allowed defect; None where that is
-        open."""
+        """Return True if S is 0 up to the noise, or up to the allowed defect `within`; None if the
+        noise is too large to tell."""
         if within is not None:
             allowed_defect, readings = float(within), self.readings
             if any(x.defect - x.blur > allowed_defect for x in readings):
@@ -69,32 +78,34 @@ class StructureMeasurement:
 
     @property
     def volume_kept(self) -> bool | None:
-        """True if det J − 1 is 0 up to the noise; None where that is open."""
+        """True if det J − 1 is 0 up to the noise; None if the noise is too large to tell."""
         return self._vanishes(max(abs(x.volume) / x.volume_noise for x in self.readings))
 
-    def _vanishes(self, beyond: float) -> bool | None:
-        """Return True if a defect that is so many times its noise is 0; None where a smaller one
-        would not be seen."""
-        if beyond > REFUTES:
+    def _vanishes(self, ratio: float) -> bool | None:
+        """Return True if a defect with this ratio to its noise is 0; None if the noise hides it."""
+        if ratio > REFUTING_RATIO:
             return False
-        return True if beyond <= REFUTES and self.noise <= _SHARP else None
+        # A ratio that is no number fails both comparisons.
+        return True if ratio <= REFUTING_RATIO and self.noise <= _SHARP_BLUR else None
 
     @property
     def power(self) -> int | None:
-        """The power of h by which S falls where that has settled; None where none is seen."""
-        slopes = [slopes_of(rows) for rows in self.rows]
+        """The power of h by which S falls; None if it has not settled at every place where S is
+        seen."""
+        slopes = [find_stretches(rows) for rows in self.rows]
         # The power is that of the smallest step sizes, where the leading term dominates.
-        last = 0 if self.iterates else -1  # below a loop's first stretch it is its tolerance
+        # If a loop iterates, the later stretches may show its tolerance: the first one counts.
+        last = 0 if self.iterates else -1
         powers = [x.runs[last].power for x in slopes if x.runs]
         clear = [x for x in slopes if x.is_seen]
         return min(powers) if powers and len(powers) == len(clear) and not self.jumps else None
 
     @property
     def jumps(self) -> bool:
-        """True if S grows where h falls, as where an iteration does one turn less."""
+        """True if S grows as h falls, as it does if a loop does one iteration less."""
         for rows in self.rows:
-            clear = [(h, x) for h, x, noise in rows if x > REFUTES * noise]
-            if any(b > _RISES * a for (_, a), (_, b) in pairwise(clear[1:])):
+            clear = [(h, x) for h, x, noise in rows if x > REFUTING_RATIO * noise]
+            if any(b > _JUMP_FACTOR * a for (_, a), (_, b) in pairwise(clear[1:])):
                 return True
         return False
 
@@ -105,23 +116,22 @@ class StructureMeasurement:
 
 
 def structure_of(step: UserMap, probe: Probe, places: Sequence[TrialPlace]) -> StructureMeasurement:
-    """Measure S at all of the places, and at others on the sides of comparisons that these do not
-    reach.
+    """Measure S at all of the places, and on the sides of comparisons that these do not reach.
 
-    Raises StepError, or what the user's code raises, where there are too few.
+    Raises StepError if there is no reading, or if all of them are blind.
     """
-    sides, readings, lost = Sides(step.names), list[DefectReading](), list[str]()
-    _read_places(probe, places, readings, sides, lost)
+    sides, readings, failures = Sides(step.names), list[DefectReading](), list[str]()
+    _read_places(probe, places, readings, sides, failures)
     if isinstance(probe, DualProbe) and readings:
         farthest = _farthest(step, places)
-        _read_places(probe, other_sides(probe, sides, farthest), readings, sides, lost)
+        _read_places(probe, other_sides(probe, sides, farthest), readings, sides, failures)
     if not readings:
-        raise StepError(lost[0] if lost else "it fails at all places")
-    # Where the probe sees sharply at half of the places the blurred ones are left out; else all
-    # count at which anything can be seen. A defect that shows in spite of the noise always counts.
-    sharp = sum(x.blur <= _SHARP for x in readings)
-    blur_limit = _SHARP if 2 * sharp >= len(readings) else _BLIND
-    blind = tuple(x for x in readings if x.blur > blur_limit and x.beyond <= REFUTES)
+        raise StepError(failures[0] if failures else "it fails at all places")
+    # If at least half of the readings are sharp, the others are left out; otherwise all count in
+    # which anything can be seen. A defect that exceeds its noise always counts.
+    sharp = sum(x.blur <= _SHARP_BLUR for x in readings)
+    blur_limit = _SHARP_BLUR if 2 * sharp >= len(readings) else _MAX_BLUR
+    blind = tuple(x for x in readings if x.blur > blur_limit and x.beyond <= REFUTING_RATIO)
     seen_readings = tuple(x for x in readings if x not in blind)
     if not seen_readings:
         smallest, blur_limit = min(x.blur for x in blind), max(x.blur for x in blind)
@@ -133,7 +143,7 @@ def structure_of(step: UserMap, probe: Probe, places: Sequence[TrialPlace]) -> S
     ladder = _ladder_places(places) if step.takes_step_size else []
     rows, counts = _follow_defect(step, probe, ladder)
     return StructureMeasurement(
-        probe.how, seen_readings, blind, tuple(ladder), rows, counts, tuple(lost), sides
+        probe.how, seen_readings, blind, tuple(ladder), rows, counts, tuple(failures), sides
     )
 
 
@@ -142,23 +152,25 @@ def _read_places(
     places: Sequence[TrialPlace],
     readings: list[DefectReading],
     sides: Sides,
-    lost: list[str],
+    failures: list[str],
 ) -> None:
+    """Append the readings at the places, their comparisons, and the messages of failed calls."""
     for place in places:
-        for part in _SIZES if place.step else _SIZES[:1]:
-            if probe.step.left <= 0:
+        for divisor in _READING_DIVISORS if place.step else _READING_DIVISORS[:1]:
+            if probe.step.seconds_left <= 0:
                 return
+            h = place.step / divisor
             try:
-                readings.append(probe.reading(place, place.step / part))
-                sides.note(place, place.step / part, probe.comparisons)
+                readings.append(probe.reading(place, h))
+                sides.note(place, h, probe.comparisons)
             except Exception as error:  # the user's code may raise anything
-                lost.append(
-                    f"{describe_error(error)}{probe.step.place(place.z, place.step / part)}"
-                )
+                call = probe.step.describe_call(place.z, h)
+                failures.append(f"{describe_error(error)}{call}")
 
 
 def _farthest(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
-    """Return how far each coordinate is followed: 100 units, or as far as 1,000 steps lead."""
+    """Return the largest |coordinate| up to which other sides are looked for: 100 units, or as far
+    as 1,000 steps lead."""
     farthest = {
         name: 100.0 * max(max(float(x.units[k]), abs(float(x.z[k]))) for x in places)
         for k, name in enumerate(step.names)
@@ -167,7 +179,7 @@ def _farthest(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
         state, h, t = [float(x) for x in place.z], float(place.step), float(place.t)
         try:
             for k in range(1000):
-                state = list(step.evaluate(state, h, t + k * h if step.moving else t))
+                state = list(step.evaluate(state, h, t + k * h if step.time_dependent else t))
                 for name, x in zip(step.names, state, strict=True):
                     farthest[name] = max(farthest[name], abs(x))
                 if max(map(abs, state)) > 1e12 * max(map(float, place.units)):
@@ -180,19 +192,19 @@ def _farthest(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
 def _ladder_places(places: Sequence[TrialPlace]) -> list[TrialPlace]:
     """Select a few places, the user's among them."""
     of_user = [x for x in places if x.source == USER]
-    return [*of_user, *select_spread([x for x in places if x.source != USER], _LADDER)]
+    return [*of_user, *select_spread([x for x in places if x.source != USER], _MAX_LADDER_PLACES)]
 
 
 def _follow_defect(
     step: UserMap, probe: Probe, places: Sequence[TrialPlace]
 ) -> tuple[tuple[tuple[Row, ...], ...], tuple[tuple[int, ...], ...]]:
-    """Measure S as h falls, and count the numbers that were compared."""
+    """Measure S as h falls, and count the comparisons of the code; one result for each place."""
     all_rows, all_counts = [], []
     for place in places:
         rows, counts = list[Row](), list[int]()
-        for part in SPACED:
-            h = place.step / part
-            if step.left <= 0:
+        for divisor in STEP_DIVISORS:
+            h = place.step / divisor
+            if step.seconds_left <= 0:
                 break
             reading = unless_it_fails(partial(probe.reading, place, h))
             if reading is not None:

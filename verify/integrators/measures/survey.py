@@ -1,8 +1,8 @@
-"""The places that are looked at: the user's first, then patterns in the units of H, or of the map.
+"""The places at which a step or map is tried: the user's first, then patterns in natural units.
 
-Places at which H has no motion, or one that is faster by far than at the others, as where atoms lie
-on top of each other, are left out. How fast the motion changes at a place decides on the largest
-step size there.
+A place is a state with a time, units of the coordinates and a largest step size, which depends on
+how fast the motion changes there. Places are left out at which Hamilton's equations are undefined,
+or the motion is faster by far than at the others, as where atoms lie on top of each other.
 """
 
 import math
@@ -27,22 +27,23 @@ from verify.integrators.places.units import FloatField, Vector, units_of
 from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 
-_SHORT, _FARTHEST = 64, 8.0  # part of a step that is tried, and units that it may go in all
-_FASTEST = 40.0  # times the median of the others' rates
-_MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in units of t
-_VARIANTS = 4  # of a pattern of signs
-_MOST_PLACES = {1: 12, 2: 16}
-_MOST_PLACES_OTHERWISE = 16  # places of more degrees of freedom
-_PLACES_ELSEWHERE = 4  # places of another scale of H
-_BENT = 0.1  # of the largest entry of J
-_RIPPLE = 8  # times the slope over a length that at its middle is none of the same bend
-_LARGEST = Fraction(1, 2)  # of the step size, in parts of the time in which the motion changes
+_SHORT_STEP_DIVISOR = 64  # a step is first tried with the largest step size divided by this number
+_MAX_STRIDE = 8.0  # units of a coordinate that a whole step may move
+_MAX_SPEED_RATIO = 40.0  # a motion is too fast with this multiple of the median rate of change
+_TIMES = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in H's unit of time
+_MAX_VARIANTS = 4  # states that are tried for one pattern of signs
+_MOST_PLACES = {1: 12, 2: 16}  # by the degrees of freedom
+_MOST_PLACES_OTHERWISE = 16
+_PLACES_IN_OTHER_SCALES = 4  # in each scale of H but the first
+_CHANGE_SHARE = 0.1  # J has changed if an entry differs by this part of the largest entry
+_RIPPLE_FACTOR = 8  # a field ripples if its slope at a point is this multiple of that over a length
+_LARGEST_STEP = Fraction(1, 2)  # in units of the time in which the motion changes
 
 
 @dataclass(frozen=True)
 class Request:
-    """The user's choice of where to look: a state, a step size, units by the coordinates' names,
-    and how large a defect is allowed."""
+    """The user's choice of a state, a step size, units by the coordinates' names, and the largest
+    defect that is allowed."""
 
     z: tuple[Fraction, ...] | None = None
     step_size: Fraction | None = None
@@ -50,12 +51,12 @@ class Request:
     within: Fraction | None = None
 
 
-NOWHERE = Request()
-_LARGEST_NUMBER = Fraction(10) ** 150  # beyond it products overflow in doubles
+NO_REQUEST = Request()
+_LARGEST_NUMBER = Fraction(10) ** 150  # products of larger numbers overflow in doubles
 
 
 def check_request(names: Sequence[str], request: Request) -> None:
-    """Raise InputError where a number of the request is out of the range of floats."""
+    """Raise InputError if a number of the request is out of the range of floats."""
     numbers = {
         **dict(zip(names, request.z or (), strict=False)),
         **{f"scale of {name}": x for name, x in request.scale.items()},
@@ -68,21 +69,19 @@ def check_request(names: Sequence[str], request: Request) -> None:
 
 
 def places_of_field(
-    field_: FloatField, moving: bool, request: Request = NOWHERE
+    field_: FloatField, time_dependent: bool, request: Request = NO_REQUEST
 ) -> list[TrialPlace]:
-    """Choose the places for a step of that H; none where H has a motion from none of them.
-
-    Most are in the first scale of H, a few in each that lies far from it.
-    """
+    """Choose the places for a step of that H, most of them in its first scale, a few in each other
+    one; none if Hamilton's equations are defined at none of them."""
     q_max = max((float(abs(x)) for x in (request.z or ())[field_.degrees :]), default=0.0)
     scales, unit_of_time = units_of(field_, q_max or 1.0)
-    pace = unit_of_time if moving else None
+    unit_of_force = unit_of_time if time_dependent else None
 
     def place(
         k: int, z: tuple[Fraction, ...], units: Sequence[Fraction], source: str = PATTERN
     ) -> TrialPlace | None:
-        t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
-        return _place(field_, z, t, units, pace, source)
+        t = _TIMES[k % len(_TIMES)] * unit_of_time if time_dependent else Fraction(0)
+        return _build_place(field_, z, t, units, unit_of_force, source)
 
     places = list[TrialPlace | None]()
     for k, scale in enumerate(scales[:1] if request.scale else scales):
@@ -91,26 +90,27 @@ def places_of_field(
             places.append(place(0, request.z, units, USER))
         calm = _build_patterns(place, units)
         count = _MOST_PLACES.get(field_.degrees, _MOST_PLACES_OTHERWISE)
-        places += select_spread(calm, _PLACES_ELSEWHERE) if k else calm[:count]
+        places += select_spread(calm, _PLACES_IN_OTHER_SCALES) if k else calm[:count]
     return _set_step_size([x for x in places if x is not None], request.step_size)
 
 
 def _build_patterns(
-    make: Callable[..., TrialPlace | None], units: Sequence[Fraction]
+    build: Callable[..., TrialPlace | None], units: Sequence[Fraction]
 ) -> list[TrialPlace]:
-    """Build the patterns in these units, none of them of a motion that is faster by far."""
-    places = [make(k, z, units) for k, z in enumerate(states(units))]
+    """Build the patterns in these units, without places of too fast a motion."""
+    places = [build(k, z, units) for k, z in enumerate(states(units))]
     least_step = _least_step([x for x in places if x is not None])
-    for variant in range(1, _VARIANTS):  # where H has no motion there, or too fast a one
+    # A place at which H is undefined, or the motion too fast, is replaced by another variant.
+    for variant in range(1, _MAX_VARIANTS):
         for k, z in enumerate(states(units, variant)):
             if not _is_calm(places[k], least_step):
-                places[k] = make(k, z, units)
+                places[k] = build(k, z, units)
     return [x for x in places if x is not None and _is_calm(x, least_step)]
 
 
 def _set_step_size(places: list[TrialPlace], size: Fraction | None) -> list[TrialPlace]:
-    """Return the places with the user's step size: exactly at his place, or at all where he names
-    none; where he names one it is the largest one elsewhere."""
+    """Return the places with the user's step size: that of the user's place, and a limit at the
+    others; without a place of the user's it is that of all places."""
     if size is None:
         return places
     has_users_place = any(x.source == USER for x in places)
@@ -120,44 +120,49 @@ def _set_step_size(places: list[TrialPlace], size: Fraction | None) -> list[Tria
     ]
 
 
-def _place(
+def _build_place(
     field_: FloatField, z: tuple[Fraction, ...], t: Fraction, units: Sequence[Fraction],
     unit_of_time: Fraction | None, source: str,
 ) -> TrialPlace | None:  # fmt: skip
     state, moment = [float(x) for x in z], float(t)
-    # At the user's place a coordinate may be far from its unit: it is then moved by a quarter of
-    # its size.
+    # At the user's place a coordinate may be far larger than its unit: its reach is then at most a
+    # quarter of its size.
     local = [
         float(max(u, abs(x) / 4)) if source == USER else float(u)
         for u, x in zip(units, z, strict=True)
     ]
     try:
-        reach = _reaches(field_, state, moment, local)
-        speed = _rate(field_, state, moment, reach)
+        reach = _find_reaches(field_, state, moment, local)
+        speed = _measure_rate(field_, state, moment, reach)
     except (NoFlowError, OverflowError, ZeroDivisionError):
         return None
     if unit_of_time is not None:
         # A force that depends on time changes by itself, however slowly the state moves.
         speed = max(speed, 0.5 / float(unit_of_time))
-    step = _LARGEST / _power(speed) if speed > 0 and math.isfinite(speed) else _LARGEST
-    return TrialPlace(z, t, tuple(units), tuple(_power(x) for x in reach), step, source)
+    step = (
+        _LARGEST_STEP / _power_of_two(speed)
+        if speed > 0 and math.isfinite(speed)
+        else _LARGEST_STEP
+    )
+    return TrialPlace(z, t, tuple(units), tuple(_power_of_two(x) for x in reach), step, source)
 
 
-def _power(x: float) -> Fraction:
-    """Return the nearest power of 2, from below."""
+def _power_of_two(x: float) -> Fraction:
+    """Return the largest power of 2 that is at most x."""
     return Fraction(2) ** math.floor(math.log2(x))
 
 
-def _reaches(field: FloatField, z: Vector, t: float, units: Vector) -> list[float]:
-    """Return how far each coordinate may be moved before the field bends, at most its unit."""
+def _find_reaches(field: FloatField, z: Vector, t: float, units: Vector) -> list[float]:
+    """Return the distance that each coordinate may be moved before the field bends, at most its
+    unit. Raises NoFlowError if the field is undefined at z."""
     field_values = field(z, t)
     if field_values is None:
         raise NoFlowError("H is not defined there")
     steep = field.jacobian(z, t, units)
-    return [_reach(field, z, t, j, field_values, units[j], steep[j]) for j in range(len(z))]
+    return [_find_reach(field, z, t, j, field_values, units[j], steep[j]) for j in range(len(z))]
 
 
-def _reach(
+def _find_reach(
     field: FloatField, z: Vector, t: float, j: int, field_values: Vector, unit: float, steep: Vector
 ) -> float:
     length = unit
@@ -173,7 +178,7 @@ def _reach(
                 abs(a - 2 * c + b) / (abs(a - b) + abs(c) * 1e-3 + 1e-300) for a, b, c in pairs
             )
             ripples = any(
-                2 * length * abs(slope) > _RIPPLE * (abs(a - b) + 1e-12 * abs(c))
+                2 * length * abs(slope) > _RIPPLE_FACTOR * (abs(a - b) + 1e-12 * abs(c))
                 for slope, (a, b, c) in zip(steep, pairs, strict=True)
             )
             calm = all(abs(a - 2 * c + b) <= 0.5 * abs(c) for a, b, c in pairs)
@@ -183,11 +188,11 @@ def _reach(
     return length
 
 
-def _rate(field: FloatField, z: Vector, t: float, reach: Vector) -> float:
-    """Measure how fast the motion changes: ‖∂f/∂z‖ with its coordinates balanced, and of its way.
+def _measure_rate(field: FloatField, z: Vector, t: float, reach: Vector) -> float:
+    """Measure how fast the motion changes: ‖∂f/∂z‖ in balanced coordinates, plus a part of |f|.
 
-    Balancing (Osborne, J. ACM 7 (1960)) takes units out: the norm is then near the largest
-    frequency. Raises NoFlowError.
+    Balancing (Osborne, J. ACM 7 (1960)) removes the units: the norm is then near the largest
+    frequency. Raises NoFlowError if the field is undefined nearby.
     """
     columns = field.jacobian(z, t, reach)
     size = len(columns)
@@ -197,24 +202,23 @@ def _rate(field: FloatField, z: Vector, t: float, reach: Vector) -> float:
             row = sum(entries[k][j] for j in range(size) if j != k)
             column = sum(entries[i][k] for i in range(size) if i != k)
             if row > 0 and column > 0:
-                # A diagonal scaling that makes the sums of row and column equal leaves the
-                # eigenvalues as they are.
+                # A diagonal scaling, here one that makes the sums of row and column equal, does not
+                # change the eigenvalues.
                 ratio = math.sqrt(column / row)
                 for j in range(size):
                     if j != k:
                         entries[k][j] *= ratio
                         entries[j][k] /= ratio
     slopes = field(z, t) or []
-    # Where f is large the state leaves its surroundings at once, however smooth f is there.
-    moving = max((abs(x) / length for x, length in zip(slopes, reach, strict=True)), default=0.0)
-    return max(map(sum, entries)) + moving / 2
+    # If f is large, the state leaves its surroundings at once, however smooth f is there.
+    speed = max((abs(x) / length for x, length in zip(slopes, reach, strict=True)), default=0.0)
+    return max(map(sum, entries)) + speed / 2
 
 
 def _least_step(places: Sequence[TrialPlace]) -> float:
-    """Return the step size below which a place's motion is faster by far than that of the
-    others."""
+    """Return the step size below which the motion at a place is too fast beside the others."""
     steps = sorted(float(place.step) for place in places)
-    return steps[len(steps) // 2] / _FASTEST if steps else 0.0
+    return steps[len(steps) // 2] / _MAX_SPEED_RATIO if steps else 0.0
 
 
 def _is_calm(place: TrialPlace | None, least_step: float) -> bool:
@@ -222,49 +226,48 @@ def _is_calm(place: TrialPlace | None, least_step: float) -> bool:
 
 
 def shorten_steps(step: UserMap, places: list[TrialPlace]) -> list[TrialPlace]:
-    """Return the places with smaller steps where the user's steps move the state further than H
-    does."""
-    return [replace(x, step=x.step / _power(max(1.0, _strides(step, x)))) for x in places]
+    """Return the places, with a smaller step where the user's step moves the state too far."""
+    return [
+        replace(x, step=x.step / _power_of_two(max(1.0, _measure_stride(step, x)))) for x in places
+    ]
 
 
-def _strides(step: UserMap, place: TrialPlace) -> float:
-    """Return how many units a step goes, where H would go one at most; 1 where that is not
-    known."""
-    # A short step is tried, and what it moves is extrapolated to the whole one: a whole step may
-    # end anywhere.
-    end = unless_it_fails(partial(step.at_place, place, place.step / _SHORT))
+def _measure_stride(step: UserMap, place: TrialPlace) -> float:
+    """Return the distance that a whole step moves, in parts of the largest that is allowed; 1 if
+    the step fails or returns no number."""
+    # A short step is tried, and its distance extrapolated: a whole step may end anywhere.
+    end = unless_it_fails(partial(step.at_place, place, place.step / _SHORT_STEP_DIVISOR))
     if end is None:
         return 1.0
     pairs = zip(end, map(float, place.z), place.units, strict=True)
     distance = max(abs(x - y) / float(u) for x, y, u in pairs)
-    return min(distance * _SHORT / _FARTHEST, 1e30) if distance == distance else 1.0
+    return min(distance * _SHORT_STEP_DIVISOR / _MAX_STRIDE, 1e30) if distance == distance else 1.0
 
 
 def places_of_map(
-    names: Sequence[str], unit: Fraction, request: Request = NOWHERE
+    names: Sequence[str], unit: Fraction, request: Request = NO_REQUEST
 ) -> list[TrialPlace]:
-    """Choose the places for a map without an H, in that unit of all its coordinates."""
+    """Choose the places for a map without an H, with one unit for all coordinates."""
     units = tuple(request.scale.get(name, unit) for name in names)
-    reach = tuple(_power(float(u)) for u in units)
+    reach = tuple(_power_of_two(float(u)) for u in units)
     places = [TrialPlace(z, Fraction(0), units, reach) for z in states(units)]
     if request.z is not None:
         users_place = TrialPlace(request.z, Fraction(0), units, reach, source=USER)
         places.insert(0, replace(users_place, reach=tuple(
-            _power(float(max(abs(x) / 4, u))) for x, u in zip(request.z, units, strict=True)
+            _power_of_two(float(max(abs(x) / 4, u))) for x, u in zip(request.z, units, strict=True)
         )))  # fmt: skip
     degrees = len(names) // 2
     return places[: _MOST_PLACES.get(degrees, _MOST_PLACES_OTHERWISE) + (request.z is not None)]
 
 
-def unit_of_map(step: UserMap) -> Fraction:
-    """Find the distance from 0 at which the map's Jacobian has changed, a length of its own; 1
-    where it has none."""
+def find_map_unit(step: UserMap) -> Fraction:
+    """Return the distance from 0 at which the map's Jacobian has changed; 1 if it does not."""
     first_jacobian: list[list[float]] | None = None
     try:
         probe = DualProbe(step)
         for exponent in range(-20, 21):
             unit = Fraction(2) ** exponent
-            jacobian = _jacobian(probe, step.names, unit)
+            jacobian = _jacobian_at(probe, step.names, unit)
             if (
                 jacobian is not None
                 and first_jacobian is not None
@@ -277,17 +280,21 @@ def unit_of_map(step: UserMap) -> Fraction:
     return Fraction(1)
 
 
-def _jacobian(probe: DualProbe, names: Sequence[str], unit: Fraction) -> list[list[float]] | None:
+def _jacobian_at(
+    probe: DualProbe, names: Sequence[str], unit: Fraction
+) -> list[list[float]] | None:
     units = (unit,) * len(names)
     place = TrialPlace(states(units)[0], Fraction(0), units, units)
     reading = unless_it_fails(partial(probe.reading, place, Fraction(0)))
     return None if reading is None else [list(row) for row in reading.jacobian]
 
 
-def _has_changed(before: list[list[float]], after: list[list[float]]) -> bool:
-    """Return True if an entry has moved by a tenth of the largest."""
-    largest = max(abs(x) for row in before for x in row)
-    pairs = zip(before, after, strict=True)
+def _has_changed(one_jacobian: list[list[float]], other_jacobian: list[list[float]]) -> bool:
+    """Return True if an entry differs by more than a tenth of the largest entry of the first."""
+    largest = max(abs(x) for row in one_jacobian for x in row)
+    pairs = zip(one_jacobian, other_jacobian, strict=True)
     return any(
-        abs(x - y) > _BENT * largest for one, two in pairs for x, y in zip(one, two, strict=True)
+        abs(x - y) > _CHANGE_SHARE * largest
+        for one, two in pairs
+        for x, y in zip(one, two, strict=True)
     )

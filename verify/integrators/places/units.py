@@ -1,8 +1,8 @@
 """The units of a Hamiltonian's coordinates and of time, one set for each scale that it has.
 
-A field has sizes of its own: where its forces turn from one power of the coordinates to another
-(σ of a molecule, the length of a pendulum), and momenta whose kinetic energy is that of moving
-through such a length. Where it has none, as Kepler's, any length will do, and 1 is taken.
+A scale is a length at which the forces turn from one power of the coordinates to another (σ of a
+molecule, the length of a pendulum). Its momenta are those whose kinetic energy is the work of the
+forces over this length. If H has no scale, as Kepler's, any length will do, and 1 is taken.
 """
 
 import math
@@ -18,24 +18,31 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.trial_places import round_to_simple
 
-_DIGITS, _TIME = 20, 0.25
-# Of lengths that are looked at: the far ones, as of atoms in SI units, at every fourth.
+_FIELD_DIGITS, _TIME = 20, 0.25
+# The binary logarithms of the lengths that are tried: far from 1, as with atoms in SI units, every
+# fourth alone.
 _OCTAVES = *range(-140, -44, 4), *range(-44, 45), *range(48, 141, 4)
-_DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
-_ASIDE = (1.0, 0.61, 1.43)  # parts of a state, for others beside it
-_APART = 30  # times another coordinate's length, or another scale, one counts for itself
-_LONG, _MOST_SCALES = 6, 3  # slopes of a power that is seen beyond the first; and scales in all
+# Slopes show one power if they differ by less than the second number; a slope that differs from it
+# by more than the first number shows a turn.
+_POWER_TOLERANCE, _PLATEAU_WIDTH = 0.3, 0.1
+_STATE_FACTORS = (1.0, 0.61, 1.43)  # multiples of a state, as a force may vanish at one of them
+_SCALE_RATIO = 30  # lengths with a larger ratio are different scales
+_LATER_PLATEAU_SLOPES = 6  # slopes that have to show one power, beyond the first turn
+_MAX_SCALES = 3
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
 
 
 class FloatField:
-    """f(z, t) of an H whose parameters have values, as floats; None where it is not defined."""
+    """f(z, t), the right-hand side of Hamilton's equations, as floats; None where it is undefined.
+
+    The parameters of H must have values.
+    """
 
     def __init__(self, hamiltonian: Hamiltonian) -> None:
         self.degrees, self.names = hamiltonian.degrees, hamiltonian.coordinates
         self.timed = hamiltonian.time_dependent
-        self._flow = NumericalFlow(canonical_field(hamiltonian)[0], _DIGITS)
+        self._flow = NumericalFlow(canonical_field(hamiltonian)[0], _FIELD_DIGITS)
 
     def _slopes(self, z: Vector, t: float) -> list[Any] | None:
         try:
@@ -53,8 +60,11 @@ class FloatField:
     def octave(
         self, z: Vector, t: float, base: Vector | None = None, then: float = 0.0, half: int = -1
     ) -> float | None:
-        """Return the binary logarithm of the size of f(z, t), or of its distance from f(base,
-        then), in the half that is counted, or in both; no float overflows, or cancels."""
+        """Return log₂ of the size of f(z, t), or of its distance from f(base, then).
+
+        `half`: 0 for p' alone, 1 for q' alone, −1 for both. It is computed with 20 digits, so that
+        nothing overflows or cancels as it would in floats. None if a field value is undefined.
+        """
         slopes = self._slopes(z, t)
         subtracted = [0] * len(z) if base is None else self._slopes(base, then)
         if slopes is None or subtracted is None:
@@ -69,7 +79,10 @@ class FloatField:
             return None
 
     def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
-        """Return ∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
+        """Return ∂f/∂z by columns, by central differences with 20 digits.
+
+        Raises NoFlowError if the field is undefined near z.
+        """
         flow, columns = self._flow, []
         for j, length in enumerate(reach):
             # The truncation error of a central difference is of relative size 2⁻⁴⁸ or so, and 20
@@ -88,59 +101,64 @@ class FloatField:
 
 
 def units_of(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
-    """Find units of the coordinates, p1 … qn, for each scale that H has, and one of t.
+    """Return the units of the coordinates, p1 … qn, for each scale that H has, and the unit of t.
 
-    `usual`: a length, where H has none.
+    `usual`: the length that is taken if H has no scale.
     """
     n, scales = field.degrees, list[list[float]]()
-    for lengths in _sizes(field, n, usual):
+    for lengths in _find_scales(field, n, usual):
         scales.append([*_find_partners(field, lengths, n), *lengths])
-    for momenta in [] if scales else _sizes(field, 0):  # as of a relativistic body on a spring
+    # If the q have no scale, the p may have one, as those of a relativistic body on a spring.
+    for momenta in [] if scales else _find_scales(field, 0):
         scales.append([*momenta, *_find_partners(field, momenta, 0)])
     lengths = [usual] * n
     scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
     return [[round_to_simple(x) for x in scale] for scale in scales], round_to_simple(
-        _duration(field, scales[0])
+        _find_duration(field, scales[0])
     )
 
 
-def _sizes(field: FloatField, first: int, usual: float = 1.0) -> list[list[float]]:
-    """Find the sizes of each q, or p, from the `first` coordinate on, at which its forces turn from
-    one power to another: one list for each scale, none where nothing turns."""
+def _find_scales(field: FloatField, first: int, usual: float = 1.0) -> list[list[float]]:
+    """Find the scales of the coordinates from index `first` on: the q, or the p with `first` = 0.
+
+    Returns one list for each scale, with a length for each coordinate; none if the forces turn
+    nowhere from one power to another.
+    """
     n = field.degrees
     origin = [0.0] * (2 * n)
-    at_rest = field(origin) is not None  # then a constant force is of no size
+    is_defined = field(origin) is not None  # then the constant part of the force is subtracted
 
     def size(s: float) -> float | None:
         moved = _pad_with_zeros(first, [s * x for x in _direction(n)])
-        if at_rest:
+        if is_defined:
             return field.octave(moved, _TIME, origin, _TIME)
         return field.octave(moved, _TIME, half=0 if first else 1)
 
     turns = [*_find_turns(size), *_find_turns(lambda s: size(-s))]
     scales = turns[:1]
     for x in turns[1:]:
-        if all(not 1 / _APART < x / y < _APART for y in scales):
+        if all(not 1 / _SCALE_RATIO < x / y < _SCALE_RATIO for y in scales):
             scales.append(x)
     nearest = scales[0] if scales else usual
-    sizes = _size_near_scale(field, first, nearest)
+    sizes = _sizes_near_scale(field, first, nearest)
     if not scales and all(x == usual for x in sizes):
         return []
-    return [[x * (scale / nearest) for x in sizes] for scale in scales[:_MOST_SCALES] or [usual]]
+    return [[x * (scale / nearest) for x in sizes] for scale in scales[:_MAX_SCALES] or [usual]]
 
 
-def _size_near_scale(field: FloatField, first: int, scale: float) -> list[float]:
-    """Return the size of each coordinate near that scale: the scale, or one of its own."""
+def _sizes_near_scale(field: FloatField, first: int, scale: float) -> list[float]:
+    """Return the size of each coordinate near that scale: the scale, or one that differs by more
+    than `_SCALE_RATIO`."""
     n = field.degrees
     base = _pad_with_zeros(first, [scale * x for x in _direction(n)])
     sizes = [scale] * n
     for k in range(n):
-        # At several states, as a force may be still at one of them.
         turns_by_state = [
-            _find_turns(_response(field, [x * y for x in base], first + k))[:1] for y in _ASIDE
+            _find_turns(_response(field, [x * y for x in base], first + k))[:1]
+            for y in _STATE_FACTORS
         ]
         local_sizes = [x for turns in turns_by_state for x in turns]
-        if local_sizes and not 1 / _APART < max(local_sizes) / scale < _APART:
+        if local_sizes and not 1 / _SCALE_RATIO < max(local_sizes) / scale < _SCALE_RATIO:
             sizes[k] = max(local_sizes)
     return sizes
 
@@ -172,8 +190,11 @@ def _response(field: FloatField, base: Vector, j: int) -> Callable[[float], floa
 
 
 def _find_turns(size: Callable[[float], float | None]) -> list[float]:
-    """Find where a size, by its binary logarithm, turns from one power of s to another: the first
-    such place, and those beyond at which a power of a long stretch ends or begins."""
+    """Return the s at which a size turns from one power of s to another.
+
+    `size` returns log₂ of the size. After the first turn, only powers on long stretches count: the
+    values of s at which one ends or begins.
+    """
     values = [size(2.0**k) for k in _OCTAVES]
     powers = [
         (b - a) / (_OCTAVES[k + 1] - _OCTAVES[k])
@@ -185,42 +206,42 @@ def _find_turns(size: Callable[[float], float | None]) -> list[float]:
     turns = list[float]()
     first = next((k for k, x in enumerate(values) if x is not None), 0)
     if first:
-        turns.append(math.ldexp(1.5, _OCTAVES[first]))  # it is not defined nearer to 0
+        turns.append(math.ldexp(1.5, _OCTAVES[first]))  # the size is undefined nearer to 0
     for k in range(2, len(powers)):
-        # Beyond the first turn a power counts on a long stretch alone, as a short one may be a
-        # ripple of waves.
-        fewest = _LONG if turns else 3
+        # After the first turn a short stretch may be a ripple of waves.
+        fewest = _LATER_PLATEAU_SLOPES if turns else 3
         steady = [x for x in powers[max(0, k + 1 - fewest) : k + 1] if x is not None]
         if plateau is None:
-            if len(steady) == fewest and max(steady) - min(steady) < _PLATEAU:
+            if len(steady) == fewest and max(steady) - min(steady) < _PLATEAU_WIDTH:
                 plateau = steady[0]
                 if turns:
                     turns.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
         elif powers[k] is None:
-            if not turns:  # it is not defined beyond; later numbers have come to their end
+            if not turns:  # the size is undefined from here on, or its numbers have overflowed
                 turns.append(math.ldexp(1.0, _OCTAVES[k - 1]))
             plateau = None
-        elif abs((powers[k] or 0.0) - plateau) > _DEPARTS:
+        elif abs((powers[k] or 0.0) - plateau) > _POWER_TOLERANCE:
             turns.append(math.ldexp(1.5, _OCTAVES[k]))
             plateau = None
     return turns
 
 
 def _find_partners(field: FloatField, sizes: Vector, first: int) -> list[float]:
-    """Return for each p the value whose kinetic energy is the work of its force over its length; or
-    the same for q."""
+    """Return for each p the value whose kinetic energy is the work of the force over the length of
+    its q; with `first` = 0, for each q the same from its p."""
     n = field.degrees
     base = _pad_with_zeros(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
-    works = zip(*_works(field, base, sizes, first), strict=True)
+    works = zip(*_works_of_forces(field, base, sizes, first), strict=True)
     work = [min(works_of_force, default=0.0) for works_of_force in works]
     mean = sum(work) / max(len(work), 1) or 1.0
-    return [_partner(field, base, n - first + k, work[k] or mean) for k in range(n)]
+    return [_find_partner(field, base, n - first + k, work[k] or mean) for k in range(n)]
 
 
-def _works(field: FloatField, base: Vector, sizes: Vector, first: int) -> list[list[float]]:
-    """Return the work of each force over its length, at states beside one another, as one may lie
-    in a core."""
-    states = [field([x * y for x in base]) for y in _ASIDE]
+def _works_of_forces(
+    field: FloatField, base: Vector, sizes: Vector, first: int
+) -> list[list[float]]:
+    """Return the work of each force over its length, at several states: one may lie in a core."""
+    states = [field([x * y for x in base]) for y in _STATE_FACTORS]
     works = [
         [
             abs(slope) * size
@@ -232,7 +253,7 @@ def _works(field: FloatField, base: Vector, sizes: Vector, first: int) -> list[l
     return works or [[0.0] * len(sizes)]
 
 
-def _partner(field: FloatField, base: Vector, j: int, work: float) -> float:
+def _find_partner(field: FloatField, base: Vector, j: int, work: float) -> float:
     n = field.degrees
 
     def energy(x: float) -> float:
@@ -242,7 +263,7 @@ def _partner(field: FloatField, base: Vector, j: int, work: float) -> float:
         return math.inf if slopes is None else abs(x * slopes[(j + n) % (2 * n)])
 
     # Bisection in the binary logarithm, since units may lie many powers of ten apart.
-    low, high = -200.0, 200.0  # of its binary logarithm
+    low, high = -200.0, 200.0
     if not energy(2.0**high) > work > energy(2.0**low):
         return 1.0
     while high - low > 0.25:
@@ -251,9 +272,9 @@ def _partner(field: FloatField, base: Vector, j: int, work: float) -> float:
     return math.pow(2.0, high)
 
 
-def _duration(field: FloatField, units: Vector) -> float:
-    """Find the time over which the field changes otherwise than by a power of t, from 0 on or where
-    it is defined; 1 where it does not."""
+def _find_duration(field: FloatField, units: Vector) -> float:
+    """Return the time, from t = 0 on, over which the field turns from one power of t to another; 1
+    if it does not. If the field is undefined at 0, the start is 1/8."""
     if not field.timed:
         return 1.0
     begin = 0.0 if field(units, 0.0) is not None else 0.125

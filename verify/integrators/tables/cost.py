@@ -1,9 +1,10 @@
-"""The cost of wrong numbers in a table: if a double can tell, and which order or accuracy is lost.
+"""The cost of wrong numbers in a table: does a double notice, which order or accuracy is lost?
 
-The printed numbers are compared with the nearest exact ones in units of a double's last place, one
-ulp being 2⁻⁵² times a power of 2. The error constant is the norm of the residuals of the order that
-comes next, of trees with 1/σ(t). Wrong digits leave residuals r of a lower order k: below the step
-size at which r h^k is as large as what the method truncates, they are what is seen.
+The printed numbers are compared with the nearest exact ones in ulps, units of a double's last
+place: 2⁻⁵² times a power of 2. The error constant is the norm of the residuals of the conditions of
+the next order, each of a tree t with the factor 1/σ(t). Wrong digits leave residuals r of a lower
+order k. Below the step size at which r h^k is as large as the truncation error, they make the error
+of a step.
 """
 
 import math
@@ -22,8 +23,8 @@ from verify.schemes.printed.judgement import Judgement
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
 
-_MOST_ULPS = 1e9  # ulps: more is another number
-DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
+_MAX_ULPS = 1e9  # beyond, the printed number is another one, and no rounding
+DOUBLE = Fraction(1, 2**53)  # the unit roundoff of a double
 
 
 class Severity(StrEnum):
@@ -42,11 +43,11 @@ class Severity(StrEnum):
 class Cost:
     """The cost of a mistake in the numbers of a table.
 
-    `double`: whether a double can tell; None where that is not known. `ulps`: by how many ulps the
-    number that is farthest off differs from the nearest exact one, None where no exact numbers are
-    known. `order`: what it has, in place of `claimed`. `error_constant`: as printed, and
-    `nearest_error_constant` of the nearest exact numbers. `below`: the step size below which wrong
-    digits are what is seen.
+    `double`: True if a double can tell the printed numbers from the exact ones; None if that is not
+    known. `ulps`: the largest difference of a number from the nearest exact one, None if no exact
+    numbers are known. `order`: that of the table, in place of `claimed`. `error_constant`: that of
+    the printed numbers, and `nearest_error_constant` that of the nearest exact ones. `below`: the
+    step size below which wrong digits make the error of a step.
     """
 
     double: bool | None
@@ -65,7 +66,7 @@ class Cost:
             parts.append(f"the order: {self.order} in place of {self.claimed}")
         if self.double is False:
             parts.append("nothing that a double can tell")
-        elif self.double and self.ulps is not None and self.ulps < _MOST_ULPS:
+        elif self.double and self.ulps is not None and self.ulps < _MAX_ULPS:
             parts.append(
                 f"a double can tell: the number farthest off is `{self.ulps:.2g}` ulps from its own"
             )

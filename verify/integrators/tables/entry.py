@@ -1,6 +1,6 @@
 """One [[table]] as a file has it: its keys, its numbers, and tableaux as text or in CSV files.
 
-Numbers are written in the signs of formulas, whatever paper or program they come from:
+Numbers from any paper or program are rewritten in the signs of formulas:
 
 plain("−½ × 10⁻³")           -(1/2)*10^(-3)
 plain("\\frac{\\sqrt{3}}{6}")   ((sqrt(3))/(6))
@@ -32,7 +32,7 @@ from verify.errors import InputError
 from verify.files import read_text
 from verify.scenes.frozen import Frozen
 
-LONGEST = 2000  # characters of a number, or of a formula of some
+LONGEST = 2000  # characters of a number, or of a formula
 _SIGNS = {
     **dict.fromkeys("−–‒‐‑﹣－", "-"),
     **dict.fromkeys("⁄∕÷", "/"),
@@ -55,8 +55,7 @@ _GROUPED = re.compile(r"\d*\.\d+(?: \d+)+(?![\d/.])")
 
 
 def plain(text: str) -> str:
-    """Write the same number in the signs of formulas; leave what is none for the formula's
-    reader."""
+    """Write the same number in the signs of formulas; leave any other text to their reader."""
     text = "".join(_SIGNS.get(x, x) for x in text)
     text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+", lambda m: f"^({m[0].translate(_RAISED)})", text)
     text = "".join(_vulgar(x) for x in text)

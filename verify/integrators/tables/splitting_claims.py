@@ -29,12 +29,14 @@ from verify.schemes.printed.splitting_table import PrintedTable, judge_clocks, j
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}
-_OF_KICKS = "every kick and every drift is symplectic, whatever their coefficients are"
-_OF_STEPS = "a composition of symplectic steps is symplectic, whatever their sizes are"
+_SYMPLECTIC_SPLITTING = "every kick and every drift is symplectic, whatever their coefficients are"
+_SYMPLECTIC_COMPOSITION = (
+    "a composition of symplectic steps is symplectic, whatever their sizes are"
+)
 
 
 def _split_numbers(value: object) -> object:
-    """Return a list as it is, and the numbers in one text."""
+    """Return the numbers in one text as a tuple; any other value as it is."""
     return tuple(one_column(value)) if isinstance(value, str) else value
 
 
@@ -42,8 +44,8 @@ Numbers = Annotated[Row, BeforeValidator(_split_numbers)]
 
 
 class SizesEntry(TableEntry):
-    """`sizes`: of all parts, as a list or one text; or `half` of them, read forth and back again,
-    the last standing once."""
+    """An entry with the `sizes` of all parts, as a list or in one text; or `half` of them, which
+    are read forth and back again, the last one once."""
 
     order: Order | None = None
     sizes: Numbers | None = None
@@ -51,9 +53,9 @@ class SizesEntry(TableEntry):
 
 
 class AlternatingEntry(SizesEntry):
-    """`first`: "kick", "drift", or "both" to be run either way. `times`: one for each size, in
-    parts of h, `-` where none is read; judged for kicks, and with `time_dependent = "T and V"` for
-    drifts too. A `csv` file has columns kind, size and time, or size alone."""
+    """A splitting. `first`: "kick", "drift", or "both" for both orders. `times`: one for each size,
+    in units of h, `-` for a part that reads none; judged for kicks, and with `time_dependent =
+    "T and V"` for drifts too. A `csv` file has columns kind, size and time, or size alone."""
 
     first: Literal["kick", "drift", "both"] | None = None
     times: Numbers | None = None
@@ -61,7 +63,7 @@ class AlternatingEntry(SizesEntry):
 
 
 def sizes_of(entry: SizesEntry) -> tuple[tuple[str, ...], bool]:
-    """Return the sizes as they are written, and whether they are half of all sizes."""
+    """Return the sizes as they are written, and True if they are the first half of all sizes."""
     if (entry.sizes is None) == (entry.half is None):
         problem = "is missing; write sizes, or half" if entry.sizes is None else "goes without half"
         raise InputError("sizes", NOT_GIVEN, problem)
@@ -93,7 +95,7 @@ def judge_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
 
 
 def timed_parts(entry: TableEntry) -> list[tuple[str, float, float]]:
-    """Return kind, size and time of each part, as floats; nothing for what has no clock."""
+    """Return kind, size and time of each part, as floats; an empty list without times."""
     if not isinstance(entry, AlternatingEntry):
         return []
     naming = Naming(entry.numbers)
@@ -116,7 +118,7 @@ def _label_claim(claim: TableClaim, more: str) -> TableClaim:
 def parts_of(
     entry: AlternatingEntry, naming: Naming
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str | None, ...] | None]:
-    """Return kinds, sizes and times, in names for their decimals."""
+    """Return the kinds, sizes and times of the parts, as formulas in the names of their numbers."""
     kinds: tuple[str, ...]
     times: Sequence[str] | None = None
     if entry.csv is not None:
@@ -152,7 +154,7 @@ def _kinds(entry: AlternatingEntry, count: int) -> tuple[str, ...]:
 
 
 def alternating(first: str, count: int) -> tuple[str, ...]:
-    """Return so many kicks and drifts in turn."""
+    """Return `count` kicks and drifts in turn."""
     return tuple(islice(cycle((first, _EXCHANGED[first])), count))
 
 
@@ -194,7 +196,11 @@ def judge_table(
         timed = replace(table, times=times, kinetic_in_time=depends == "T and V")
         yield from _in_time(timed, entry.order, order is Verdict.REFUTED, hints)
     if entry.symplectic:
-        evidence = _OF_KICKS if isinstance(entry, AlternatingEntry) else _OF_STEPS
+        evidence = (
+            _SYMPLECTIC_SPLITTING
+            if isinstance(entry, AlternatingEntry)
+            else _SYMPLECTIC_COMPOSITION
+        )
         yield TableClaim("symplectic", "symplectic", Verdict.PROVED, prose(evidence))
     if entry.symmetric:
         judgement = hints.keep_explaining(best_reading(table, _judge_symmetric))

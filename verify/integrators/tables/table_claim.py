@@ -1,5 +1,5 @@
-"""One claim of a table with its verdict, the claims on orders and digits, and hints on what would
-be right."""
+"""One claim of a table with its verdict, the claims on orders and digits, and hints on the right
+numbers."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -23,17 +23,16 @@ from verify.schemes.printed.sentences import (
 from verify.schemes.printed.solutions import Misprint
 from verify.verdict import Verdict
 
-_DIGITS = "every digit is right, to one unit of the last"
+_DIGITS_STATEMENT = "every digit is right, to one unit of the last"
 
 
 @dataclass(frozen=True)
 class TableClaim:
     """A claim of a table with its verdict.
 
-    `kind` is the end of its id, and `statement` the claim in words. `verdict` rests on `evidence`,
-    a sentence, and on `details`. `severity`, `nearest` and `cost` are of what is wrong, and None
-    where nothing is: the kind of the mistake, texts of the nearest exact numbers by name, and what
-    the printed ones cost.
+    `kind`: the end of its id; `statement`: the claim in words. `evidence`, a sentence, and
+    `details` support the verdict. For a mistake, and otherwise None: `severity`, its kind;
+    `nearest`, the texts of the nearest exact numbers by name; `cost`, that of the printed ones.
     """
 
     kind: str
@@ -55,13 +54,15 @@ class Readable(Protocol):
     def read(self, numbers: PrintedNumbers) -> Self: ...
 
 
-_HALF = Fraction(51, 100)  # of a unit, to which a number is rounded, as far as it is known
+# A number that is rounded right is off by half a unit of its last digit; a little more is allowed,
+# since the exact number is known to a few digits only.
+_ROUNDING_LIMIT = Fraction(51, 100)
 T = TypeVar("T", bound=Readable)
 
 
 def best_reading(table: T, judge: Callable[[T], Judgement]) -> Judgement:
-    """Judge the table in a reading in which it holds, if there is one; else as it is read last,
-    with short decimals taken for rounded, too."""
+    """Return the judgement of the first reading in which the table holds; if there is none, that of
+    the last one, in which short decimals count as rounded, too."""
     readings = table.printed.readings()
     judgement = judge(table.read(readings[0]))
     for numbers in readings[1:]:
@@ -72,7 +73,7 @@ def best_reading(table: T, judge: Callable[[T], Judgement]) -> Judgement:
     if judgement.verdict is Verdict.REFUTED and closely.units != readings[-1].units:
         # Of numbers with three decimals ten units are no digits any more, and half a one is.
         close = judge(table.read(closely))
-        if close.holds and close.distance is not None and close.distance <= _HALF:
+        if close.holds and close.distance is not None and close.distance <= _ROUNDING_LIMIT:
             return close
     return judgement
 
@@ -102,7 +103,7 @@ def order_claims(
         and judgement.numbers.units
     ):
         name = "digits" if kind == "order" else f"{kind} digits"
-        yield _of_digits(name, _DIGITS, judgement, severity, cost)
+        yield _of_digits(name, _DIGITS_STATEMENT, judgement, severity, cost)
 
 
 def condition_claims(
@@ -119,7 +120,9 @@ def condition_claims(
     )
     yield claim
     if claim.verdict is not Verdict.REFUTED and judgement.digits is False:
-        yield _of_digits(f"{kind} digits", f"{statement}: {_DIGITS}", judgement, severity, cost)
+        yield _of_digits(
+            f"{kind} digits", f"{statement}: {_DIGITS_STATEMENT}", judgement, severity, cost
+        )
 
 
 def _of_digits(

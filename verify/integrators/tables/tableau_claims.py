@@ -39,14 +39,14 @@ from verify.verdict import Verdict
 
 @dataclass(frozen=True)
 class NamedBlock:
-    """One tableau with names for its decimals."""
+    """One tableau whose decimals have names; `embedded`: its second line of weights, if any."""
 
     printed: Tableau[str]
     embedded: Texts | None
 
 
 def block_of(block: Block, naming: Naming, name: str, folder: Path) -> NamedBlock:
-    """Read one tableau. Raises InputError, of the key that is wrong, where it is none."""
+    """Read one tableau; `name`: the end of its keys. Raises InputError for a key that is wrong."""
     block = _read_layout(block, name, folder)
     if block.a is None or block.b is None:
         missing_key = "a" if block.a is None else "b"
@@ -72,7 +72,7 @@ def block_of(block: Block, naming: Naming, name: str, folder: Path) -> NamedBloc
 
 
 def _fill_times(times: Sequence[str], stages: int) -> Sequence[str]:
-    """Return the times; the first, 0, need not be printed."""
+    """Return all times; a first one that is 0 need not be printed."""
     return ["0", *times] if len(times) == stages - 1 else times
 
 

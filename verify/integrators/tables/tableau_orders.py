@@ -1,7 +1,8 @@
-"""Orders of Runge–Kutta tables: the conditions of trees, in time as well, and what implies them.
+"""Orders of Runge–Kutta tables: the conditions of trees, also for H that depend on t.
 
-Where the times are the row sums, c_i = Σ a_ij, a leaf of time is as any other, and the conditions
-without time do. Where they are not, those of trees with leaves of time tell.
+For such an H the trees have leaves of time. If the times are the row sums, c_i = Σ a_ij, a leaf of
+time is like any other, and the conditions without time suffice. Otherwise the conditions of trees
+with leaves of time decide.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,21 +36,23 @@ from verify.schemes.printed.judgement import Judgement, judge
 from verify.schemes.printed.solutions import Misprint
 from verify.verdict import Verdict
 
-_MOST_TREES = 2500
-_HIGHEST = 10
-_MOST_WORK = 3 * 10**8  # products: some minutes
-_WRONG_TIME = Fraction(1, 10**9)  # between a time and a row sum: more is no digit
-_MANY_IN_TIME = 300  # conditions on rounded numbers: some seconds
-MANY_CONDITIONS = 60  # conditions: of fewer a solution is looked for together with that of row sums
+_MAX_TREES = 2500
+_MAX_ORDER = 10
+_MAX_PRODUCTS = 3 * 10**8  # they take some minutes
+# A larger difference between a time and a row sum is no rounding of a digit.
+_WRONG_TIME_GAP = Fraction(1, 10**9)
+_MAX_TIME_CONDITIONS = 300  # on rounded numbers; they take some seconds
+# With fewer conditions, a solution is looked for that satisfies the row sums, too.
+MANY_CONDITIONS = 60
 
 
 @cache
 def most_order(grammar: Grammar) -> int:
-    """Return the highest order whose trees are looked at."""
+    """Return the highest order whose conditions are judged."""
     trees = [len(all_trees(grammar, 1))]
-    while len(trees) < _HIGHEST and sum(trees) <= _MOST_TREES:
+    while len(trees) < _MAX_ORDER and sum(trees) <= _MAX_TREES:
         trees.append(len(all_trees(grammar, len(trees) + 1)))
-    return len(trees) if sum(trees) <= _MOST_TREES else len(trees) - 1
+    return len(trees) if sum(trees) <= _MAX_TREES else len(trees) - 1
 
 
 def order_conditions(
@@ -57,7 +60,7 @@ def order_conditions(
 ) -> ConditionSet:
     """Return the conditions of orders `first` … `order`; `timed`: with leaves of time.
 
-    Raises InputError beyond what is looked at.
+    Raises InputError if the order is higher than `most_order`.
     """
     grammar = replace(table.grammar, timed=timed)
     if not 1 <= order <= most_order(grammar):
@@ -73,7 +76,7 @@ def order_conditions(
     # The work is estimated before it is begun: each condition has a derivative by each rounded
     # number.
     work = len(trees) * len(table.entries) * (1 + len(table.printed.units))
-    if work > _MOST_WORK:
+    if work > _MAX_PRODUCTS:
         size = f"{len(trees)} conditions and {len(table.entries)} entries"
         raise InputError("order", order, f"is too much to look at, of {size}")
     equations = tuple(NamedEquation(condition_text(table, tree), vertices(tree)) for tree in trees)
@@ -127,7 +130,7 @@ def wrong_time(table: TableauTable) -> Misprint | None:
     mistakes, at_print = [], table.printed.at_print
     for name, *sides in _sums(table, table.exprs, sympy.S.One):
         sizes = list(map(at_print, sides))
-        if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG_TIME:
+        if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG_TIME_GAP:
             label = name.partition(" = ")[2].replace("_", "", 1) if len(table.names) == 1 else name
             mistakes.append(
                 Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q)))
@@ -174,7 +177,7 @@ def judge_in_time(table: TableauTable, order: int) -> Judgement:
     limit = most_order(replace(table.grammar, timed=True))
     for n in range(1, min(order, limit) + 1):  # of a wrong time it is mostly a low order that fails
         conditions = order_conditions(table, n, timed=True)
-        if table.printed.units and len(conditions.equations) > _MANY_IN_TIME:
+        if table.printed.units and len(conditions.equations) > _MAX_TIME_CONDITIONS:
             break
         timed = judge(table.printed, conditions, n)
         if timed.verdict is Verdict.REFUTED or n == order:

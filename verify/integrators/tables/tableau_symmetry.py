@@ -1,16 +1,19 @@
-"""Judgements on Runge–Kutta tables, if they are symplectic, and if they are symmetric: by
-conditions that suffice, and by some that are needed.
+"""The judgement if a Runge–Kutta table is symplectic, or symmetric.
 
-Symplectic: b^k_i a^l_ij + b^l_j a^k_ji = b^k_i b^l_j suffices, for all parts k and l of a sum
-(Sanz-Serna 1988; Araújo, Murua, Sanz-Serna 1997), for p' and q' of a partitioned method with
-b_p = b_q beside it, which a separable H does not need (Hairer, Lubich, Wanner, VI.4); of Nyström's
-kind b̄_i = b_i (1 − c_i) and b_i (b̄_j − ā_ij) = b_j (b̄_i − ā_ji) (Suris 1989). Needed is
-b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of trees, u∘v being u with v as one more branch of its
-root (Hairer, Lubich, Wanner, VI.7); of Nyström's kind, where q' = p is linear, the difference of
-the two conditions that have the tree [u, v] of q' in common.
+A sufficient set of conditions proves it; a necessary set refutes it.
 
-Symmetric: a_(s+1−i, s+1−j) + a_ij = b_j suffices (the same, V.2). Needed is that a step of −h after
-one of h is the identity: that is a Runge–Kutta method of 2 s stages, whose trees all have weight 0.
+Symplectic, sufficient: for all parts k and l of a sum of fields, b^k_i a^l_ij + b^l_j a^k_ji =
+b^k_i b^l_j (Sanz-Serna 1988; Araújo, Murua, Sanz-Serna 1997). For p' and q' of a partitioned method
+b_p = b_q is added, unless H is separable (Hairer, Lubich, Wanner, VI.4). For Nyström methods
+b̄_i = b_i (1 − c_i) and b_i (b̄_j − ā_ij) = b_j (b̄_i − ā_ji) (Suris 1989).
+
+Symplectic, necessary: b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of trees, where u∘v is u with v as
+one more branch of its root (Hairer, Lubich, Wanner, VI.7). For Nyström methods, with q' = p linear,
+it is the difference of the two conditions that have the tree [u, v] of q' in common.
+
+Symmetric, sufficient: a_(s+1−i, s+1−j) + a_ij = b_j (the same, V.2). Necessary: a step of −h after
+one of h is the identity; the two are a Runge–Kutta method of 2 s stages, all of whose trees have
+the weight 0.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,28 +37,32 @@ from verify.schemes.printed.condition_set import ConditionSet, conditions_of_pai
 from verify.schemes.printed.judgement import Judgement, judge
 from verify.verdict import Verdict
 
-_VERTICES = 6  # of two trees together; and of a tree of the doubled method, beside tall ones
-_MOST_TREES = 200  # pairs, or trees, of those
+_MAX_VERTICES = 6  # of a pair of trees, and of a tree of the doubled method that is not tall
+_MAX_TREES = 200  # pairs of trees, or trees of the doubled method
 
 
 def judge_symplectic(table: TableauTable, separable: bool = False) -> Judgement:
-    """Decide if the table is symplectic. `separable`: claimed for H = T(p) + V(q) alone."""
-    enough = _nystrom_conditions(table) if table.nystrom else _symplectic(table, separable)
-    return _by_two(table, enough, _pair_conditions(table, separable))
+    """Judge if the table is symplectic; `separable`: for H = T(p) + V(q) alone."""
+    sufficient_conditions = (
+        _nystrom_conditions(table) if table.nystrom else _symplectic(table, separable)
+    )
+    return _judge_by_both(table, sufficient_conditions, _pair_conditions(table, separable))
 
 
 def judge_symmetric(table: TableauTable) -> Judgement:
-    """Decide if a step of −h undoes one of h."""
-    return _by_two(table, _reversal_conditions(table), _doubled_conditions(table))
+    """Judge if a step of −h undoes a step of h."""
+    return _judge_by_both(table, _reversal_conditions(table), _doubled_conditions(table))
 
 
-def _by_two(table: TableauTable, enough: ConditionSet, needed: ConditionSet) -> Judgement:
-    """Refute only where a necessary condition fails; where only a sufficient one does, do not
-    decide."""
-    sufficient = judge(table.printed, enough, 1)
+def _judge_by_both(
+    table: TableauTable, sufficient_conditions: ConditionSet, necessary_conditions: ConditionSet
+) -> Judgement:
+    """Return the judgement by both sets: REFUTED only if a necessary condition fails, and UNDECIDED
+    if only a sufficient one does."""
+    sufficient = judge(table.printed, sufficient_conditions, 1)
     if sufficient.verdict is not Verdict.REFUTED:
         return sufficient
-    against = judge(table.printed, needed, 1)
+    against = judge(table.printed, necessary_conditions, 1)
     if against.verdict is Verdict.REFUTED:
         return replace(against, misprints=sufficient.misprints)
     return replace(sufficient, verdict=Verdict.UNDECIDED)
@@ -64,7 +71,7 @@ def _by_two(table: TableauTable, enough: ConditionSet, needed: ConditionSet) -> 
 def _dense(
     block: Block[E], one: E
 ) -> tuple[tuple[tuple[E, ...], ...], tuple[E, ...], tuple[E, ...]]:
-    """Return a, b and c with all their zeros; an empty c where there are no times."""
+    """Return a, b and c with all their zeros; an empty c if there are no times."""
     full = block.map_entries(lambda x, _: zero_or(x, one))
     return full.matrix, full.weights, full.times or ()
 
@@ -146,7 +153,7 @@ def _pairs(grammar: Grammar, nystrom: bool, partitioned: bool) -> tuple[tuple[Tr
     method; else they are of any two colours."""
     crossed = nystrom or partitioned
     pairs: list[tuple[Tree, Tree]] = []
-    for n in range(2, _VERTICES + 1):
+    for n in range(2, _MAX_VERTICES + 1):
         of_n = []
         for k in range(1, n):
             firsts = trees(grammar, k, 0) if crossed else all_trees(grammar, k)
@@ -154,7 +161,7 @@ def _pairs(grammar: Grammar, nystrom: bool, partitioned: bool) -> tuple[tuple[Tr
             # The condition is symmetric in u and v, so that each pair of the same forest is taken
             # once.
             of_n += [(u, v) for u in firsts for v in seconds if crossed or u <= v]
-        if len(pairs) + len(of_n) > _MOST_TREES:
+        if len(pairs) + len(of_n) > _MAX_TREES:
             break
         pairs += of_n
     return tuple(pairs)
@@ -215,9 +222,9 @@ def _doubled_conditions(table: TableauTable) -> ConditionSet:
     """Require that the weights of all trees of Φ_(−h) after Φ_h are 0."""
     stages = 2 * table.stages
     low_trees = list[Tree]()
-    for n in range(1, _VERTICES + 1):
+    for n in range(1, _MAX_VERTICES + 1):
         of_n = all_trees(table.grammar, n)
-        low_trees += of_n if len(low_trees) + len(of_n) <= _MOST_TREES else ()
+        low_trees += of_n if len(low_trees) + len(of_n) <= _MAX_TREES else ()
     low_trees = [tree for tree in low_trees if not (table.nystrom and tree == (1, ()))]
     tall = [tree for root in table.grammar.colours for tree in _tall(table.grammar, root, stages)]
     doubled_trees = list(dict.fromkeys((*low_trees, *tall)))

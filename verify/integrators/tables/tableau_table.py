@@ -20,17 +20,19 @@ from verify.schemes.printed.printed_numbers import PrintedNumbers
 MOST_STAGES = 40
 Texts = tuple[str, ...]
 Entries = tuple[sympy.Expr, ...]
-# Of blocks and the ring's one: the conditions' names, each with its left side and its right side.
+# A function of the blocks and the ring's one that yields conditions: the name, the left side and
+# the right side of each.
 Conditions = Callable[[Sequence[Block[Any]], Any], Iterator[tuple[str, Any, Any]]]
 
 
 @dataclass(frozen=True)
 class TableauTable:
-    """`blocks`: one for each colour of the grammar. `names`: what stands after A, b and c of each.
-    `nystrom`: the second block is of q' = p: see `verify.schemes.conditions.tree_weights`.
-    `weighing`: what the weights are called.
+    """A Runge–Kutta table of one or several tableaux.
 
-    InputError where the blocks do not fit together.
+    `blocks`: a tableau for each colour of the grammar. `names`: the ends of the names A, b and c of
+    each. `nystrom`: True if the second block is that of q' = p, see
+    `verify.schemes.conditions.tree_weights`. `weighing`: the letter of the weights. Raises
+    InputError if the blocks do not fit together.
     """
 
     blocks: tuple[Tableau[str], ...]
@@ -60,7 +62,7 @@ class TableauTable:
 
     @cached_property
     def exprs(self) -> tuple[Block[sympy.Expr], ...]:
-        """The entries in the symbols of the rounded numbers; None where one is 0 by its form."""
+        """The entries in the symbols of the rounded numbers; None for one that is 0 by its form."""
         return tuple(block.map_entries(self._expression) for block in self.blocks)
 
     def _expression(self, text: str, label: str) -> sympy.Expr | None:

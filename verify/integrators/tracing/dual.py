@@ -1,8 +1,8 @@
-"""Dual numbers x + Σ a_k ε_k: a value and its derivatives along as many directions as wanted.
+"""Dual numbers x + Σ a_k ε_k: a value and its derivatives along any number of directions.
 
-They can be compared, by their values, so that branches and loops with a tolerance go through: what
-comes out has the derivatives of the operations that were done. Each comparison is written down with
-the line of code that made it. gmpy2's context is set by `running`.
+They are compared by their values, so that they pass branches, and loops with a tolerance: a result
+has the derivatives of the operations that were carried out. Each comparison is recorded with the
+line of code that made it. `Duals.running` sets gmpy2's context.
 """
 
 import sys
@@ -22,13 +22,16 @@ from verify.integrators.tracing.traced_number import Kind, TracedNumber, Untrace
 
 Number: TypeAlias = gmpy2.mpfr
 DUAL_BITS = 200
-_MOST_COMPARISONS = 4096  # of one call that are written down
+_MAX_COMPARISONS = 4096  # recorded comparisons of one call
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """`line`: of the code that compared two numbers, with its file and its instruction; `gap`: the
-    first less the second; `limit`: the second, where it is a constant."""
+    """A comparison of two numbers.
+
+    `line`: the file, the line of code and the instruction; `gap`: the first number minus the
+    second; `limit`: the second number, if it is a constant.
+    """
 
     line: tuple[str, int, int]
     gap: "DualNumber"
@@ -36,21 +39,22 @@ class Comparison:
 
     @property
     def sign(self) -> int:
-        """The sign of the gap: which side of the comparison was taken."""
+        """The sign of the gap, which tells the side of the comparison."""
         return int(self.gap.value > 0) - int(self.gap.value < 0)
 
 
 class Duals(Kind):
-    """Makes dual numbers of so many bits. Use it inside `running`.
+    """A factory of dual numbers with that number of bits, to be used inside `running`.
 
-    `comparisons`: those of numbers that move with the state, since a probe began a new list.
+    `comparisons`: those of numbers that depend on the state; a probe begins a new list for each
+    call.
     """
 
     def __init__(self, bits: int = DUAL_BITS) -> None:
         super().__init__()
         self.bits = bits
         self.comparisons: list[Comparison] = []
-        self.compared = False  # whether values were: there may be branches, or a tolerance
+        self.compared = False  # True after a comparison: there may be branches, or a tolerance
 
     @contextmanager
     def running(self) -> Iterator[None]:
@@ -71,7 +75,7 @@ class Duals(Kind):
 
 
 def slope_of(name: str, x: Number, y: Number) -> Number:
-    """Return the slope of y = f(x); of √x at 0, which has none, it is taken to be 0."""
+    """Return the derivative of y = f(x); that of √x at 0, which does not exist, is taken as 0."""
     if name == "sqrt" and not y:
         return gmpy2.mpfr(0)
     return by_name()[name].derivative(x, y, _apply)
@@ -82,8 +86,7 @@ def _apply(name: str, x: Number) -> Number:
 
 
 def _line_of_user() -> tuple[str, int, int]:
-    """Return the line of code that compares: that of the innermost frame that is not ours or
-    numpy's."""
+    """Return the line that compares: that of the innermost frame outside this package and numpy."""
     frame = sys._getframe(2)
     while frame.f_back is not None:
         home = str(frame.f_globals.get("__name__", "")).partition(".")[0]
@@ -94,7 +97,7 @@ def _line_of_user() -> tuple[str, int, int]:
 
 
 class DualNumber(TracedNumber):
-    """`value`, and `slopes`, its derivatives; no slopes are zeros, as of a constant."""
+    """A dual number: `value`, and `slopes`, its derivatives; () for a constant."""
 
     __slots__ = ("slopes", "value")
     kind: Duals
@@ -107,7 +110,7 @@ class DualNumber(TracedNumber):
         return DualNumber(self.kind, value, tuple([slope * a for a in self.slopes]))
 
     def exact_value(self) -> Fraction | None:
-        """Return its value where it does not move with the state and is a rational of few bits."""
+        """Return its value if it does not depend on the state and is a rational of few bits."""
         if any(self.slopes) or not gmpy2.is_finite(self.value):
             return None
         value = fraction(self.value)
@@ -127,7 +130,7 @@ class DualNumber(TracedNumber):
     def compare(self, other: "DualNumber") -> int:
         if self.slopes or other.slopes:
             self.kind.compared = True
-            if len(self.kind.comparisons) < _MOST_COMPARISONS:
+            if len(self.kind.comparisons) < _MAX_COMPARISONS:
                 limit = None if other.slopes else other.value
                 gap = self.combine("subtract", other)
                 self.kind.comparisons.append(Comparison(_line_of_user(), gap, limit))

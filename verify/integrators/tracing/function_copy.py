@@ -1,9 +1,9 @@
-"""A copy of a user's function in which `math` and numpy know our numbers, too.
+"""A copy of a user's function in which `math` and numpy accept our numbers, too.
 
-All that it reaches is copied as it is reached: functions, with closures and defaults, classes,
-objects, lists and arrays, and modules with what is looked up in them. Nothing of the user's is
-changed by a call of the copy. What is neither copied nor pure is called as it is, and named in
-`Kind.surroundings`, as is what a call leaves other than it was: see
+Everything that the function reaches is copied when it is reached: functions with their closures and
+defaults, classes, objects, lists and arrays, and modules with the names that are looked up in them.
+So a call of the copy changes nothing of the user's. An object that is neither copied nor pure is
+used as it is, and recorded in `Kind.surroundings`, as is an object that a call changes: see
 `verify.integrators.tracing.purity`.
 """
 
@@ -24,29 +24,30 @@ from verify.integrators.tracing.purity import (
     is_of_user,
     is_plain,
     is_users_module,
-    pure_things,
+    pure_objects,
     types_of_numpy,
 )
 from verify.integrators.tracing.replacements import replacement
 from verify.integrators.tracing.traced_number import Kind, TracedNumber
 
-_FOREIGN = ("jax", "mpmath", "numba", "numpy", "scipy", "sympy", "torch")
-# What a class is made with; all else is put into it afterwards, as it may be of the class.
-_DECLARED = ("__slots__", "__module__", "__qualname__", "__orig_bases__")
-_LEFT_OUT = (*_DECLARED, "__dict__", "__weakref__", "_abc_impl")
-_MAKERS = ("collections", "dataclasses", "functools", "typing")  # of methods of users' classes
+_FOREIGN_LIBRARIES = ("jax", "mpmath", "numba", "numpy", "scipy", "sympy", "torch")
+# Attributes with which a class is created; the others are set afterwards, as they may refer to it.
+_CREATION_ATTRIBUTES = ("__slots__", "__module__", "__qualname__", "__orig_bases__")
+_UNCOPIED_ATTRIBUTES = (*_CREATION_ATTRIBUTES, "__dict__", "__weakref__", "_abc_impl")
+# Modules of Python's library that define methods of users' classes.
+_METHOD_MODULES = ("collections", "dataclasses", "functools", "typing")
 _SLOTS = types.MemberDescriptorType | types.GetSetDescriptorType
 
 
 def copy_function(function: Any, kind: Kind) -> Any:
-    """Return the function with replaced globals; itself where it is not written in Python."""
+    """Return a copy of the function with replaced globals; itself if it is not Python code."""
     return _Copier(kind).value(function, getattr(function, "__name__", type(function).__name__))
 
 
 def _is_traced(x: types.FunctionType) -> bool:
-    """Return True if it is neither of Python's library nor of one with numbers of its own."""
+    """Return True unless it belongs to Python's library, or to one with its own number classes."""
     home = (x.__module__ or "").partition(".")[0]
-    return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
+    return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN_LIBRARIES
 
 
 class _Copier:
@@ -57,7 +58,7 @@ class _Copier:
         self.copies: dict[int, Any] = {}
         self.held_objects: list[Any] = []  # so that no id is used again
         self.late: dict[tuple[int, str], tuple[Any, str]] = {}  # attributes that are not pure
-        self.pure = pure_things()
+        self.pure = pure_objects()
         self.builtins = {**vars(builtins), "__import__": self._import}
 
     def value(self, x: Any, name: str = "") -> Any:
@@ -185,12 +186,12 @@ class _Copier:
         if type(x) not in (type, abc.ABCMeta):
             return x  # what others make is not known
         bases = tuple(self.value(base, base.__name__) for base in x.__bases__)
-        declared = {name: vars(x)[name] for name in _DECLARED if name in vars(x)}
+        declared = {name: vars(x)[name] for name in _CREATION_ATTRIBUTES if name in vars(x)}
         if not any("__getattr__" in vars(base) for base in x.__mro__):
             declared["__getattr__"] = lambda instance, name: self._copy_late(instance, name)
         copy: type = self._keep(x, type(x)(x.__name__, bases, declared))
         for name, part in vars(x).items():
-            if name not in _LEFT_OUT and not isinstance(part, _SLOTS):
+            if name not in _UNCOPIED_ATTRIBUTES and not isinstance(part, _SLOTS):
                 setattr(copy, name, self._part(part, f"{x.__name__}.{name}", name))
         self.record.watch(x.__name__, copy)
         return copy
@@ -202,7 +203,7 @@ class _Copier:
                 return property(*(f and self.value(f) for f in (part.fget, part.fset, part.fdel)))
             case staticmethod() | classmethod():
                 return type(part)(self._part(part.__func__, called, name))
-        is_generated = isinstance(part, types.FunctionType) and part.__module__ in _MAKERS
+        is_generated = isinstance(part, types.FunctionType) and part.__module__ in _METHOD_MODULES
         return part if is_generated or name == "__annotations__" else self.value(part, called)
 
     def _object(self, x: Any, name: str) -> Any:

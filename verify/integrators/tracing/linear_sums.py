@@ -1,8 +1,9 @@
 """Traced nodes as linear sums: coefficients that are polynomials in h and in constants.
 
-A coefficient is {monomial: number}, a monomial ((node's number, power), …) in nodes that depend on
-neither p nor q. A sum is {leaf: coefficient}, a leaf the number of a node that is no sum and no
-multiple; `ONE` is that of a sum's part without a node.
+- A coefficient is a dictionary {monomial: number}.
+- A monomial is a tuple ((node's number, power), …) of nodes that depend on neither p nor q.
+- A sum is a dictionary {leaf: coefficient}. A leaf is the number of a node that is neither a sum
+  nor a multiple; `ONE` is the leaf of a constant term.
 """
 
 import operator
@@ -19,11 +20,11 @@ T = TypeVar("T")
 Monomial = tuple[tuple[int, int], ...]
 Scalar = dict[Monomial, Fraction]
 Linear = dict[Any, Scalar]
-_MOST_TERMS = 400  # of a coefficient, beyond which a node is taken as it is
+_MAX_TERMS = 400  # of a coefficient; a node with more is taken as a leaf
 
 
 def _merge(x: dict[Any, T], y: dict[Any, T], plus: Callable[[T, T], T], zero: T) -> dict[Any, T]:
-    """Add what the two have under each key, and drop sums that are 0."""
+    """Add the values of the two under each key, and drop sums that are 0."""
     total = dict(x)
     for key, value in y.items():
         total[key] = plus(total.get(key, zero), value)
@@ -56,7 +57,10 @@ def product(x: Scalar, y: Scalar) -> Scalar:
 
 
 class Scalars:
-    """Reads the nodes of one trace; `moving` are those that depend on p or q."""
+    """A reader of the nodes of one trace.
+
+    `moving`: the numbers of the nodes that depend on p or q.
+    """
 
     one: Scalar = {(): Fraction(1)}  # noqa: RUF012 - never changed
 
@@ -83,7 +87,7 @@ class Scalars:
         return self._linear[node.number] if node.number != ONE else {ONE: self.one}
 
     def clock(self, node: Node) -> tuple[Fraction, Fraction] | None:
-        """Return a and c of a node a (t + c h), a not 0; None of any other."""
+        """Return a and c if the node is a (t + c h) with a ≠ 0; None otherwise."""
         terms = self._scalar.get(node.number, {})
         # A clock is linear in t and h alone: any other monomial ends the search.
         named = {(("t", 1),): Fraction(0), (("h", 1),): Fraction(0)}
@@ -102,7 +106,7 @@ class Scalars:
         return total
 
     def parts(self, node: Node) -> list[tuple[Scalar, Node]]:
-        """Return a sum's or a multiple's parts; none of another node."""
+        """Return the parts of a sum or a multiple; an empty list for another node."""
         minus: Scalar = {(): Fraction(-1)}
         match node.operation:
             case "add" | "subtract":
@@ -145,7 +149,7 @@ class Scalars:
                     scalar = product(scalar, x[0])
         # A polynomial of too many terms is replaced by its node as one more symbol. Equal
         # polynomials may then look different, so that a shear may be missed, but none is invented.
-        short = scalar is not None and len(scalar) <= _MOST_TERMS
+        short = scalar is not None and len(scalar) <= _MAX_TERMS
         return scalar if scalar is not None and short else {((node.number, 1),): Fraction(1)}
 
     def _as_linear(self, node: Node) -> Linear:

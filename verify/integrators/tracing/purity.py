@@ -1,9 +1,9 @@
-"""The purity of what a function reaches, and changes of what it was handed.
+"""The purity of the objects that a function reaches, and the changes that a call makes to them.
 
-A trace is of one call. It is a proof for all calls only where the function is the same each time:
-where what it reaches is on a list here, and all else that it reaches is a copy of ours which stands
-as it stood when the call is over. Symbols take one way through the code, so that what one call
-leaves as it was every call does.
+A trace records one call. It proves something of all calls only if the function is the same each
+time: if each object that it reaches is pure, by the lists here, or is a copy of ours that the call
+leaves unchanged. Symbols take a single path through the code, so that a change by any call would be
+a change by the traced one.
 """
 
 import contextlib
@@ -19,12 +19,13 @@ from pathlib import Path
 from typing import Any
 
 _EXACT_TYPES = (int, float, complex, bool, str, bytes)
-_PLAIN = (*_EXACT_TYPES, type(None), types.EllipsisType, types.NotImplementedType, range, slice,
-          Fraction, Decimal, object, types.GenericAlias, types.UnionType,
-          type(vars(namedtuple("One", "x"))["x"]))  # fmt: skip
-_PLAIN_HOMES = ("typing", "dataclasses")  # what types and fields are declared with
-# The names that are pure, of each module; "" for all functions and classes that it defines.
-_PURE = {
+_PLAIN_TYPES = (
+    *_EXACT_TYPES, type(None), types.EllipsisType, types.NotImplementedType, range, slice, Fraction,
+    Decimal, object, types.GenericAlias, types.UnionType, type(vars(namedtuple("One", "x"))["x"]),
+)  # fmt: skip
+_PLAIN_MODULES = ("typing", "dataclasses")  # their objects declare types and fields
+# The pure names of each module; "" for all functions and classes that it defines.
+_PURE_NAMES = {
     "builtins": """abs all any bin bool bytearray bytes callable chr classmethod complex dict divmod
         enumerate filter float format frozenset getattr hasattr int isinstance issubclass iter len
         list map max memoryview min next object oct ord pow print property range repr reversed round
@@ -41,22 +42,22 @@ _PURE = {
     **dict.fromkeys(("math", "cmath", "operator", "itertools", "functools", "fractions", "numbers",
                      "typing", "abc", "enum", "numpy.linalg", "numpy.fft", "scipy.special"), ""),
 }  # fmt: skip
-Contents = Mapping[Any, Any]  # by names of attributes, or by places
+Contents = Mapping[Any, Any]  # the parts of an object, by the names of attributes or by indices
 
 
-def pure_things() -> dict[int, tuple[str, Any]]:
-    """Return what is pure in the modules that are loaded, with its name, by its id."""
-    return _pure_in(tuple(name for name in _PURE if name in sys.modules))
+def pure_objects() -> dict[int, tuple[str, Any]]:
+    """Return the pure objects of the loaded modules with their names, by their ids."""
+    return _pure_in(tuple(name for name in _PURE_NAMES if name in sys.modules))
 
 
 @functools.lru_cache(1)
 def _pure_in(homes: tuple[str, ...]) -> dict[int, tuple[str, Any]]:
-    # Of two modules that have the same function the first names it: scipy.special has numpy's sinc.
+    # If two modules have the same function, the first one names it: scipy.special has numpy's sinc.
     return {
         id(x): (f"{home}.{name}", x)
         for home in reversed(homes)
         for name, x in vars(sys.modules[home]).items()
-        if name in _PURE[home].split() or _is_pure(home, x)
+        if name in _PURE_NAMES[home].split() or _is_pure(home, x)
     }
 
 
@@ -68,12 +69,12 @@ def _is_pure(home: str, x: Any) -> bool:
     if home.startswith(("numpy", "scipy")):  # these are what numpy's other arrays may stand for
         return type(x).__name__ in ("ufunc", "_ArrayFunctionDispatcher")
     defined = (getattr(x, "__module__", None) or "").lstrip("_")
-    return _PURE[home] == "" and callable(x) and defined == home
+    return _PURE_NAMES[home] == "" and callable(x) and defined == home
 
 
 def is_plain(x: Any) -> bool:
-    """Return True if it never changes and holds nothing that does: a number, a text, None, a
-    type."""
+    """Return True for a number, a text, None, a type, …: an object that never changes, and has no
+    parts that do."""
     kind = type(x)
     if isinstance(x, type) and issubclass(x, BaseException):
         return not is_of_user(x)
@@ -83,17 +84,17 @@ def is_plain(x: Any) -> bool:
         methods = [part for part in vars(x).values() if isinstance(part, types.FunctionType)]
         return not any(map(is_of_user, methods))
     scalar = types_of_numpy("number", "bool", "dtype")
-    return kind in _PLAIN or kind.__module__ in _PLAIN_HOMES or isinstance(x, scalar)
+    return kind in _PLAIN_TYPES or kind.__module__ in _PLAIN_MODULES or isinstance(x, scalar)
 
 
 def types_of_numpy(*names: str) -> tuple[type[Any], ...]:
-    """Return those types of numpy's; none where it is not loaded."""
+    """Return the types of numpy with these names; () if numpy is not loaded."""
     return tuple(getattr(sys.modules["numpy"], x) for x in names) if "numpy" in sys.modules else ()
 
 
 def is_users_module(x: types.ModuleType) -> bool:
-    """Return True if it is the user's: neither of Python's library nor installed."""
-    # Modules without a file are built in: they are no user's.
+    """Return True if the module is the user's: neither of Python's library nor installed."""
+    # Modules without a file are built in.
     folders = Path(getattr(x, "__file__", None) or "site-packages").parts
     standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
     return not standard and not {"site-packages", "dist-packages"} & set(folders)
@@ -102,7 +103,7 @@ def is_users_module(x: types.ModuleType) -> bool:
 def is_of_user(x: Any) -> bool:
     """Return True if a function or class is the user's: of no library, nor of this package."""
     home = x.__module__ or ""
-    # What has no module, or is of `__main__`, was written by the user.
+    # Without a module, or in `__main__`, it was written by the user.
     module = sys.modules.get(home)
     if module is None or home == "__main__":
         return True

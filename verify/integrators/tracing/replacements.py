@@ -1,4 +1,4 @@
-"""Replacements of `math`'s and numpy's functions that know our numbers, too.
+"""Replacements of functions of `math` and numpy that accept our numbers, too.
 
 numpy's `solve`, `inv` and `det` are among them, as LAPACK does not take our numbers.
 """
@@ -14,17 +14,21 @@ from verify.integrators.tracing.traced_number import Kind, TracedNumber, constan
 
 _PLAIN = int | float | Fraction
 _FLOATS = ("float", "float64", "double")
-_FILLED = ("zeros", "ones", "empty", "full", "zeros_like", "ones_like", "empty_like", "full_like",
-           "eye", "identity")  # fmt: skip
-_METHODS = ("accumulate", "at", "outer", "reduce")  # of numpy's functions
-_TYPED, _FLOAT_CODES = ("array", "asarray"), ("float", "float64", "double", "d", "f8")
-# Of plain numbers they are left as they are: they say how often something is done.
-_COUNTS = ("log2", "log10", "exp2", "sign", "maximum", "minimum", "fmax", "fmin", "copysign",
-           "heaviside")  # fmt: skip
+_FILLING_FUNCTIONS = (
+    "zeros", "ones", "empty", "full", "zeros_like", "ones_like", "empty_like", "full_like", "eye",
+    "identity",
+)  # fmt: skip
+_UFUNC_METHODS = ("accumulate", "at", "outer", "reduce")
+_CONVERTING_FUNCTIONS = ("array", "asarray")
+_FLOAT_CODES = ("float", "float64", "double", "d", "f8")
+# These keep plain numbers as floats: code uses them to compute how often something is done.
+_COUNTING_FUNCTIONS = (
+    "log2", "log10", "exp2", "sign", "maximum", "minimum", "fmax", "fmin", "copysign", "heaviside",
+)  # fmt: skip
 
 
 def replacement(kind: Kind, called: str, x: Any) -> Any:
-    """Return the replacement of x, which is called so, as `math.sin` is; x itself where none is
+    """Return the replacement of x, whose full name is `called`, as "math.sin"; x itself if none is
     needed."""
     home, _, name = called.rpartition(".")
     if name in _FLOATS:
@@ -38,10 +42,10 @@ def replacement(kind: Kind, called: str, x: Any) -> Any:
         return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).apply("exp")}[name]
     if name in _OF_NUMBERS or (home == "math" and name == "pow"):
         return _apply_to_numbers(
-            kind, _OF_NUMBERS.get(name, operator.pow), x, plain=name not in _COUNTS
+            kind, _OF_NUMBERS.get(name, operator.pow), x, plain=name not in _COUNTING_FUNCTIONS
         )
-    if name in (*_FILLED, *_TYPED):
-        return _of_objects(x, untold=name in _FILLED)
+    if name in (*_FILLING_FUNCTIONS, *_CONVERTING_FUNCTIONS):
+        return _of_objects(x, untold=name in _FILLING_FUNCTIONS)
     if home == "math":
         return _guard(_OF_MATH[name], x) if name in _OF_MATH else x
     if name in _OF_NUMPY:
@@ -65,10 +69,9 @@ class Float(float, metaclass=_FloatType):
 
 
 def _of_objects(original: Callable[..., Any], *, untold: bool) -> Callable[..., Any]:
-    """Make a function that builds arrays of floats build arrays of objects, which our numbers can
-    be put into.
+    """Return a function that builds arrays of objects in place of arrays of floats.
 
-    `untold`: it builds one of floats where no type is named.
+    `untold`: True if the original builds an array of floats when no type is named.
     """
 
     def call(*arguments: Any, **options: Any) -> Any:
@@ -95,8 +98,8 @@ def _of_our_numbers(x: Any) -> bool:
 def _apply_to_numbers(
     kind: Kind, function: Callable[..., Any], original: Callable[..., Any], *, plain: bool = True
 ) -> Callable[..., Any]:
-    """Return our function for our numbers, alone and in arrays; where `plain`, for others, too,
-    whose value stays exact."""
+    """Return our function for our numbers, alone and in arrays; if `plain`, also for plain numbers,
+    which stay exact."""
 
     def call(*arguments: Any, **options: Any) -> Any:
         if options or not arguments:
@@ -113,7 +116,7 @@ def _apply_to_numbers(
         return original(*arguments)
 
     vars(call).update(
-        {name: getattr(original, name) for name in _METHODS if hasattr(original, name)}
+        {name: getattr(original, name) for name in _UFUNC_METHODS if hasattr(original, name)}
     )
     return call
 

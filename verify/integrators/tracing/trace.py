@@ -1,6 +1,7 @@
-"""A user's step applied to symbols: its operations as a graph, each written once.
+"""A user's step applied to symbols: its operations as a graph, in which each stands once.
 
-`Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
+A `Tape` creates the symbols p, q, t and h and holds the nodes. Operations on constants are carried
+out at once, exactly.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -16,7 +17,7 @@ from verify.integrators.tracing.named_functions import OPERATORS
 from verify.integrators.tracing.traced_number import Kind, TracedNumber, UntraceableError
 
 MOST_NODES = 20_000
-_MOST_BITS = 20_000  # of a folded number
+_MAX_BITS = 20_000  # of the numerator and the denominator of a constant
 _SYMBOLS = "symbol"
 Value = TypeVar("Value")
 
@@ -25,7 +26,7 @@ Value = TypeVar("Value")
 class Node:
     """One operation; `value` is a number's Fraction, a power's exponent or a symbol's name.
 
-    Nodes are written once, so that the same operation is the same object. `number` says which.
+    The same operation on the same inputs is the same object. `number`: its index on the tape.
     """
 
     operation: str
@@ -35,20 +36,20 @@ class Node:
 
 
 class Tape(Kind):
-    """Makes nodes, and the numbers that record."""
+    """A factory of symbols and constants that record the operations on them as nodes."""
 
     ordered = False
 
     def __init__(self) -> None:
         super().__init__()
-        self.positive = False  # whether the sign of h was used
+        self.positive = False  # True if the code has relied on h > 0
         self._nodes: dict[tuple[object, ...], Node] = {}
 
     def symbol(self, name: str) -> "Traced":
         return Traced(self, self.node(_SYMBOLS, (), name))
 
     def rational(self, value: Fraction) -> "Traced":
-        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
+        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MAX_BITS:
             raise UntraceableError("its numbers become too long")
         return Traced(self, self.node("number", (), value))
 

@@ -1,11 +1,10 @@
 """The step map of a trace in a form that can be proved: shears, a closed form, or a series in h.
 
-A traced step may be a composition of shears, p ↦ p + f(q) or q ↦ q + g(p), each of det 1.
-
-The shears are found from the end of the step to its beginning: what of p' is a function of q' alone
-is taken off, which changes no determinant, then what of q' is a function of the rest of p', and so
-on, until p and q are left. No closed form of the composition is written down, and f and g may be
-anything.
+A closed form writes p' and q' as formulas in p, q and h. A traced step may also be a composition of
+shears, p ↦ p + f(q) or q ↦ q + g(p), each with det J = 1. The shears are found from the end of the
+step to its beginning: the part of p' that is a function of q' is subtracted, then the part of q'
+that is a function of the rest of p', and so on, until p and q are left. This needs no closed form
+of the composition, and f and g may be any functions.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,23 +28,26 @@ from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.step_algebra import State
 
-_MOST_NODES, _MOST_SHEARS = 2000, 200
-Terms = list[tuple[Scalar, Node]]  # (coefficient, node): a sum
+_MAX_NODES, _MAX_SHEARS = 2000, 200
+Terms = list[tuple[Scalar, Node]]  # a sum of products, each coefficient times node
 
 
 @dataclass(frozen=True)
 class Shear:
-    """`name` grows by `increment`, an expression in the other one of p and q, and in h."""
+    """A map that adds `increment` to the coordinate `name`.
+
+    The increment is an expression in the other coordinate and in h.
+    """
 
     name: str
     increment: sympy.Expr
 
 
 def shears_of(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
-    """Count the shears that the step is made of; None where it is not made of such, or one is no
-    element of a ring."""
+    """Return the number of shears of which the step is composed; None if it is no composition of
+    shears, or one of them is no element of a ring."""
     nodes = in_order(p_next, q_next)
-    if len(nodes) > _MOST_NODES:
+    if len(nodes) > _MAX_NODES:
         return None
     try:
         shears = _Peeler(nodes).shears(p_next, q_next)
@@ -68,15 +70,15 @@ class _Peeler:
         self.written = expressions(nodes, {})
 
     def shears(self, p_next: Node, q_next: Node) -> list[Shear] | None:
-        """Return the shears, the first one first; None where something is left that is no shear."""
+        """Return the shears in their order; None if the rest is no shear."""
         one = self.scalars.one
         left: dict[str, Terms] = {"p": [(one, p_next)], "q": [(one, q_next)]}
         peeled: list[Shear] = []
         last = ""
-        while len(peeled) < _MOST_SHEARS:
+        while len(peeled) < _MAX_SHEARS:
             if all(self._is_symbol(left[name], name) for name in "pq"):
                 return peeled[::-1]
-            # What is a function as it stands is taken off before multiples are.
+            # Functions of the other coordinate are taken off before multiples of its node are.
             for take, name in (
                 (t, n) for t in (self._take_function_off, self._take_multiple_off) for n in "pq"
             ):
@@ -96,8 +98,8 @@ class _Peeler:
     def _take_function_off(
         self, left: dict[str, Terms], name: str, other: str
     ) -> sympy.Expr | None:
-        """Take off what is a function of the other coordinate; return it as an expression in that
-        one's name."""
+        """Subtract the terms that are functions of the other coordinate; return their sum as an
+        expression in its name."""
         function = _Function(self, self.scalars.sum(left[other]), symbol(other))
         remaining, removed = function.split_terms(left[name])
         if not any(node.number in self.scalars.moving for _, node in removed):
@@ -171,10 +173,10 @@ class _Function:
         return values[node.number]
 
 
-_MOST_WRITTEN = 3000  # operations of z' as trees, of which a closed form is tried
-_MOST_TERMS, _MOST_OF_DEFECT = 800, 20_000  # of a closed form in the plane
-_ORDERS = 9
-_IN_TURN = Condition("every part is a shear", 0, "0", holds=True)
+_MAX_OPERATIONS = 3000  # of z' written out as trees, up to which a closed form is tried
+_MAX_PLANAR_TERMS, _MAX_PLANAR_PRODUCTS = 800, 20_000  # of a closed form in the plane
+_SERIES_ORDER = 9  # the power of h up to which `series` is computed
+_SHEARS_CONDITION = Condition("every part is a shear", 0, "0", holds=True)
 Expand = Callable[[int], tuple[CanonicalField, State]]
 
 
@@ -182,8 +184,8 @@ Expand = Callable[[int], tuple[CanonicalField, State]]
 class TracedMap:
     """The step map of a trace, for one H whose parameters have values.
 
-    `how`: the form in which it is known, a clause. `expand`: None where the map has no Taylor
-    series that can be computed, and so nothing but its closed form.
+    `how`: a clause that tells its form. `expand`: returns the Taylor series up to a power of h;
+    None if this cannot be computed, so that only the closed form is known.
     """
 
     step_map: StepMap
@@ -192,12 +194,12 @@ class TracedMap:
 
     @cached_property
     def series(self) -> tuple[CanonicalField, State] | None:
-        return self.expand(_ORDERS) if self.expand else None
+        return self.expand(_SERIES_ORDER) if self.expand else None
 
 
 def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
-    """Build the step map. Raises InputError where the trace has neither a series in h nor a closed
-    form that is short."""
+    """Build the step map. Raises InputError if the trace has neither a series in h nor a short
+    closed form."""
     expand: Expand | None = None
     with suppress(InputError):
         expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
@@ -206,7 +208,7 @@ def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
     shears = shears_of(hamiltonian, *roots) if len(roots) == 2 and expand else None
     field, _ = canonical_field(hamiltonian)
     if shears is not None:
-        step_map = StepMap(hamiltonian, field, conditions=(_IN_TURN,), expand=expand)
+        step_map = StepMap(hamiltonian, field, conditions=(_SHEARS_CONDITION,), expand=expand)
         return TracedMap(step_map, f"is {shears} shears in turn", expand)
     closed = _build_closed_form(hamiltonian, roots)
     if closed is not None:
@@ -224,14 +226,14 @@ def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
 
 
 def _build_closed_form(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> ClosedForm | None:
-    formulas, planar = write_expressions(roots, _MOST_WRITTEN), len(roots) == 2
+    formulas, planar = write_expressions(roots, _MAX_OPERATIONS), len(roots) == 2
     if formulas is None:
         return None
     try:
         smooth = [check_expression(x, "step", "its closed form") for x in formulas]
-        term_limit = _MOST_TERMS if planar else MAX_TERMS
+        term_limit = _MAX_PLANAR_TERMS if planar else MAX_TERMS
         field, elements = canonical_field(hamiltonian, *smooth, most_terms=term_limit)
     except InputError:
         return None
     step = ClosedForm(field, tuple(elements))
-    return step if not planar or step.products <= _MOST_OF_DEFECT else None
+    return step if not planar or step.products <= _MAX_PLANAR_PRODUCTS else None

@@ -1,10 +1,10 @@
-"""Numbers of our own that go through a user's code in place of floats.
+"""Our number classes, with which a user's code is called in place of floats.
 
-Plain arithmetic, numpy's functions of scalars and of arrays of objects, and the functions that
-`verify.integrators.tracing.function_copy` puts in place of `math`'s lead here. What a user writes
-as a float is read as the number that he means where that can be told: 0.1 is 1/10 and 1/6 is 1/6,
-each the one simple rational whose nearest float it is; another float, such as 1.3512071919596578,
-is taken by its exact binary value, and counted as a rounded coefficient.
+Arithmetic, numpy's functions of scalars and of object arrays, and the functions that
+`verify.integrators.tracing.function_copy` puts in place of those of `math` call their methods. A
+float in the code is read as the number that is meant, if it is the nearest float of one simple
+rational: 0.1 as 1/10, and 0.16666666666666666 as 1/6. Any other float, such as 1.3512071919596578,
+stands for its exact binary value, and counts as a rounded coefficient.
 """
 
 import math
@@ -21,38 +21,35 @@ from verify.integrators.tracing.purity import Surroundings
 if TYPE_CHECKING:
     import numpy
 
-_SIMPLE = 10_000  # the largest denominator that is read into a float: the chance is 10⁻⁸ a float
-_WHOLE, _EXACT_DIGITS = 2**53, 15  # whole numbers, and digits, that a double has all of
-_LARGEST_SIMPLE = 100
-_DECIMALS = 12  # significant digits of a decimal that is read into a float
+_MAX_DENOMINATOR = 10_000  # of a simple rational; the chance that a float is read as one is 10⁻⁸
+_EXACT_INTEGERS, _EXACT_DIGITS = 2**53, 15  # a double has all such integers, and all such decimals
+_MAX_SIMPLE = 100  # the size of a float that is read as a simple rational
+_MAX_READ_DIGITS = 12  # significant digits of a decimal as which a float is read
 
 
 class UntraceableError(TypeError):
-    """The user's code asks a number of ours for what it cannot give; the message says what."""
+    """The user's code requests an operation that our numbers do not have, as the message tells."""
 
 
-def reading(value: float) -> Fraction | None:
-    """Return the simple rational whose nearest float this is; None where there is none.
-
-    `value` is finite.
-    """
-    simple = Fraction(value).limit_denominator(_SIMPLE)
+def read_float(value: float) -> Fraction | None:
+    """Return the simple rational or short decimal whose nearest float this is; None if none is."""
+    simple = Fraction(value).limit_denominator(_MAX_DENOMINATOR)
     # Among large numbers such a rational is near any float.
-    if simple and abs(value) < _LARGEST_SIMPLE and float(simple) == value:
+    if simple and abs(value) < _MAX_SIMPLE and float(simple) == value:
         return simple
-    return Fraction(repr(float(value))) if _digits(float(value)) <= _DECIMALS else None
+    return Fraction(repr(float(value))) if _count_digits(float(value)) <= _MAX_READ_DIGITS else None
 
 
 class Kind(ABC):
-    """A maker of numbers of one kind, with a record of the floats that it read.
+    """A factory of numbers of one class, with a record of the floats that it has read.
 
-    `readings`: floats that were read as another number than their value; `rounded`: those that were
-    taken by their binary value, and are no integers; `refused`: operations that were requested of
-    its numbers and are impossible, as code may catch the error; `surroundings`: what it reached
+    `readings`: floats that were read as another number than their value; `rounded`: those taken by
+    their binary value that are no integers; `refused`: impossible operations that were requested,
+    since the code may catch their error; `surroundings`: the objects that the code has reached
     beside its arguments.
     """
 
-    ordered = True  # whether its numbers can be compared
+    ordered = True  # False if its numbers cannot be compared
 
     def __init__(self) -> None:
         self.readings: dict[float, Fraction] = {}
@@ -68,8 +65,8 @@ class Kind(ABC):
 
 
 def constant(kind: Kind, value: Any) -> "TracedNumber | None":
-    """Return a user's number as one of ours; None for what is no number. Raises
-    UntraceableError."""
+    """Return a user's number as one of ours; None if it is no number. Raises UntraceableError for
+    complex and non-finite numbers."""
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()  # one of numpy's scalars
     if isinstance(value, TracedNumber):
@@ -83,9 +80,9 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
     if value - value != 0:
         raise UntraceableError("it computes with infinity or NaN")
     binary_value = Fraction(value)
-    # First a number that was written as it stands, as 0.5; then a short rational or decimal that
-    # rounds to this float, as 0.1; else the binary value, which counts as rounded.
-    read = binary_value if _is_written(value, binary_value) else reading(value)
+    # First an exact number, as 0.5; then a short rational or decimal that rounds to this float, as
+    # 0.1; otherwise the binary value, which counts as rounded.
+    read = binary_value if _is_written(value, binary_value) else read_float(value)
     if read is None:
         kind.rounded.add(value)
         return kind.rational(binary_value)
@@ -100,11 +97,11 @@ def _is_written(value: float, binary_value: Fraction) -> bool:
     From 10¹² on a double has few bits after its point, whatever it comes from: 75674920197265.2, a
     product, is …265.203125.
     """
-    plain = binary_value.denominator <= _SIMPLE and abs(binary_value) < _WHOLE
-    return plain and _digits(value) <= _EXACT_DIGITS and Fraction(repr(value)) == binary_value
+    plain = binary_value.denominator <= _MAX_DENOMINATOR and abs(binary_value) < _EXACT_INTEGERS
+    return plain and _count_digits(value) <= _EXACT_DIGITS and Fraction(repr(value)) == binary_value
 
 
-def _digits(value: float) -> int:
+def _count_digits(value: float) -> int:
     return len(Decimal(repr(value)).as_tuple().digits)
 
 

@@ -1,6 +1,6 @@
 """The Taylor series in h of a traced step, node by node, in the ring of H.
 
-No closed form is written down: a function of a series follows from its value at h = 0 and its
+No closed form is needed: a function of a series is computed from its value at h = 0 and its
 differential equation, as sin and cos from s' = c x', c' = −s x' (Griewank and Walther, Evaluating
 Derivatives, section 13.2).
 """
@@ -22,13 +22,14 @@ from verify.integrators.tracing.trace import Node, evaluate_nodes, expressions, 
 from verify.schemes.steps.step_algebra import State
 
 _HALF = Fraction(1, 2)
-_REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
+_COMPUTED_ORDERS = (7, 9, 13)  # callers request one more order again and again
 
 
 class TracedSeries:
-    """A trace as power series in h, one for each root. InputError where it has none at h = 0.
+    """A trace as power series in h, one for each root, an output of the trace.
 
-    `field_with(*expressions)`: H's field, and expressions as elements of its ring.
+    `field_with(*expressions)`: returns H's field, and the expressions as elements of its ring.
+    Raises InputError if a node has no value at h = 0.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class TracedSeries:
 
     def __call__(self, most: int) -> tuple[CanonicalField, State]:
         """Return the field, and the roots up to h^most."""
-        reach = next((n for n in _REACHES if n >= most), most)
+        reach = next((n for n in _COMPUTED_ORDERS if n >= most), most)
         if reach not in self._series:
             self._series[reach] = self._up_to(reach)
         ring = self.field.ring
@@ -69,7 +70,7 @@ class TracedSeries:
 
 
 def _beginnings(node: Node, at_zero: Mapping[int, sympy.Expr]) -> list[tuple[str, sympy.Expr]]:
-    """Return the values at h = 0 that the node's series begins with, by name."""
+    """Return the values at h = 0 with which the series of the node begins, by name."""
     x = [at_zero[one.number] for one in node.inputs]
     name = node.operation
     if name in ("add", "subtract", "multiply", "number", "symbol"):

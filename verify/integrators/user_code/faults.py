@@ -1,8 +1,9 @@
 """Faults that a user's map may have before anything is proved or measured, by their names.
 
-Its answers must be the same at every call, after many others, and in a second process that asks in
-the reverse order. That process is a fork, so that it begins with all that the code keeps here. It
-shows nothing, runs nothing of ours when it ends, and what it has started ends with it.
+The map must return the same at every call, after many other calls, and in a second process that
+calls it in the reverse order. That process is a fork, so that it begins with all that the code
+keeps in this one. It prints nothing, runs no exit handlers when it ends, and the processes that it
+has started end with it.
 """
 
 import contextlib
@@ -27,16 +28,19 @@ from verify.prose import Number, Prose, join_prose, prose
 from verify.verdict import Verdict
 
 S = TypeVar("S")
-_PARTS = 8, 16  # of a place's largest step, with which it is tried
+_STEP_DIVISORS = 8, 16  # a place's largest step size is divided by each; the step is compared
 _MOST_PLACES = 6
-_SECONDS = 2.0  # for calls in a second process
+_MAX_SECONDS_OF_PROCESS = 2.0  # all calls in the second process together
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of a step or a map. `name`: such as "frozen"; `text`: the sentence. `allows`: the
-    best verdict that it lets stand: REFUTED where it is no step of a scheme, PROVED where the fault
-    is only reported. `ends`: nothing more can be examined."""
+    """A fault of a step or a map.
+
+    `name`: a keyword, such as "frozen"; `text`: the sentence for people. `allows`: the strongest
+    verdict that it still permits: REFUTED if it is no step of a scheme, PROVED if the fault is only
+    reported. `ends`: True if nothing more can be examined.
+    """
 
     name: str
     text: str
@@ -45,20 +49,22 @@ class Fault:
 
     @property
     def fatal(self) -> bool:
+        """True if the examination ends with this fault."""
         return self.allows is Verdict.REFUTED or self.ends
 
 
-Calls = dict[TrialPlace, State]  # what it returned at places
+Calls = dict[TrialPlace, State]  # the state that the step returned at each place
 
 
 def find_faults(step: UserMap, places: Sequence[TrialPlace]) -> tuple[list[Fault], Calls]:
     """Return the faults at the first of the places, and the results there."""
     first = Calls()
     for place in places[:_MOST_PLACES]:
-        state = unless_it_fails(partial(call_at, step, place))  # at others it may not fail
+        # A step that fails at one place may work at others.
+        state = unless_it_fails(partial(call_at, step, place))
         if state is not None:
             first[place] = state
-        if step.left <= 0:
+        if step.seconds_left <= 0:
             break
     faults = _check_repeated_calls(step, first) or _check_second_process(step, first)
     return [*faults, *_check_arrays(step, first)], first
@@ -70,15 +76,15 @@ def _check_second_process(step: UserMap, first: Mapping[TrialPlace, State]) -> l
     if start_another is not None:
         answers = _answers_of(replace(step, function=start_another()), list(first))
     elif step.foreign:
-        return []  # a library that is driven from here: it may not be forked
+        return []  # a library in this process, which must not be forked
     else:
-        seconds = min(_SECONDS, step.left / 10)
+        seconds = min(_MAX_SECONDS_OF_PROCESS, step.seconds_left / 10)
         answers = outcomes_elsewhere(lambda place: call_at(step, place), list(first), seconds)
     for (place, state), answer in zip(first.items(), answers, strict=True):
-        # None: the other process ended before it answered, which is no difference.
+        # None means that the other process ended before it answered, which is no difference.
         if answer is not None and answer != outcome(lambda x: x, state):
             circumstances = "in a second process, in another order of calls"
-            text = f"{circumstances}, it returns another result at {step.state(place.z)}"
+            text = f"{circumstances}, it returns another result at {step.describe_state(place.z)}"
             return [Fault("not a function", text, Verdict.UNDECIDED, ends=True)]
     return []
 
@@ -90,15 +96,16 @@ def _answers_of(step: UserMap, places: Sequence[TrialPlace]) -> list[str | None]
     return [*reversed(answers)]
 
 
-def call_at(step: UserMap, place: TrialPlace, part: int = _PARTS[0]) -> State:
-    """Return the state after a small step, as floats."""
-    return step.at_place(place, place.step / part)
+def call_at(step: UserMap, place: TrialPlace, divisor: int = _STEP_DIVISORS[0]) -> State:
+    """Return the state after a part of the place's largest step, as floats."""
+    return step.at_place(place, place.step / divisor)
 
 
 def find_changes(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
-    """Check that the step still returns what it did, after many calls."""
+    """Check that the step still returns the first results, after many calls."""
     for place, before in first.items():
-        after = unless_it_fails(partial(call_at, step, place))  # a cache may hold numbers of ours
+        # The call may fail: the code may have cached objects of our number classes.
+        after = unless_it_fails(partial(call_at, step, place))
         if after is not None and after != before:
             return [not_a_function(step, place.z, before, after)]
     return []
@@ -107,10 +114,12 @@ def find_changes(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault
 def not_a_function(
     step: UserMap, z: Sequence[float | Fraction], before: State, after: State
 ) -> Fault:
-    """Build the fault of a step that returned one and then the other: no claim is refuted, since
-    none can be checked on it."""
+    """Build the fault of a step that returned `before`, and later `after`, at the same state.
+
+    It refutes no claim, since no claim can be checked on it.
+    """
     pair = prose(_format_state(before), " and then ", _format_state(after))
-    text = prose("it is not deterministic: it returns ", pair, f" at {step.state(z)}")
+    text = prose("it is not deterministic: it returns ", pair, f" at {step.describe_state(z)}")
     return Fault("not a function", text, Verdict.UNDECIDED, ends=True)
 
 
@@ -119,21 +128,18 @@ def _format_state(state: State) -> Prose:
 
 
 def _check_repeated_calls(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
-    """Check that it is one map of z and h, the same at every call, and one that moves."""
+    """Check that the step is a function of z and h, that it moves z, and that h has an effect."""
     second = Calls()
     for place, before in first.items():
         try:
             if step.takes_step_size:
-                second[place] = call_at(step, place, _PARTS[1])
+                second[place] = call_at(step, place, _STEP_DIVISORS[1])
             after = call_at(step, place)
         except Exception as error:  # the user's code may raise anything
             message = prose("it raises ", last_line(error))
-            cause = error.said if isinstance(error, StepError) else message
-            return [
-                Fault(
-                    "fails", prose(cause, ", at a later call"), Verdict.PROVED, ends=step.left <= 0
-                )
-            ]
+            cause = error.clause if isinstance(error, StepError) else message
+            text, is_late = prose(cause, ", at a later call"), step.seconds_left <= 0
+            return [Fault("fails", text, Verdict.PROVED, ends=is_late)]
         if after != before:
             return [not_a_function(step, place.z, before, after)]
     # A map without h may be the identity: only a step is called frozen.
@@ -148,7 +154,10 @@ def _check_repeated_calls(step: UserMap, first: Mapping[TrialPlace, State]) -> l
 
 
 def _check_arrays(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Fault]:
-    """Check that it changes no arrays that it takes. Without numpy in use there are none."""
+    """Check that the step changes no array that it takes.
+
+    Nothing is checked if numpy is not imported, since the user's code then has no arrays.
+    """
     if "numpy" not in sys.modules or step.foreign or not first or "z" in step.layout.roles:
         return []
     import numpy as np
@@ -163,12 +172,13 @@ def _check_arrays(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Faul
     # The originals are compared afterwards: a step that works in place would change a caller's
     # arrays.
     originals = p.copy(), q.copy()
-    parts = {"p": p, "q": q, "h": float(place.step / 8), "t": float(place.t)}
+    h = float(place.step / _STEP_DIVISORS[0])
+    parts = {"p": p, "q": q, "h": h, "t": float(place.t)}
     parameters = {name: float(x) for name, x in step.parameters.items()}
     try:
         with limit_call(step):
             step.function(*(parts[name] for name in step.layout.roles), **parameters)
-    except Exception:  # it is for single numbers
+    except Exception:  # the step takes single numbers alone
         return []
     if np.array_equal(p, originals[0]) and np.array_equal(q, originals[1]):
         return []
@@ -181,17 +191,20 @@ def _check_arrays(step: UserMap, first: Mapping[TrialPlace, State]) -> list[Faul
 def outcomes_elsewhere(
     call: Callable[[S], object], states: Sequence[S], seconds: float
 ) -> list[str | None]:
-    """Return `outcome` at each state, from the last to the first; None where none came in that
-    time."""
+    """Return `outcome` at each state, in the order of `states`; None if none came in that time.
+
+    The second process takes the states from the last to the first.
+    """
     if not hasattr(os, "fork"):
         return [None] * len(states)
     reader, writer = os.pipe()
-    with warnings.catch_warnings(action="ignore"):  # of this process's threads: the child has none
+    # Python warns that this process has threads; the child has none.
+    with warnings.catch_warnings(action="ignore"):
         child = os.fork()
     if child == 0:
         _answer(writer, call, states)
     try:
-        with contextlib.suppress(OSError):  # the child has done it, or has ended
+        with contextlib.suppress(OSError):  # the child may have done it itself, or have ended
             os.setpgid(child, child)
         os.close(writer)
         lines = _read(reader, len(states), seconds)
@@ -206,8 +219,8 @@ def outcomes_elsewhere(
 
 
 def outcome(call: Callable[[S], object], state: S) -> str:
-    """Return all digits of the numbers that the call returns there, or the type of what it
-    raises."""
+    """Format the result of the call at that state, all digits of its numbers, or the type of its
+    error."""
     try:
         return _text(call(state))
     except BaseException as error:
@@ -220,18 +233,18 @@ def _text(x: Any) -> str:
         return f"({', '.join(map(_text, x))})"
     if isinstance(x, float):
         return x.hex()
-    # Of another object no more is said: its address is another one there.
+    # For any other object the text is its type: its address differs from process to process.
     return repr(x) if isinstance(x, numbers.Number | str | None) else type(x).__name__
 
 
 def _answer(writer: int, call: Callable[[S], object], states: Sequence[S]) -> NoReturn:
-    """Answer in the child, and end it."""
+    """Write the outcomes into the pipe, in the child, and end it."""
     try:
         os.setpgid(0, 0)
-        nowhere = os.open(os.devnull, os.O_RDWR)
+        null = os.open(os.devnull, os.O_RDWR)
         for stream in range(3):
-            os.dup2(nowhere, stream)
-        sys.stdin = sys.stdout = sys.stderr = open(nowhere, "r+", closefd=False)  # noqa: SIM115
+            os.dup2(null, stream)
+        sys.stdin = sys.stdout = sys.stderr = open(null, "r+", closefd=False)  # noqa: SIM115
         with open(writer, "w") as pipe:
             for state in reversed(states):
                 print(outcome(call, state), file=pipe, flush=True)
@@ -240,7 +253,7 @@ def _answer(writer: int, call: Callable[[S], object], states: Sequence[S]) -> No
 
 
 def _read(reader: int, count: int, seconds: float) -> list[str]:
-    """Read so many lines, or those that come in time."""
+    """Read that number of lines, or fewer if no more come in time."""
     received_bytes, until = b"", time.monotonic() + seconds
     with selectors.DefaultSelector() as waiting:
         waiting.register(reader, selectors.EVENT_READ)
@@ -248,7 +261,7 @@ def _read(reader: int, count: int, seconds: float) -> list[str]:
             max(until - time.monotonic(), 0)
         ):
             part = os.read(reader, 1 << 16)
-            if not part:  # it has ended
+            if not part:  # the child has ended
                 break
             received_bytes += part
     return received_bytes.decode().split("\n")[:-1]

@@ -1,7 +1,7 @@
-"""The shapes in which people write a step or a map, and how a state goes in and comes out.
+"""Layouts: the forms in which a user's step or map takes and returns a state.
 
-A state z is always p1 … pn, q1 … qn here. A layout says how the user's function takes it: as two
-numbers, two arrays of any shape, two lists, or one thing that holds both, in either order.
+A state z is always p1 … pn, q1 … qn here. The user's function may take it as two numbers, two
+arrays of any shape, two lists, or one object that holds both halves, in either order.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -12,7 +12,7 @@ from typing import Any
 
 from verify.integrators.user_code.step import StepError, Theirs
 
-# What people call the arguments of a step.
+# The names that people use for the arguments of a step, with the role of each.
 ROLES = {
     **dict.fromkeys(
         ("p", "v", "p0", "v0", "pq_p", "momentum", "momenta", "mom", "moms", "velocity",
@@ -29,13 +29,12 @@ ROLES = {
 
 
 def role_of(name: str) -> str:
-    """Return which of p, q, t, h and z an argument of that name is; empty where the name does not
-    tell."""
+    """Return the role of an argument by its name: p, q, t, h or z; "" if the name does not tell."""
     return ROLES.get(name.lower().strip("_"), "")
 
 
 class StatePair(tuple[Theirs, ...]):
-    """p and q as one thing that also answers to names: y.q, y.pos, y.velocity."""
+    """p and q as one tuple with attributes by their usual names: y.q, y.pos, y.velocity."""
 
     order: tuple[str, ...]
 
@@ -56,25 +55,29 @@ class StatePair(tuple[Theirs, ...]):
 
 
 def pair(parts: Sequence[Theirs], order: tuple[str, ...]) -> StatePair:
-    """Return p and q in that order as one thing."""
-    whole = StatePair(parts)
-    whole.order = order
-    return whole
+    """Return the two halves of a state as one tuple; `order` tells which is p and which q."""
+    state = StatePair(parts)
+    state.order = order
+    return state
 
 
 @dataclass(frozen=True)
 class CallLayout:
-    """`roles`: the function's arguments in their order, each p, q, t, h or z. `halves`: in which
-    order p and q stand in z, and in what is returned. `shape`: of p and of q, () for plain numbers.
-    `kind`: "array", or "list"; of z "flat", one array of all, "rows", an array of two, or "pair", a
-    tuple of two. `places`: where p1 … qn stand in a flat z, where that is another order."""
+    """A form of the function's arguments and of its result.
+
+    `roles`: those of the arguments in their order, each p, q, t, h or z. `halves`: the order of p
+    and q in z and in the result. `shape`: that of p and of q, () for plain numbers. `kind`: "array"
+    or "list"; for one z "flat", an array of all numbers, "rows", an array of two rows, or "pair", a
+    tuple of two. `places`: the indices of p1 … qn in a flat z of another order, or (). `record`:
+    the class of named tuples that an annotation of z names.
+    """
 
     roles: tuple[str, ...]
     halves: tuple[str, str] = ("p", "q")
     shape: tuple[int, ...] = ()
     kind: str = "array"
     places: tuple[int, ...] = ()
-    record: Callable[..., Theirs] | None = None  # of a named tuple that an annotation names
+    record: Callable[..., Theirs] | None = None
 
     @property
     def takes_time(self) -> bool:
@@ -86,9 +89,7 @@ class CallLayout:
         """True if h is an argument."""
         return "h" in self.roles
 
-    def arguments(
-        self, z: Sequence[Theirs], h: Theirs, t: Theirs
-    ) -> list[Theirs]:  # what the function is called with
+    def arguments(self, z: Sequence[Theirs], h: Theirs, t: Theirs) -> list[Theirs]:
         """Return the function's arguments for z, in its order."""
         n = len(z) // 2
         halves = {"p": z[:n], "q": z[n:]}
@@ -118,9 +119,8 @@ class CallLayout:
         return array(x, self.shape) if self.shape else x[0]
 
     def state(self, result: Theirs, size: int) -> list[Theirs]:
-        """Return z' from the function's result. Raises StepError."""
-        # Any nesting of lists, tuples and arrays is accepted, as long as the numbers are as many as
-        # in z.
+        """Return z' from the function's result. Raises StepError if it is no state."""
+        # Any nesting of lists, tuples and arrays is accepted if it has as many numbers as z.
         numbers = list(_numbers(result, self.expected_result, depth=4))
         if len(numbers) != size:
             raise StepError(f"it returns {_shape_of(result, len(numbers))}; {self.expected_result}")
@@ -136,7 +136,7 @@ class CallLayout:
 
     @property
     def expected_result(self) -> str:
-        """The result that the function has to return, for people."""
+        """The clause of a message that tells what the function has to return."""
         if "z" in self.roles:
             return "wanted: z', of the shape of z"
         first, second = self.halves
@@ -153,8 +153,10 @@ class CallLayout:
 def layouts_of(
     roles: tuple[str, ...], degrees: int, halves: list[tuple[str, str]] | None
 ) -> Iterator[CallLayout]:
-    """Yield the layouts in which a function with these arguments may take its state, the usual
-    first. `halves`: the orders of p and q in z; both where it is None."""
+    """Yield the layouts in which a function with these roles may take its state, the usual first.
+
+    `halves`: the possible orders of p and q in z; None for both.
+    """
     if "z" not in roles:
         first = "p" if roles.index("p") < roles.index("q") else "q"
         order = ("p", "q") if first == "p" else ("q", "p")
@@ -171,7 +173,7 @@ def layouts_of(
 
 
 def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:
-    """Yield the shapes and kinds in which p and q of so many degrees may stand, the usual first."""
+    """Yield the shapes and kinds of p and q for n degrees of freedom, the usual first."""
     if degrees == 1:
         yield from (((), "array"), ((1,), "array"), ((1, 1), "array"))
         return
@@ -181,7 +183,7 @@ def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:
 
 
 def array(numbers: Sequence[Theirs], shape: tuple[int, ...]) -> Theirs:
-    """Build an array of floats; or of numbers of ours, as objects."""
+    """Build an array of floats, or of Python objects if the numbers are of our classes."""
     import numpy as np
 
     objects = np.empty(prod(shape), dtype=float if isinstance(numbers[0], float) else object)

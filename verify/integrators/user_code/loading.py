@@ -24,21 +24,22 @@ from verify.integrators.user_code.layout import CallLayout, layouts_of, role_of
 from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contain_effects, last_line
 from verify.integrators.user_code.user_map import UserMap
 
-_MOST_SECONDS = 86_400
-_LISTED = 8  # functions of a module, in an error
+_MAX_TIME_LIMIT = 86_400  # seconds
+_MAX_LISTED = 8  # functions in an error message
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
-_ROLES = {True: ("pqth", "pqh", "zth", "zh"), False: ("pq", "z")}  # of a step, and of a map
-_WANTED = {
+# The roles of the arguments, a letter each: of a step (True), and of a map (False).
+_ROLES_OF_CALL = {True: ("pqth", "pqh", "zth", "zh"), False: ("pq", "z")}
+_EXPECTED_SIGNATURE = {
     True: "wanted: step(p, q, h) or step(p, q, t, h), which returns p', q', or step(z, h), z'",
     False: "wanted: map(p, q), which returns p', q', or map(z), which returns z'",
 }
 
 
 def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
-    """Load the function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
+    """Run the module of MODULE:FUNCTION or path/to/file.py:FUNCTION, and return the function.
 
-    It is looked for in the current folder first. `called`: what an error calls it. Raises
-    InputError where it does not import, has no such name, or that is no function.
+    The module is looked for in the current folder first. `called`: the name of the option in an
+    error. Raises InputError if the module does not import, or has no function of that name.
     """
     place, _, name = target.rpartition(":")
     if not place or not name:
@@ -65,8 +66,8 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
 def list_functions(functions: Sequence[str], wanted: str) -> str:
     """List the functions, the nearest to the wanted name first."""
     nearest = find_nearest(wanted, functions)
-    first = sorted(functions, key=lambda name: name != nearest)[:_LISTED]
-    ellipsis = f", and {len(functions) - _LISTED} more" if len(functions) > _LISTED else ""
+    first = sorted(functions, key=lambda name: name != nearest)[:_MAX_LISTED]
+    ellipsis = f", and {len(functions) - _MAX_LISTED} more" if len(functions) > _MAX_LISTED else ""
     return f"{format_suggestion(nearest)}it has: {', '.join(first)}{ellipsis}"
 
 
@@ -83,7 +84,7 @@ def _module(place: str, target: str, called: str) -> ModuleType:
         return from_folder(place)
     except (InputError, KeyboardInterrupt):
         raise
-    except BaseException as error:  # SystemExit too: it is the user's code
+    except BaseException as error:  # the user's code may raise anything, SystemExit too
         unknown = isinstance(error, ModuleNotFoundError) and error.name == place.split(".")[0]
         hint = "; write the path of its file, as file.py:FUNCTION" if unknown else ""
         problem = f"does not import: {last_line(error)}{hint}"
@@ -100,12 +101,13 @@ def from_file(path: Path) -> ModuleType:
 
 
 def from_folder(name: str) -> ModuleType:
-    """Import the module of that name from the current folder, else the one that is installed."""
+    """Import the module of that name from the current folder, or else an installed one."""
     top, dot, submodule = name.partition(".")
     folder = Path.cwd()
     spec = PathFinder.find_spec(top, [str(folder)])
     free = _free_name(top, folder)
-    if spec is None or spec.origin is None:  # a folder without code is behind libraries, too
+    # A folder without __init__.py comes after installed modules, as in Python itself.
+    if spec is None or spec.origin is None:
         return import_module(name)
     if free != top and free not in sys.modules:
         paths = spec.submodule_search_locations
@@ -114,8 +116,8 @@ def from_folder(name: str) -> ModuleType:
 
 
 def _free_name(name: str, folder: Path) -> str:
-    """Return the name, or another one where that is a library's; the folder's other modules are
-    found."""
+    """Return the name, or another one if a library has it; append the folder to the path, so that
+    its other modules can be imported."""
     other_folders = [x for x in sys.path if Path(x).resolve() != folder]
     is_taken = (
         name in sys.stdlib_module_names or PathFinder.find_spec(name, other_folders) is not None
@@ -130,7 +132,7 @@ def _free_name(name: str, folder: Path) -> str:
 def _execute(spec: ModuleSpec | None) -> ModuleType:
     assert spec is not None and spec.loader is not None  # noqa: PT018, S101 - a file has one
     module = module_from_spec(spec)
-    sys.modules[spec.name] = module  # as pickles and dataclasses in it expect
+    sys.modules[spec.name] = module  # pickles and dataclasses in the module expect it there
     try:
         spec.loader.exec_module(module)
     except BaseException:
@@ -146,7 +148,7 @@ def _execute(spec: ModuleSpec | None) -> ModuleType:
 class Callee:
     """A user's function, and the layouts in which it may take its state, the likeliest first.
 
-    `named`: whether its arguments' names tell p from q.
+    `named`: True if the names of its arguments tell their roles. `arguments`: these names.
     """
 
     step: UserMap
@@ -167,13 +169,13 @@ def callee_from(
 ) -> Callee:
     """Return the function as a callee with the coordinates `names`, p and q or p1 … qn.
 
-    `stepped`: whether it has an h. `arguments`: "q,p,h" or another order, "q1,p1,q2,p2" of the one
-    z that a map takes; without it the names of its arguments tell, where they do. `parameters`:
-    what else it may take by name; `strict`: and must. InputError for a wrong signature, or a time
-    limit that is none.
+    `stepped`: True if it has an h. `arguments`: the roles in their order, as "q,p,h", or the order
+    of the coordinates in the one z of a map, as "q1,p1,q2,p2"; None to read the roles off the
+    arguments' names. `parameters`: further arguments by name, which the function may take, and must
+    if `strict`. Raises InputError for a wrong signature, or a time limit out of range.
     """
-    if not 0.01 <= time_limit <= _MOST_SECONDS:
-        problem = f"is no number of seconds from 0.01 to {_MOST_SECONDS}"
+    if not 0.01 <= time_limit <= _MAX_TIME_LIMIT:
+        problem = f"is no number of seconds from 0.01 to {_MAX_TIME_LIMIT}"
         raise InputError("time limit", time_limit, problem)
     values = dict(parameters or {})
     signature = _Signature(function, stepped, values, strict)
@@ -181,7 +183,7 @@ def callee_from(
     if arguments is None:
         orders, names_tell = signature.orders()
     else:
-        order, places = _order(arguments, names, stepped, signature)
+        order, places = _parse_arguments(arguments, names, stepped, signature)
         orders, names_tell = [order], True
     halves = [("p", "q")] if places else None
     layouts = [x for roles in orders for x in layouts_of(roles, len(names) // 2, halves)]
@@ -194,13 +196,12 @@ def callee_from(
 
 
 def foreign_callee(step: UserMap) -> Callee:
-    """Return a step of a library or a program as a callee, whose layout is that of its
-    interface."""
+    """Return a step of a library or a program as a callee; its interface fixes the layout."""
     return Callee(step, (step.layout,))
 
 
 class _Signature:
-    """A function's arguments. InputError where they can be none of a step's or a map's."""
+    """The arguments of a function; raises InputError if a step or a map cannot have them."""
 
     def __init__(
         self, function: Callable[..., Theirs], stepped: bool, values: dict[str, Fraction],
@@ -219,7 +220,8 @@ class _Signature:
                 raise InputError("parameter", name, f"is no argument of {self.text}")
         places = [x for x in parameters if x.kind in _POSITIONAL]
         self.variadic = not parameters or any(x.kind is x.VAR_POSITIONAL for x in parameters)
-        # A parameter of H that is called as a coordinate is one all the same; a map's is not.
+        # An argument of a step that has the name of a coordinate, or of h, is that, even if H has a
+        # parameter of this name.
         roles = ("p", "q", "h") if stepped else ()
         self.places = [x for x in places if x.name not in values or role_of(x.name) in roles]
         self.needed = [x for x in self.places if x.default is x.empty]
@@ -231,19 +233,23 @@ class _Signature:
             self.record = self.places[0].annotation
 
     def wrong(self) -> InputError:
-        """Return the error of a signature that is none of a step's or a map's."""
-        return InputError("integrator" if self.stepped else "map", self.text, _WANTED[self.stepped])
+        """Return the error of a signature that no step, or no map, can have."""
+        return InputError(
+            "integrator" if self.stepped else "map", self.text, _EXPECTED_SIGNATURE[self.stepped]
+        )
 
     def orders(self) -> tuple[list[tuple[str, ...]], bool]:
-        """Return roles of its arguments, the likeliest first; and whether their names tell them."""
+        """Return possible roles of its arguments, the likeliest first, and True if names tell."""
         if self.variadic and not self.needed:
             return [tuple("pqh" if self.stepped else "pq")], True
         roles = [role_of(x.name) for x in self.places]
-        for expected in _ROLES[self.stepped]:
+        for expected in _ROLES_OF_CALL[self.stepped]:
             named_roles = roles[: len(expected)]
             if sorted(named_roles) == sorted(expected) and len(self.needed) <= len(expected):
                 return [tuple(named_roles)], True
-        counts = {len(x): x for x in reversed(_ROLES[self.stepped])}  # where both fit, with p and q
+        # For one number of arguments there may be two calls: that with p and q wins, which is the
+        # later one in the reversed order.
+        counts = {len(x): x for x in reversed(_ROLES_OF_CALL[self.stepped])}
         count = len(self.needed)
         if count not in counts:
             count = max((n for n in counts if count <= n <= len(self.places)), default=0)
@@ -251,12 +257,12 @@ class _Signature:
         pq, pqh = {"p", "q"} <= roles_from_names, {"p", "q", "h"} <= roles_from_names
         if not count or (self.stepped and ((count == 2 and pq) or (count == 4 and pqh))):
             raise self.wrong()
-        # To a map p and q are alike.
+        # For a map the order does not matter: if (p, q) is symplectic, (q, p) is too.
         return list(_matching_orders(roles[:count], counts[count])), not self.stepped or count == 1
 
 
 def _matching_orders(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, ...]]:
-    """Yield orders that agree with the roles that names tell; the usual order first."""
+    """Yield the orders that agree with the roles that the names tell, the usual order first."""
     fixed = [role if role in wanted and roles.count(role) == 1 else "" for role in roles]
     orders = sorted(set(permutations(wanted)), key=lambda x: (x != tuple(wanted), x))
     for order in orders:
@@ -270,17 +276,17 @@ def _is_record(annotation: object) -> bool:
     ) == ["p", "q"]
 
 
-def _order(
+def _parse_arguments(
     arguments: str, names: tuple[str, ...], stepped: bool, signature: _Signature
 ) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """Parse the roles that are written, and where coordinates stand in one z."""
+    """Parse `arguments` to the roles, and the positions of the coordinates in one z."""
     words = [name.strip() for name in arguments.split(",")]
     if not stepped and sorted(words) == sorted(names):
         if len(names) == 2 and len(signature.needed) == 2:
             return tuple(words), ()
         return ("z",), tuple(map(words.index, names))
     roles = [role_of(word) for word in words]
-    if sorted(roles) not in map(sorted, _ROLES[stepped]):
+    if sorted(roles) not in map(sorted, _ROLES_OF_CALL[stepped]):
         names_text = ", ".join(names)
         problem = "is no order of p, q and h, such as q,p,h, nor of p, q, t and h"
         raise InputError(

@@ -1,14 +1,13 @@
-"""Many hundred calls of a user's map: it must be one map of z, and one that is smooth in floats.
+"""Many hundred calls of a user's map, which must be a function of z, and smooth in floats.
 
-From each place p or q moves away by a little, then by twice as much, and so on. A smooth map bends
-as the square of such a move. Where its numbers have few digits, or a value that was kept for a
-point nearby is taken, it jumps. Then all is called again, in other orders.
+At each place p or q is moved by a tiny amount, then by twice as much, and so on. The result of a
+smooth map bends as the square of the move. It jumps if its numbers have few digits, or if the code
+takes a value that it has kept for a nearby point. Then all calls are repeated in other orders.
 
-The module also reads what of a user's function outlives its calls, and if they change it: globals
-that it names, the cells and defaults of it and of the functions that it reaches, the attributes of
-functions, objects and classes of the user's: all as bytes, by the name through which the function
-reaches them. Of a library's module it is the numbers and texts in it that count, and its classes
-are constant.
+The module also detects state that calls change: globals that the function names, closure cells and
+defaults of the functions that it reaches, attributes of the user's functions, objects and classes.
+Each is read as bytes, under the name through which the function reaches it. Of a library's module
+only the numbers and texts are read, and its classes are taken as constant.
 """
 
 import contextlib
@@ -36,31 +35,30 @@ KeptState = Mapping[str, bytes]  # by name
 
 
 def read_kept_state(function: Callable[..., Any]) -> KeptState:
-    """Return what the function keeps between calls, now."""
-    with warnings.catch_warnings(action="ignore"):  # of what is not to be pickled any more
+    """Return the values that the function keeps between calls, as they are now."""
+    with warnings.catch_warnings(action="ignore"):  # some types warn when they are pickled
         state = {
-            name: _bytes(value) for name, value in _reachable_values(_unwrap_function(function))
+            name: _to_bytes(value) for name, value in _reachable_values(_unwrap_function(function))
         }
-    return {**state, **_generators()}
+    return {**state, **_random_states()}
 
 
-def _generators() -> KeptState:
+def _random_states() -> KeptState:
     """Return the states of random generators, which modules hide."""
     # A step that draws random numbers changes these states, though it names none of them.
-    states = {"random": _bytes(random.getstate())}
+    states = {"random": _to_bytes(random.getstate())}
     if "numpy.random" in sys.modules:
-        states["numpy.random"] = _bytes(sys.modules["numpy.random"].get_state())
+        states["numpy.random"] = _to_bytes(sys.modules["numpy.random"].get_state())
     return states
 
 
 def changed_names(before: KeptState, after: KeptState) -> list[str]:
-    """Return the names under which something else is kept now."""
+    """Return the names whose values have changed, appeared or disappeared."""
     return [name for name in {**before, **after} if before.get(name) != after.get(name)]
 
 
 def _unwrap_function(x: Any) -> Any:
-    """Return the function that numba and caches wrap; for a method of an object, the object
-    itself."""
+    """Return the function that numba or a cache wraps; any other x as it is."""
     inner = getattr(x, "py_func", None) or getattr(x, "__wrapped__", None)
     return inner if isinstance(inner, types.FunctionType) else x
 
@@ -70,7 +68,8 @@ def _reachable_values(x: Any) -> Iterator[tuple[str, Any]]:
         yield getattr(x, "__name__", type(x).__name__), x
         return
     code = x.__code__
-    for name in sorted(set(names_in(code)) & {*x.__globals__, *sys.modules}):  # it may import it
+    # A name in the code that is no global may be a module that the function imports.
+    for name in sorted(set(names_in(code)) & {*x.__globals__, *sys.modules}):
         yield name, x.__globals__.get(name, sys.modules.get(name))
     for name, cell in zip(code.co_freevars, x.__closure__ or (), strict=True):
         with contextlib.suppress(ValueError):  # a name that has no value yet
@@ -82,7 +81,7 @@ def _reachable_values(x: Any) -> Iterator[tuple[str, Any]]:
         yield "its attributes", attributes
 
 
-def _bytes(value: Any) -> bytes:
+def _to_bytes(value: Any) -> bytes:
     file = io.BytesIO()
     try:
         _Pickler(file, protocol=4).dump(value)
@@ -92,13 +91,13 @@ def _bytes(value: Any) -> bytes:
 
 
 class _Blank:
-    """A stand-in for an object that is written by its contents."""
+    """A stand-in for the class of an object that is pickled by its contents."""
 
 
 class _Pickler(pickle.Pickler):
-    """Writes functions and classes of the user's by what they hold, where pickle writes names.
+    """Pickles the user's functions and classes by their contents; pickle itself writes names.
 
-    Nothing is ever read back. What cannot be written is written as its type's name.
+    Nothing is ever read back. An object that cannot be pickled is written as its repr.
     """
 
     def reducer_override(self, x: Any) -> Any:
@@ -108,25 +107,29 @@ class _Pickler(pickle.Pickler):
         if isinstance(x, type):
             return (_Blank, (), _attributes(x)) if is_of_user(x) else NotImplemented
         if isinstance(x, types.ModuleType):
-            return _Blank, (), _attributes(x) if is_users_module(x) else _plain_in(x)
+            return _Blank, (), _attributes(x) if is_users_module(x) else _plain_values(x)
         if isinstance(x, types.BuiltinFunctionType):
-            return _Blank, (), getattr(x, "__self__", None)  # a method of what may change
+            return _Blank, (), getattr(x, "__self__", None)  # the object of a method may change
         if isinstance(x, property | staticmethod | classmethod):
             parts = ("fget", "fset", "__func__")
             return _Blank, (), {name: getattr(x, name, None) for name in parts}
         try:
             return x.__reduce_ex__(4)
-        except Exception:  # a lock, a file, a generator, what a thread keeps
-            return str, (repr(x),), {"turns": _turns(x), "holds": getattr(x, "__dict__", None)}
+        except Exception:  # a lock, a file, a generator, a thread's local data
+            return (
+                str,
+                (repr(x),),
+                {"turns": _generator_position(x), "holds": getattr(x, "__dict__", None)},
+            )
 
 
-def _turns(x: Any) -> Any:
-    """Return where a generator stands."""
+def _generator_position(x: Any) -> Any:
+    """Return the position and the local variables of a generator; None for other objects."""
     frame = getattr(x, "gi_frame", None)
     return frame and (frame.f_lasti, dict(frame.f_locals))
 
 
-def _plain_in(x: types.ModuleType) -> dict[str, Any]:
+def _plain_values(x: types.ModuleType) -> dict[str, Any]:
     return {k: v for k, v in vars(x).items() if not k.startswith("_") and is_plain(v)}
 
 
@@ -138,20 +141,20 @@ def _attributes(x: Any) -> dict[str, Any]:
     }
 
 
-_MOVES = [2.0**-k for k in range(44, 3, -1)]  # in units of what is small at a place
-_WIDE = 2.0**-8  # from here on a move tells how the map bends
-_BENDS = 16  # times as much as that, it may nearer by
-_COARSE = 2.0**-40  # a jump beyond what rounding leaves of floats, and sums of many of them
-_ROUNDS = 4  # in which all is called again
-_PLACES = 5
-_PART, _MOST_SECONDS = 0.05, 2.0  # of the time that is left
+_MOVE_SIZES = [2.0**-k for k in range(44, 3, -1)]  # in units of the reach at a place
+_MIN_BENDING_MOVE = 2.0**-8  # moves of this size and larger ones show the curvature of the map
+_BEND_FACTOR = 16  # smaller moves may bend by this multiple of the curvature
+_COARSE_JUMP = 2.0**-40  # relative; larger than the rounding of sums of many doubles
+_REPETITIONS = 4  # of all calls, each in another order
+_MAX_PLACES = 5
+_SHARE_OF_TIME, _MAX_SECONDS = 0.05, 2.0  # of the time that is left, and at most
 Outcome = State | Exception
-_Jump = tuple[float, float]  # how far a component of z' is from where it should be; after what move
+_Jump = tuple[float, float]  # the distance of a component of z' from its line; the move before it
 
 
 @dataclass(frozen=True)
 class _Ladder:
-    """States further and further from that of a place, p or q moved."""
+    """States at growing distances from that of a place, in the direction of p or of q."""
 
     place: TrialPlace
     moves_p: bool
@@ -160,37 +163,36 @@ class _Ladder:
 
 def _ladders(places: Sequence[TrialPlace]) -> list[_Ladder]:
     ladders = []
-    for place in places[:_PLACES]:
+    for place in places[:_MAX_PLACES]:
         z, half = [float(x) for x in place.z], len(place.z) // 2
         for moves_p in (True, False):
             reach = [float(u) if (k < half) is moves_p else 0.0 for k, u in enumerate(place.reach)]
             states = [
                 z,
-                *([x + move * r for x, r in zip(z, reach, strict=True)] for move in _MOVES),
+                *([x + move * r for x, r in zip(z, reach, strict=True)] for move in _MOVE_SIZES),
             ]
             ladders.append(_Ladder(place, moves_p, tuple(map(tuple, states))))
     return ladders
 
 
 def find_repetition_faults(step: UserMap, places: Sequence[TrialPlace]) -> list[Fault]:
-    """Return the faults that show when it is called often, as time allows: that it keeps a state,
-    or is coarse."""
+    """Return the faults that many calls show: no function of z, a kept state, coarse numbers."""
     # These calls may take a small part of the time: proofs and measurements need the rest.
-    until = step.left - min(_PART * step.left, _MOST_SECONDS)
+    until = step.seconds_left - min(_SHARE_OF_TIME * step.seconds_left, _MAX_SECONDS)
     ladders = _ladders(places)
-    before, changed_keys = {} if step.foreign else read_kept_state(step.function), set[str]()
+    first_state, changed_keys = {} if step.foreign else read_kept_state(step.function), set[str]()
 
     def watch() -> None:
-        if not step.foreign:  # of another process it shows in what it returns alone
-            changed_keys.update(changed_names(before, read_kept_state(step.function)))
+        if not step.foreign:  # the state of another process is not readable
+            changed_keys.update(changed_names(first_state, read_kept_state(step.function)))
 
     outcomes: dict[tuple[TrialPlace, State], Outcome] = {}
     for ladder in ladders:
         for state in ladder.states:
             key = ladder.place, state
-            if step.left > until and key not in outcomes:
-                outcomes[key] = _outcome(step, *key)
-            if len(outcomes) == 1:  # what comes and goes is seen after an odd number of calls
+            if step.seconds_left > until and key not in outcomes:
+                outcomes[key] = _call_at_state(step, *key)
+            if len(outcomes) == 1:  # a state that alternates shows after an odd number of calls
                 watch()
         watch()
     faults = _repeat_calls(step, outcomes, until)
@@ -203,7 +205,7 @@ def find_repetition_faults(step: UserMap, places: Sequence[TrialPlace]) -> list[
     ]
 
 
-def _outcome(step: UserMap, place: TrialPlace, state: State) -> Outcome:
+def _call_at_state(step: UserMap, place: TrialPlace, state: State) -> Outcome:
     try:
         return step.evaluate(state, float(place.step / 8), float(place.t))
     except Exception as error:  # the user's code may raise anything
@@ -214,16 +216,15 @@ def _repeat_calls(
     step: UserMap, outcomes: dict[tuple[TrialPlace, State], Outcome], until: float
 ) -> list[Fault]:
     """Check that the same arguments give the same result, bit by bit, in other orders of calls."""
-    # The reverse order first: a step that depends on the call before it shows there at once.
+    # The reverse order first: it shows at once if a step depends on the call before it.
     order = list(outcomes)[::-1]
-    for turn in range(_ROUNDS):
+    for turn in range(_REPETITIONS):
         for place, state in order:
-            if step.left <= until:
+            if step.seconds_left <= until:
                 return []
-            fault = _compare_outcomes(
-                step, state, outcomes[place, state], _outcome(step, place, state)
-            )
-            if fault is not None and step.left > 0:
+            outcome = _call_at_state(step, place, state)
+            fault = _compare_outcomes(step, state, outcomes[place, state], outcome)
+            if fault is not None and step.seconds_left > 0:
                 return [fault]
         random.Random(turn).shuffle(order)  # noqa: S311 - any orders do
     return []
@@ -232,9 +233,8 @@ def _repeat_calls(
 def _compare_outcomes(step: UserMap, state: State, before: Outcome, after: Outcome) -> Fault | None:
     errors = [x for x in (before, after) if isinstance(x, Exception)]
     if len(errors) == 1:
-        text = prose(
-            "it raises ", last_line(errors[0]), " at one call and not at another, the same"
-        )
+        problem = " at one call and not at another, the same"
+        text = prose("it raises ", last_line(errors[0]), problem)
         return Fault("fails", text, Verdict.UNDECIDED)
     if isinstance(before, tuple) and isinstance(after, tuple) and before != after:
         return not_a_function(step, state, before, after)
@@ -254,7 +254,7 @@ def _state_faults(names: Sequence[str]) -> list[Fault]:
 def _check_coarseness(
     step: UserMap, ladders: Sequence[_Ladder], outcomes: dict[tuple[TrialPlace, State], Outcome]
 ) -> list[Fault]:
-    """Check if it jumps at most places: at a few it may, where a loop does one turn more."""
+    """Check that the step jumps at half of the places at most, as it may if a loop ends early."""
     jumps: list[_Jump] = []
     for moves_p in (True, False):
         jumps_of_ladders = [_largest_jump(x, outcomes) for x in ladders if x.moves_p is moves_p]
@@ -275,8 +275,7 @@ def _check_coarseness(
 def _largest_jump(
     ladder: _Ladder, all_outcomes: dict[tuple[TrialPlace, State], Outcome]
 ) -> _Jump | None:
-    """Return the largest jump along a ladder, of size 0 where there is none. None where a call
-    failed."""
+    """Return the largest jump along a ladder, of size 0 if it has none; None if a call failed."""
     outcomes = [all_outcomes.get((ladder.place, state)) for state in ladder.states]
     states = [x for x in outcomes if isinstance(x, tuple)]
     if len(states) < len(outcomes):
@@ -286,15 +285,16 @@ def _largest_jump(
         max(u, *(abs(state[k]) for state in (*states, *ladder.states))) for k, u in enumerate(units)
     ]
     first, *rest = [[x / s for x, s in zip(state, sizes, strict=True)] for state in states]
-    # One that is off its line: twice the way makes twice the change.
+    # On a line, twice the move makes twice the change; the rest is the bend.
     bent = [
         (move, max(abs((b - a) - (a - x)) for x, a, b in zip(first, one, two, strict=True)))
-        for move, one, two in zip(_MOVES, rest, rest[1:], strict=False)
+        for move, one, two in zip(_MOVE_SIZES, rest, rest[1:], strict=False)
     ]
-    # Wide moves show how the map bends; nearer by the bend of a smooth map falls as the square of
-    # the move.
-    curvature = max(size / move**2 for move, size in bent if move >= _WIDE)
+    # The bend of a smooth map falls as the square of the move; wide moves show the curvature.
+    curvature = max(size / move**2 for move, size in bent if move >= _MIN_BENDING_MOVE)
     jumps = [
-        (size, move) for move, size in bent if size > 2 * _COARSE + _BENDS * curvature * move**2
+        (size, move)
+        for move, size in bent
+        if size > 2 * _COARSE_JUMP + _BEND_FACTOR * curvature * move**2
     ]
     return max(jumps, key=itemgetter(0), default=(0.0, 0.0))

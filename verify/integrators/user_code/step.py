@@ -1,7 +1,7 @@
-"""A call of a user's own function: what it may print, what it returns, and for how long.
+"""A call of a user's own function: where its output goes, what it may return, how long it may take.
 
-What it prints goes to standard error, and a call that does not come back is ended where this thread
-gets signals.
+Its output goes to standard error. A call that does not return is interrupted if this thread
+receives signals.
 """
 
 import contextlib
@@ -16,21 +16,24 @@ from verify.errors import InputError
 from verify.integrators.tracing.traced_number import TracedNumber, UntraceableError
 from verify.prose import Prose, prose
 
-Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
+Theirs: TypeAlias = Any  # a value that a user's code takes, holds or returns: it may be anything
 T = TypeVar("T")
-TIME_LIMIT = 60.0  # seconds for all of the user's code
-# Python drops what is raised within a finalizer or a callback of its garbage collector, and a bare
-# `except:` of the user's catches it: the alarm rings again after so many seconds.
-_NEXT_ALARM, _FIRST_ALARM = 1.0, 0.01
+TIME_LIMIT = 60.0  # seconds; all calls of the user's code together
+# Seconds until the first alarm, at least, and between later ones. One alarm does not suffice:
+# Python drops an exception that is raised within a finalizer or a callback of its garbage
+# collector, and a bare `except:` in the user's code catches it.
+_FIRST_ALARM, _NEXT_ALARM = 0.01, 1.0
 
 
 class StepError(Exception):
-    """The error of a function that did something else than a step: `said`, one clause, "it …", for
-    people."""
+    """The error of a function that did something other than a step.
 
-    def __init__(self, said: str) -> None:
-        self.said = prose(said)
-        super().__init__(self.said)
+    `clause`: the message for people, one clause that begins with "it".
+    """
+
+    def __init__(self, clause: str) -> None:
+        self.clause = prose(clause)
+        super().__init__(self.clause)
 
 
 class _OverTimeError(BaseException):  # so that `except Exception` in the user's code lets it pass
@@ -38,20 +41,23 @@ class _OverTimeError(BaseException):  # so that `except Exception` in the user's
 
 
 def last_line(error: BaseException) -> str:
-    """Format the user's exception as Python's last line of a traceback has it."""
+    """Format the user's exception as the last line of Python's traceback, its message cut after the
+    first line."""
     lines = str(error).split("\n")
     return f"{type(error).__name__}: {lines[0]}" if lines[0] else type(error).__name__
 
 
 @contextlib.contextmanager
 def contain_effects() -> Iterator[None]:
-    """Run code of a user's so that what it prints goes to standard error, as JSON stands alone on
-    standard output, and `os._exit` is as `sys.exit`, as it would end this program without a
-    word."""
+    """Contain what the user's code does to this process while the body runs.
+
+    Its output goes to standard error, since standard output holds JSON alone. `os._exit` acts as
+    `sys.exit`, since it would end this program without a message.
+    """
     end, process = os._exit, os.getpid()
 
     def stop(status: int) -> NoReturn:
-        if os.getpid() != process:  # a process that it has forked
+        if os.getpid() != process:  # the call comes from a process that the user's code has forked
             end(status)
         raise SystemExit(status)
 
@@ -64,19 +70,25 @@ def contain_effects() -> Iterator[None]:
 
 
 class Limited(Protocol):
-    """Code whose calls have so many seconds left."""
+    """Code whose calls have a limited number of seconds left."""
 
     @property
-    def left(self) -> float: ...
+    def seconds_left(self) -> float: ...
 
 
 @contextlib.contextmanager
 def limit_call(owner: Limited, too_long: str = "a call of it does not end") -> Iterator[None]:
-    """Guard a call of a user's code: what it prints, what it raises, and how long it takes."""
-    if owner.left <= 0:
+    """Guard a call of a user's code: its output, its exits, and the time that it takes.
+
+    Raises StepError if no time is left, if the call takes longer, or if the code exits.
+    """
+    if owner.seconds_left <= 0:
         raise StepError("its calls took all the time that there is")
     try:
-        with contain_effects(), limit_time(owner.left, f"{too_long} within {owner.left:.3g} s"):
+        with (
+            contain_effects(),
+            limit_time(owner.seconds_left, f"{too_long} within {owner.seconds_left:.3g} s"),
+        ):
             yield
     except SystemExit:
         raise StepError("it calls sys.exit, or os._exit") from None
@@ -84,28 +96,31 @@ def limit_call(owner: Limited, too_long: str = "a call of it does not end") -> I
 
 @contextlib.contextmanager
 def limit_time(seconds: float, problem: str) -> Iterator[None]:
-    """Raise StepError with this problem where the body does not end in time.
+    """Raise StepError with this problem if the body does not end in time.
 
-    It may stand in another one, whose time goes on. In other threads than the main one, and on
-    systems without alarms, there is no limit.
+    Limits may be nested: the time of an outer limit goes on, and if the outer one ends first, it
+    alone applies. In other threads than the main one, and on systems without alarms, the body is
+    not limited.
     """
     error, has_ended = _OverTimeError(problem), False
 
-    def late(*_: object) -> None:
-        if not has_ended:  # it may be late for what has just ended
+    def raise_late(*_: object) -> None:
+        if not has_ended:  # the alarm may ring when the body has just ended
             raise error
 
-    outer = signal.getitimer(signal.ITIMER_REAL)[0] if hasattr(signal, "getitimer") else 0.0
-    before = None
-    if not 0 < outer <= seconds:  # else the outer limit ends first
+    has_timer = hasattr(signal, "getitimer")
+    outer_seconds = signal.getitimer(signal.ITIMER_REAL)[0] if has_timer else 0.0
+    previous_handler = None
+    if not 0 < outer_seconds <= seconds:  # otherwise the outer limit ends first
         with contextlib.suppress(ValueError, AttributeError):
-            before = signal.signal(signal.SIGALRM, late)
-    if before is None:
+            previous_handler = signal.signal(signal.SIGALRM, raise_late)
+    if previous_handler is None:
         yield
         return
     start = time.perf_counter()
     try:
-        # Sooner it could ring before what is done here has begun, where nobody would take it.
+        # With less than `_FIRST_ALARM` it could ring before the body has begun, where no handler
+        # below would catch the error.
         signal.setitimer(signal.ITIMER_REAL, max(seconds, _FIRST_ALARM), _NEXT_ALARM)
         yield
         has_ended = True
@@ -116,15 +131,14 @@ def limit_time(seconds: float, problem: str) -> Iterator[None]:
         raise StepError(problem) from None
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-        if outer:
-            spent = time.perf_counter() - start
-            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _FIRST_ALARM), _NEXT_ALARM)
+        signal.signal(signal.SIGALRM, previous_handler)
+        if outer_seconds:
+            rest = outer_seconds - (time.perf_counter() - start)
+            signal.setitimer(signal.ITIMER_REAL, max(rest, _FIRST_ALARM), _NEXT_ALARM)
 
 
 def unless_it_fails(call: Callable[[], T]) -> T | None:
-    """Return the result of a call of the user's code; None where it raises, which may be
-    anything."""
+    """Return the result of a call of the user's code, or None if it raises any exception."""
     try:
         return call()
     except Exception:
@@ -132,7 +146,7 @@ def unless_it_fails(call: Callable[[], T]) -> T | None:
 
 
 def lift_numbers(first: Theirs, result: Sequence[Theirs]) -> list[Theirs]:
-    """Return the result as numbers of the kind of `first`. Raises StepError."""
+    """Return the result as numbers of the class of `first`. Raises StepError if one is not."""
     zero = first * 0
     numbers = [zero + x for x in result]
     if any(type(x) is not type(first) for x in numbers):

@@ -1,7 +1,7 @@
 """A user's own step or map as it is called, z → z', and the type of the numbers that it takes.
 
-A step has an h, and perhaps a t; a map has neither. All calls of either go through here, in floats,
-in numbers of ours, or in those of another program, whose types are told apart by their bits.
+A step has an h, and perhaps a t; a map has neither. All calls of either go through here: in floats,
+in our number classes (symbols, dual numbers), or in the number type of another program.
 """
 
 import math
@@ -21,9 +21,11 @@ from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, lim
 
 @dataclass(frozen=True)
 class NumberType:
-    """`bits` of the significand. `parts`: doubles that one number is the sum of, or 1.
+    """A type of floating-point numbers.
 
-    `declared`: what C calls it. `digits`: decimals that tell any two of them apart.
+    `bits`: of the significand. `declared`: its name in C. `digits`: the number of significant
+    decimals that tell any two of its numbers apart. `parts`: the number of doubles whose sum is one
+    number; 1 for any other type.
     """
 
     name: str
@@ -43,7 +45,7 @@ class NumberType:
         return 2.0 ** (1 - self.bits)
 
     def round_number(self, x: Fraction) -> Fraction:
-        """Return the nearest number of the type, but for its range."""
+        """Return the nearest number of the type; only for doubles is its range respected."""
         if self.parts > 1:
             return sum(map(Fraction, two_doubles(x)), Fraction(0))
         if self is DOUBLE:
@@ -52,8 +54,8 @@ class NumberType:
 
 
 def two_doubles(x: Fraction) -> tuple[float, float]:
-    """Return the nearest double, and that of the rest."""
-    # The nearest double, then the nearest one to what is left: their sum has at least 106 bits.
+    """Return the double nearest to x, and the double nearest to the rest."""
+    # The sum of the two has at least 106 bits.
     high = float(x)
     return high, float(x - Fraction(high))
 
@@ -66,7 +68,7 @@ TYPES = {each.name: each for each in (DOUBLE, LONG_DOUBLE, FLOAT128, DOUBLE_DOUB
 
 
 def type_of(name: str) -> NumberType:
-    """Return the type of that name. Raises InputError for one that is not known."""
+    """Return the type of that name. Raises InputError for an unknown name."""
     if name not in TYPES:
         raise unknown_name(
             "--type", name, TYPES, aliases={"quad": "float128", "binary128": "float128"}
@@ -79,13 +81,17 @@ State = tuple[float, ...]
 
 @dataclass
 class UserMap:
-    """`names`: of the coordinates, p and q or p1 … pn, q1 … qn. `parameters`: further arguments by
-    their names. `limit`: seconds for all that is done with it, which end at `until`, a moment of
-    time.monotonic. `moving`: whether H depends on time; else its t is 0. `numbers`: the type that
-    it computes in. `foreign`: it is of another language, so that numbers alone go in. `periods`: of
-    each coordinate, where it is seen to reduce them so. `masses`: where its p are velocities, what
-    makes momenta of them. `coarseness`: by how much z' is seen to jump, in parts of its size, where
-    its numbers are coarser than their type.
+    """A user's function with all that is needed to call it.
+
+    `names`: of the coordinates, p and q or p1 … pn, q1 … qn. `parameters`: further arguments, by
+    name. `limit`: the seconds for all calls and computations together; they end at `until`, on the
+    clock of time.monotonic, which starts with the first call. `time_dependent`: True if H depends
+    on t; otherwise the function is called with t = 0. `numbers`: the type in which it computes.
+    `foreign`: True if it is written in another language, so that it takes numbers alone, no
+    symbols. `periods`: of each coordinate, if the function reduces coordinates modulo periods.
+    `masses`: the factors that make momenta of the function's p, if these are velocities.
+    `coarseness`: the size of the jumps of z', relative to z', if the function's numbers are coarser
+    than their type.
     """
 
     function: Callable[..., Theirs]
@@ -94,7 +100,7 @@ class UserMap:
     parameters: Mapping[str, Fraction] = field(default_factory=dict)
     limit: float = TIME_LIMIT
     until: float | None = None
-    moving: bool = False
+    time_dependent: bool = False
     numbers: NumberType = DOUBLE
     foreign: bool = False
     periods: tuple[Fraction, ...] = ()
@@ -102,15 +108,15 @@ class UserMap:
     coarseness: float = 0.0
 
     @property
-    def left(self) -> float:
-        """The seconds that are left."""
+    def seconds_left(self) -> float:
+        """The seconds that are left; the first reading starts the clock."""
         if self.until is None:
             self.until = time.monotonic() + self.limit
         return self.until - time.monotonic()
 
     def hold_back(self, seconds: float) -> None:
-        """Keep seconds for later; give them back where they are less than 0."""
-        self.until = time.monotonic() + self.left - seconds
+        """Take seconds off the time that is left; a negative number gives them back."""
+        self.until = time.monotonic() + self.seconds_left - seconds
 
     @property
     def degrees(self) -> int:
@@ -128,8 +134,8 @@ class UserMap:
         return self.layout.takes_time
 
     @property
-    def ways(self) -> tuple[str, ...]:
-        """The ways in which it can be measured, the clearest first."""
+    def probe_kinds(self) -> tuple[str, ...]:
+        """The kinds of probe that can measure it, the sharpest first."""
         return ("floats",) if self.foreign else ("duals", "floats")
 
     def call(
@@ -140,10 +146,10 @@ class UserMap:
         t: Theirs,
         number: OfNumber,
     ) -> list[Theirs]:
-        """Return z' of the function, or of a copy of it. Raises StepError, and what the user's code
-        raises.
+        """Return z' of the function, or of a copy of it.
 
-        `number`: makes of a parameter what the function takes.
+        `number`: converts a parameter or a mass to the numbers in which the function is called.
+        Raises StepError, and what the user's code raises.
         """
         masses = [number(x) for x in self.masses]
         if masses:
@@ -158,18 +164,20 @@ class UserMap:
         return state
 
     def evaluate(self, z: Sequence[float], h: float, t: float) -> State:
-        """Return z' as floats. Raises StepError, also for what is not finite."""
+        """Return z' as floats. Raises StepError, also if a number is not finite."""
         state = tuple(map(to_float, self.call(self.function, z, h, t, float)))
         if not all(map(math.isfinite, state)):
             numbers = ", ".join(f"{x:g}" for x in state)
-            raise StepError(f"it returns what is not finite ({numbers}){self.place(z, h)}")
+            raise StepError(f"it returns what is not finite ({numbers}){self.describe_call(z, h)}")
         return state
 
     def exactly(
         self, states: Sequence[Sequence[Fraction]], h: Fraction, t: Fraction
     ) -> list[list[Fraction]]:
-        """Return z' of each z as the numbers of its type that they are. Raises StepError, as
-        `evaluate`."""
+        """Return z' of each z, without rounding beyond the function's own type.
+
+        Raises StepError as `evaluate` does.
+        """
         # Another program answers many calls in one exchange, which takes a fraction of the time.
         several = getattr(self.function, "several", None)
         if several is not None and not self.masses:
@@ -185,7 +193,7 @@ class UserMap:
         self, several: Callable[..., Theirs], states: Sequence[Sequence[Fraction]], h: Fraction,
         t: Fraction,
     ) -> list[list[Fraction]]:  # fmt: skip
-        """Call all states by one exchange with another program."""
+        """Return z' of all states by one exchange with another program."""
         n = self.degrees
         with limit_call(self, "calls of it do not end"):
             answers = several([(z[:n], z[n:], t, h) for z in states])
@@ -195,17 +203,18 @@ class UserMap:
         return [[Fraction(x) for half in answer for x in half] for answer in answers]
 
     def at_place(self, place: TrialPlace, h: Fraction) -> State:
-        """Return z' as floats of a step from there; as `evaluate`."""
+        """Return z' of a step from that place, as floats; raises as `evaluate` does."""
         return self.evaluate([float(x) for x in place.z], float(h), float(place.t))
 
-    def entry(self, indices: tuple[int, int]) -> str:
+    def entry_name(self, indices: tuple[int, int]) -> str:
         """Return the name of an entry of S, such as dp1∧dq1."""
         return "∧".join(f"d{self.names[k]}" for k in indices)
 
-    def state(self, z: Sequence[float | Fraction]) -> str:
+    def describe_state(self, z: Sequence[float | Fraction]) -> str:
         """Format a state, for messages."""
         return ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))
 
-    def place(self, z: Sequence[float | Fraction], h: float | Fraction) -> str:
+    def describe_call(self, z: Sequence[float | Fraction], h: float | Fraction) -> str:
         """Format a state and a step size, for messages on a call."""
-        return f" at {self.state(z)}" + (f", h = {float(h):g}" if self.takes_step_size else "")
+        step_size = f", h = {float(h):g}" if self.takes_step_size else ""
+        return f" at {self.describe_state(z)}{step_size}"

@@ -1,14 +1,15 @@
-"""The computation of one step of a kernel, whatever the numbers: a step map → a straight-line
+"""The computation of one step of a kernel, in any number system: a step map → a straight-line
 program.
 
-It has z' − z, S = JᵀΩJ − Ω, det J − 1, det J the plain way, the tangent map, and W. In the plane S
-is ΔJ dp∧dq. S is written in closed form if the map has one, coefficient by coefficient of h, so
-that nothing cancels in it; else from K = J − 1 as S = KᵀΩ + ΩK + KᵀΩK, which costs digits, since
-terms that cancel identically do so only in the sum. K comes from the step's own operations, one
-derivative after the other. Along an orbit M ← M + K M and W ← W + MᵀSM, with M before the step.
+On request it has z' − z; S = JᵀΩJ − Ω, by which the step's Jacobian J misses symplecticity (in the
+plane ΔJ dp∧dq); ΔJ = det J − 1; det J from J's entries; the tangent map M, the product of the
+Jacobians; and W = MᵀΩM − Ω. If the map has S in closed form, a formula for each coefficient of a
+power of h, S is written from it, and nothing cancels. Else S = KᵀΩ + ΩK + KᵀΩK with K = J − 1,
+which costs digits: terms that cancel identically do so in floating sums. K comes from the step's
+operations by differentiation. Along an orbit M ← M + K M and W ← W + MᵀSM, with M before the step.
 
-It depends on the map, and on the requested quantities, but on no precision and on no number system
-beyond `StepRequest`. So it is built once for a map, and shared by the runs of it.
+A computation depends on no precision, and on no number system beyond the `StepRequest`. So it is
+built once, and shared by all runs of the map.
 """
 
 from collections.abc import Mapping, Sequence
@@ -39,11 +40,11 @@ from verify.schemes.maps.step_map import StepMap
 
 @dataclass(frozen=True)
 class StepRequest:
-    """The quantities requested of a step: those that observables need, A − 1 of the tangent map, K
-    = J − 1 itself.
+    """The quantities requested of a step.
 
-    `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
-    `verify.arithmetic.number_system.Arithmetic`.
+    `needs`: the quantities that observables need. `tangent`: K = J − 1 in float64, for the tangent
+    map. `slopes`: K itself. `scaled`: S and ΔJ are divided by their power of h and multiplied by κ.
+    `pipelined`: as in `verify.arithmetic.number_system.Arithmetic`.
     """
 
     pipelined: bool
@@ -60,13 +61,12 @@ class StepRequest:
 
 @dataclass(frozen=True, eq=False)
 class Computation:
-    """A step's program, and the places of its values in it.
+    """A step's program, and the indices of its values in it.
 
-    `outputs`: the indices of the increments of the coordinates, as `dp`, of ΔJ, `dj`, and if
-    they are requested of det J, `det`, of H, `de`, and of M's and W's entries. `power` is the r of
-    κ; `parameters` are those of H; `timed` says whether it depends on t, which is one more input
-    then. `coordinates` name the state; `defect` has the requested entries of S, `slopes` K by rows,
-    if that is requested. The program is complete: nothing is added to it any more.
+    `outputs`: the increments of the coordinates (`dp`, …), ΔJ (`dj`), and on request det J (`det`),
+    and the increments of H (`de`), of M's and of W's entries (`dm_a_b`, `dw_a_b`). `power`: the r
+    of κ = 2^s h^r. `parameters`: the names of H's. `timed`: t is one more input. `defect`: the
+    requested entries of S (`s_a_b`); `slopes`: K by rows, on request. No operation is added later.
     """
 
     program: StepProgram
@@ -87,8 +87,8 @@ class Computation:
     @property
     def roots(self) -> list[int]:
         """The indices of all values that are read from the program."""
-        of_tangent = self.tangent.main_values if self.tangent else ()
-        return [*self.outputs.values(), *self.defect.values(), *of_tangent]
+        tangent_values = self.tangent.main_values if self.tangent else ()
+        return [*self.outputs.values(), *self.defect.values(), *tangent_values]
 
 
 def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
@@ -98,16 +98,14 @@ def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
 
 @lru_cache(maxsize=64)
 def computation_of(step_map: StepMap, request: StepRequest) -> Computation:
-    """Return the requested computation of a map; the last ones are cached."""
+    """Return the requested computation of a map; the latest ones are cached."""
     return _Step(step_map, request).computation()
 
 
 @dataclass(frozen=True)
 class _SharedPart:
-    """The part that all computations of one map share: S in closed form takes the longest.
-
-    The program, to be copied, its inputs by their names, and the entries of S.
-    """
+    """The part that all computations of one map share, since S in closed form takes longest: a
+    program to be copied, and the indices of its inputs and of the entries of S."""
 
     program: StepProgram
     inputs: Mapping[str, int]
@@ -117,8 +115,7 @@ class _SharedPart:
 @lru_cache(maxsize=64)
 def _shared_part(step_map: StepMap, pipelined: bool, scaled: bool, defect: bool) -> _SharedPart:
     program, hamiltonian = StepProgram(), step_map.hamiltonian
-    # A user's parameter may be named like anything; in the source it is x0, x1, ….
-    # The source's names must not depend on the user's: a parameter may be called `v1` or `steps`.
+    # In the source H's parameters are x0, x1, …: a user may call a parameter `v1` or `steps`.
     arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(hamiltonian.symbols)}
     inputs = {n: program.input(a, static=True) for n, a in arguments.items()}
     time = ("t",) if hamiltonian.time_dependent else ()
@@ -135,7 +132,8 @@ def _shared_part(step_map: StepMap, pipelined: bool, scaled: bool, defect: bool)
 
 
 def common_power(step_map: StepMap) -> int:
-    """Return the greatest r for which h^r divides all of S as it is written; 0 if it is not."""
+    """Return the greatest r for which h^r divides all of S in closed form; 0 if there is none, or
+    the map preserves area."""
     closed_form = step_map.written_defect
     return (
         min(closed_form.forms or {}, default=0)
@@ -145,7 +143,7 @@ def common_power(step_map: StepMap) -> int:
 
 
 def _sum_of(closed_form: ClosedForm, places: Sequence[Place], power: int) -> Poly:
-    """Return the sum of these entries of S, divided by h^power."""
+    """Return the sum of the entries of S at these places, divided by h^power."""
     h, total = closed_form.ring.variable("h"), closed_form.ring.zero
     for m, form in (closed_form.forms or {}).items():
         for place in places:
@@ -215,14 +213,13 @@ class _Step:
 
     @cached_property
     def changes_of_step(self) -> list[ProgramValue]:
-        """The values z' − z of a map that is defined by its step, with derivatives if K is
-        needed."""
+        """The values z' − z of a map that has a `step`, with derivatives if K is needed."""
         request, field = self.request, self.step_map.field
         plain = ProgramAlgebra(self.program, field, self.inputs, request.pipelined)
         self.points = plain.points
-        of_slopes = request.needs & {"determinant", "carried"}
-        needs_slopes = request.tangent or request.slopes or of_slopes
-        assert self.step_map.step is not None  # noqa: S101 - the caller looks
+        needs_of_slopes = request.needs & {"determinant", "carried"}
+        needs_slopes = request.tangent or request.slopes or needs_of_slopes
+        assert self.step_map.step is not None  # noqa: S101 - the caller checks it
         if needs_slopes or not self.preserved:
             return self.step_map.step(TangentAlgebra(plain, coordinates=len(self.names)))
         return self.step_map.step(plain)
@@ -233,7 +230,7 @@ class _Step:
     # -- S and what follows from it -----------------------------------------------------------
 
     def from_slopes(self) -> dict[Place, int]:
-        """Return S from K, or 2^s times it."""
+        """Return the entries of S, or of 2^s S, from K."""
         entries = defect_from_slopes(self.program, self.slopes)
         if not self.request.scaled:
             return entries
@@ -241,24 +238,27 @@ class _Step:
         return {place: self.program.mul(kappa, index) for place, index in entries.items()}
 
     def volume(self) -> int:
-        """Return det J − 1, or 2^s times it."""
+        """Return det J − 1, or 2^s (det J − 1)."""
         program, n = self.program, len(self.names) // 2
         pairs = [(i, n + i) for i in range(n)]
-        first = self.forms[pairs[0]]
+        # Σ S(p_i, q_i): one formula from the closed form, since terms may cancel between entries.
+        pair_sum = self.forms[pairs[0]]
         if self.closed_form is None:
             for pair in pairs[1:]:
-                first = program.add(first, self.forms[pair])
+                pair_sum = program.add(pair_sum, self.forms[pair])
         elif n > 1:
             kappa = program.input("kappa", static=True) if self.request.scaled else None
-            first = self.evaluator().evaluate(_sum_of(self.closed_form, pairs, self.power), kappa)
-        # Each entry carries 2^s, and a product of k entries 2^(ks): `down` = 2^−s removes the
-        # excess.
+            pair_sum = self.evaluator().evaluate(
+                _sum_of(self.closed_form, pairs, self.power), kappa
+            )
+        # Each entry has the factor 2^s, and a product of k entries 2^(k s): `down` = 2^−s removes
+        # the excess.
         down = program.input("down", static=True) if self.request.scaled else None
         pfaffian = Pfaffian(program, lambda a, b: self.forms[a, b], down)
-        return change_of_volume(pfaffian, n, first)
+        return change_of_volume(pfaffian, n, pair_sum)
 
     def determinant(self) -> int:
-        """Return the determinant of J's four entries in the plane, computed the plain way."""
+        """Return det J in the plane as a d − b c, from the entries of J."""
         program, has_formulas = self.program, self.step_map.formulas is not None
         if has_formulas:
             evaluator, rows = self.evaluator(), self.step_map.flat.jacobian
@@ -273,11 +273,11 @@ class _Step:
         program, field = self.program, self.step_map.field
         moves = dict(zip(self.names, self.changes, strict=True))
         after = {**self.inputs, **{n: program.add(self.inputs[n], x) for n, x in moves.items()}}
-        before, later = (
+        energy_before, energy_after = (
             Evaluator(program, field.ring, inputs, self.request.pipelined).evaluate(field.energy)
             for inputs in (self.inputs, after)
         )
-        return program.add(later, program.neg(before))
+        return program.add(energy_after, program.neg(energy_before))
 
     def increments_of_matrices(self) -> dict[str, int]:
         """Return the increments of M and of W."""
@@ -289,7 +289,7 @@ class _Step:
         matrix = [[program.constant(Fraction(0))] * size for _ in indices]
         for (a, b), entry in self.forms.items():
             matrix[a][b], matrix[b][a] = entry, program.neg(entry)
-        # W ← W + MᵀSM reads M before the step: the increment of M is applied after it.
+        # W ← W + MᵀSM uses M before the step: the increment of M is applied later.
         right = multiply(program, matrix, matrix_m)
         for a, b in combinations(indices, 2):
             total = program.constant(Fraction(0))

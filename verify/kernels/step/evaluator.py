@@ -1,7 +1,8 @@
-"""Elements of a ring, and a step's increments → a straight-line program, no operation twice.
+"""Elements of a ring, and the increments of a step → a straight-line program.
 
-A polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters look like
-inside it, since static values are computed once before the loop.
+A value that depends on h and the parameters alone is static: it is computed once, before the loop.
+Generators of the ring (variables, functions, inverses, roots) that are not static are dynamic. A
+polynomial is evaluated as one in the dynamic generators, with a static coefficient per monomial.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -19,25 +20,24 @@ from verify.functions import in_rings
 from verify.kernels.step.operations import StepProgram, Tail
 from verify.schemes.maps.closed_form import h_inside
 
-_MOST_VARIABLES = 4  # of which all orders, 24 at most, are tried for nested evaluation
-_MOST = 12  # times a value is added to itself at most
+_MAX_ORDERED_VARIABLES = 4  # up to here all orders of the variables, 24 at most, are tried
+_RATIO_END = 12  # ratios of coefficients from 1 to 11 are used
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
-# A polynomial by the exponents of its variables, one after the other: its coefficients' indices.
-Nest = dict[int, Any]  # of nests of one variable less, or of indices
-Cost = tuple[int, int]
+# A polynomial: exponent of its first variable → nest in the others; of the last → coefficient.
+Nest = dict[int, Any]
+Cost = tuple[int, int]  # latency and number of operations, the more important one first
 T = TypeVar("T")
 
 
-class _TooDearError(Exception):
-    """A trial that costs more than the best one so far."""
+class _TooCostlyError(Exception):
+    """A trial costs more than the best one so far."""
 
 
 class Evaluator:
-    """Writes ring elements into a program, at the point whose variables are the inputs.
+    """A writer of ring elements into a program; the variables are the program's inputs.
 
-    `pipelined`: of the ways to sum a polynomial take that of least latency, not of fewest
-    operations.
+    `pipelined`: a polynomial is summed with the least latency, not with the fewest operations.
     """
 
     def __init__(
@@ -46,11 +46,10 @@ class Evaluator:
         self.program, self.ring, self.pipelined = program, ring, pipelined
         self._inputs = inputs
         self._index_of: dict[int, int] = {}
-        self._cost_limit: int | None = None  # operations, beyond which a trial is given up
+        self._cost_limit: int | None = None  # a trial that costs more is given up
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
-        """Return the index of x's value, or of its product with a static value (the index
-        `factor`)."""
+        """Return the index of the value of x, or of x times the static value of index `factor`."""
         generators = self.ring.generators_in(x)
         for generator in generators:
             self.index_of_generator(generator)
@@ -61,7 +60,7 @@ class Evaluator:
         return self._sum_terms(terms, [self._index_of[i] for i in dynamic])
 
     def combination(self, weights: Sequence[int], values: Sequence[int]) -> int:
-        """Return the index of Σ weights · values, for static weights, in the cheapest way."""
+        """Return the index of Σ weight · value, for static weights, as the cheapest sum."""
         program = self.program
         constant, parts = program.quotient(0, 1), dict[int, int]()
         for weight, value in zip(weights, values, strict=True):
@@ -76,20 +75,20 @@ class Evaluator:
             terms.append(((0,) * size, constant))
         return self._sum_terms(terms, [x for x, _ in weighted])
 
-    def choose_cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
-        """Return the result of the way that writes the fewest operations, the first of such."""
-        if len(ways) == 1:
-            return ways[0]()
+    def choose_cheapest(self, writers: Sequence[Callable[[], T]]) -> T:
+        """Return the result of the writer whose operations cost least; of several the first."""
+        if len(writers) == 1:
+            return writers[0]()
         program, index_of, cost_limit = self.program, self._index_of, self._cost_limit
         mark = program.mark()
         best: tuple[int, Tail, dict[int, int], T] | None = None
-        # Each way is written behind the mark, cut off, and the cheapest is put back; what costs
-        # more than the best so far gives up on its way.
-        for way in ways:
+        # Each writer writes behind the mark, and its tail is cut off; the cheapest tail is put
+        # back. A writer stops when it costs more than the best one so far.
+        for write in writers:
             self._index_of = dict(index_of)
             try:
-                value = way()
-            except _TooDearError:
+                value = write()
+            except _TooCostlyError:
                 program.cut(mark)
                 continue
             cost, tail = program.cost, program.cut(mark)
@@ -98,7 +97,7 @@ class Evaluator:
                 self._cost_limit = cost
         self._cost_limit = cost_limit
         if best is None:
-            raise _TooDearError
+            raise _TooCostlyError
         program.put_back(best[1])
         self._index_of = best[2]
         return best[3]
@@ -122,9 +121,7 @@ class Evaluator:
         return self.program.call(in_rings()[g.kind], inner)
 
     def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
-        """Return x by monomials in the dynamic generators, the static coefficients evaluated."""
-        # The polynomial is read as one in the dynamic generators, with static polynomials as
-        # coefficients.
+        """Write the static coefficients of x; return its terms in the dynamic generators."""
         parts: list[Term] = []
         program, static_values = self.program, [(i, self._index_of[i]) for i in sorted(static)]
         by_outer: dict[tuple[int, ...], list[tuple[tuple[int, ...], flint.fmpq]]] = {}
@@ -148,17 +145,19 @@ class Evaluator:
         return parts
 
     def _sum_terms(self, terms: list[Term], variables: list[int]) -> int:
-        """Return the sum of the terms by the cheapest of the ways that are tried.
+        """Return the index of the sum of the terms, written as the cheapest of several forms.
 
-        Ways: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
-        (least latency: pairs of coefficients first, then pairs of pairs).
+        The forms: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
+        (least latency: first pairs of coefficients, then pairs of pairs).
         """
         if not terms:
             return self.program.constant(Fraction(0))
         occurring = [k for k in range(len(variables)) if any(outer[k] for outer, _ in terms)]
         if not occurring:
             return terms[0][1]
-        orders = permutations(occurring) if len(variables) <= _MOST_VARIABLES else [occurring]
+        orders = (
+            permutations(occurring) if len(variables) <= _MAX_ORDERED_VARIABLES else [occurring]
+        )
         program, mark = self.program, self.program.mark()
         best: tuple[Cost, Tail, int] | None = None
         for order in orders:
@@ -171,17 +170,16 @@ class Evaluator:
                 tail = program.cut(mark)
                 if best is None or cost < best[0]:
                     best = cost, tail, result
-        assert best is not None  # noqa: S101 - there is one way at least
+        assert best is not None  # noqa: S101 - at least one form was tried
         program.put_back(best[1])
         if self._cost_limit is not None and program.cost > self._cost_limit:
-            raise _TooDearError
+            raise _TooCostlyError
         return best[2]
 
     def _sum_nest(
         self, nest: Nest, values: list[int], depth: int, sum_: Callable[[dict[int, int], int], int]
     ) -> int:
-        """Return the value of a polynomial in the variable of number `depth`, its coefficients in
-        those after it."""
+        """Return the index of a nest's value; its first variable is `values[depth]`."""
         coefficients: dict[int, int] = nest
         if depth + 1 < len(values):
             coefficients = {
@@ -192,7 +190,7 @@ class Evaluator:
         return sum_(coefficients, values[depth])
 
     def _horner(self, coefficients: dict[int, int], x: int) -> int:
-        """Return Σ c_n xⁿ by Horner's rule, with powers for gaps between exponents."""
+        """Return the index of Σ c_n xⁿ by Horner's rule, with powers over gaps of exponents."""
         add, mul, power = self.program.add, self.program.mul, self.program.power
         powers = sorted(coefficients, reverse=True)
         above = powers[0]
@@ -203,9 +201,9 @@ class Evaluator:
         return mul(total, power(x, above))
 
     def _estrin(self, coefficients: dict[int, int], x: int) -> int:
-        """Return c₀ + c₁ x + (c₂ + c₃ x) x² + …, pairwise again in x²."""
+        """Return the index of Σ c_n xⁿ as c₀ + c₁ x + (c₂ + c₃ x) x² + …, with pairs in x² next."""
         program = self.program
-        # Each turn halves the degree: the depth is logarithmic, where Horner's rule is linear.
+        # Each pass halves the degree: the depth is logarithmic, that of Horner's rule linear.
         while set(coefficients) != {0}:
             pairs: dict[int, int] = {}
             for n, c in sorted(coefficients.items()):
@@ -217,7 +215,7 @@ class Evaluator:
 
 
 def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
-    """Return the terms by the exponents of the variables in this order."""
+    """Return the nest of the terms, for this order of the variables."""
     *outer, last = order
     nest: Nest = {}
     for exponents, coefficient in terms:
@@ -229,69 +227,72 @@ def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
 
 
 def increments(evaluator: Evaluator, moves: Sequence[Poly], h: int) -> list[int]:
-    """Return the indices of the increments of all p, then of all q, of which `moves` has the
-    formulas; `h` is the index of the step size.
+    """Return the indices of the increments `moves` of all p, then of all q; `h` is the index of the
+    step size.
 
     For H = p²/2 + V(q) the Lie-derivative scheme has q' = q + h p + (h²/2) X p + (h³/6) X² p + …
-    beside p' = p + h X p + (h²/2) X² p + …: with a_k = h^k/(k+1)! X^k p they are
-    p' = p + 2 a_1 + 3 a_2 + … and q' = q + h (p + a_1 + a_2 + …). So wherever the coefficient of
-    h^(k+1) in one of them is the one of h^k in the other over a small integer, it is computed once.
-    Both ways are tried, and the cheapest is taken.
+    beside p' = p + h X p + (h²/2) X² p + …, where X is the derivative along the flow. With
+    a_k = h^k/(k+1)! X^k p they are p' = p + 2 a_1 + 3 a_2 + … and q' = q + h (p + a_1 + a_2 + …).
+    So if the coefficient of h^k in one increment is a small integer times that of h^(k+1) in the
+    other, it is computed once. Sharing is tried in both directions, and the cheapest form is taken.
     """
     n, pairs = len(moves) // 2, []
     for pair in zip(moves[:n], moves[n:], strict=True):
-        ways = [_Way(evaluator.ring, pair, None)]
+        forms = [_IncrementPair(evaluator.ring, pair, None)]
         # Sharing saves operations but makes p' wait for q': it is not tried if latency counts.
         if not (evaluator.pipelined or h_inside(evaluator.ring, *pair)):
-            sharing = (_Way(evaluator.ring, pair, first) for first in (0, 1))
-            ways += [way for way in sharing if way.ratios]
-        pairs.append(evaluator.choose_cheapest([partial(way.write, evaluator, h) for way in ways]))
+            sharing = (_IncrementPair(evaluator.ring, pair, taker) for taker in (0, 1))
+            forms += [form for form in sharing if form.ratios]
+        pairs.append(
+            evaluator.choose_cheapest([partial(form.write, evaluator, h) for form in forms])
+        )
     return [pair[part] for part in (0, 1) for pair in pairs]
 
 
 @dataclass
-class _Way:
-    """One way to write the increments of p and of q.
-
-    `first`: the increment whose coefficients are taken from the other's; None if none are.
-    """
+class _IncrementPair:
+    """The increments of p and of q in one form. `taker`: the increment, 0 or 1, that takes
+    coefficients from the other one, the giver; None if neither does."""
 
     ring: Ring
     pair: tuple[Poly, Poly]
-    first: int | None
+    taker: int | None
 
     @cached_property
     def parts(self) -> tuple[dict[int, Poly], dict[int, Poly]]:
-        """The coefficients of the first and of the second increment, by powers of h."""
+        """The coefficients of the taker and of the giver, by powers of h."""
         of_p, of_q = (self.ring.powers(x, "h") for x in self.pair)
-        return (of_p, of_q) if self.first == 0 else (of_q, of_p)
+        return (of_p, of_q) if self.taker == 0 else (of_q, of_p)
 
     @cached_property
     def ratios(self) -> dict[int, int]:
-        """{k: r}: the first's coefficient of h^k is r times the second's of h^(k+1)."""
-        first, second = self.parts
-        if not second or min(second) < 1:
+        """{k: r}: the taker's coefficient of h^k is r times the giver's coefficient of h^(k+1)."""
+        taker, giver = self.parts
+        if not giver or min(giver) < 1:
             return {}
-        pairs = {k: (x, second[k + 1]) for k, x in first.items() if k >= 1 and k + 1 in second}
-        ratios = ((k, r) for k, (x, y) in pairs.items() for r in range(1, _MOST) if x == r * y)
+        pairs = {k: (x, giver[k + 1]) for k, x in taker.items() if k >= 1 and k + 1 in giver}
+        ratios = ((k, r) for k, (x, y) in pairs.items() for r in range(1, _RATIO_END) if x == r * y)
         return dict(ratios)
 
     def write(self, evaluator: Evaluator, h: int) -> tuple[int, int]:
         """Write both increments, and return their indices."""
         program = evaluator.program
-        if self.first is None:
+        if self.taker is None:
             u, v = self.pair
             return evaluator.evaluate(u), evaluator.evaluate(v)
-        (first, second), ratios = self.parts, self.ratios
-        taker = evaluator.evaluate(self._sum({k: x for k, x in first.items() if k not in ratios}))
-        inner = {k - 1: x for k, x in second.items() if k - 1 not in ratios}
+        (taker_parts, giver_parts), ratios = self.parts, self.ratios
+        taker = evaluator.evaluate(
+            self._sum({k: x for k, x in taker_parts.items() if k not in ratios})
+        )
+
+        inner = {k - 1: x for k, x in giver_parts.items() if k - 1 not in ratios}
         giver = evaluator.evaluate(self._sum(inner))
         for k, times in ratios.items():
-            value = evaluator.evaluate(self._sum({k: second[k + 1]}))
+            value = evaluator.evaluate(self._sum({k: giver_parts[k + 1]}))
             giver = program.add(giver, value)
             taker = program.add(taker, program.times(value, times))
         giver = program.mul(h, giver)
-        return (taker, giver) if self.first == 0 else (giver, taker)
+        return (taker, giver) if self.taker == 0 else (giver, taker)
 
     def _sum(self, parts: Mapping[int, Poly]) -> Poly:
         """Return Σ h^k parts[k]."""

@@ -1,8 +1,7 @@
 """The kinds of operations of a straight-line program, with their costs.
 
-`args` are the indices of earlier results; `kind` tells the kinds apart. An operation that is not
-static has a `latency`, until its result is available, and a `cost`: a product counts as several
-sums.
+`args` are the indices of earlier results; `kind` is the kind's name. `latency` and `cost` count for
+operations in the loop, in units of a sum: the time until the result is available, and the work.
 """
 
 from dataclasses import dataclass
@@ -112,7 +111,7 @@ class Call(_OfOne):
 
 @dataclass(frozen=True, slots=True)
 class Solution(_OfOne):
-    """The unknown of that number that a loop, its one argument, has computed."""
+    """One unknown, by its number, of a loop of Newton's method, which is the one argument."""
 
     kind: ClassVar[Literal["solved"]] = "solved"
     number: int
@@ -120,7 +119,7 @@ class Solution(_OfOne):
 
 @dataclass(frozen=True, slots=True)
 class Solving:
-    """The program's loop of that number, which reads `args`."""
+    """A loop of Newton's method, by its number in the program; it reads `args`."""
 
     kind: ClassVar[Literal["loop"]] = "loop"
     args: tuple[int, ...]
@@ -135,5 +134,6 @@ Op: TypeAlias = Input | RationalConstant | Pi | Unary | Binary | Solving | Solut
 
 
 def may_leave_range(op: Op) -> bool:
-    """Return True if the value may leave a range that contains the arguments."""
+    """Return True if the value may leave a range ±r that contains the argument: the kernel's guard
+    must then check it."""
     return op.kind in ("inverse", "root") or (op.kind == "call" and op.function.lipschitz is None)

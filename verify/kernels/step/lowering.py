@@ -1,18 +1,20 @@
 """A program's operations → lines of source, those before the loop over steps and those in it.
 
-Unknowns that are defined by equations are computed by Newton's method, in a loop of their own. It
-goes on until an update is no more than the last places of the p or q that it is added to, or would
-be followed by such a one. Each of Newton's updates is a multiple of the square of the one before;
-the last two give the multiple, so that after one of `size` the next would have the size
-size·(size/last)². That is believed once half of the digits are settled. An update that is no
-smaller than the one before is only rounding, if half of the digits are settled, and ends it too.
+If a step solves equations F(Z) = 0, its unknowns Z are computed by Newton's method, in a loop of
+their own. The loop ends when an update is at most 2^−(bits + 1) of the p or q that it is added to,
+or when the next update would be. Each update is about a multiple of the square of
+the update before; the last two, of sizes `last` and `size`, give the multiple, and the size of the
+next one, size·(size/last)². This prediction is used once half of the digits are settled. From then
+on an update that is no smaller than the one before is rounding only, and ends the loop too.
 
-The solution sought is the one that goes over into 0 with h. On the way there ∂F/∂Z, which is the
-unit matrix at h = 0, does not become singular; so a solution where its determinant is not positive
-is another one. If that happens, an update grows out of all proportion, an unknown leaves the
-arithmetic's range, or 25 updates do not settle, the method starts once more, at 0. If that fails
-too the unknowns are set to 0/0, which ends the run at that step. (If h is so large that there are
-several solutions with a positive determinant, it may be any of them.)
+The wanted solution is the one that tends to 0 with h. Along it ∂F/∂Z, which is the unit matrix at
+h = 0, stays regular; so a solution with a determinant that is not positive is another one. The
+method starts a second time, at Z = 0, if the determinant is not positive, an update is 2^16 times
+as large as the first one and the values it was added to, an unknown leaves the arithmetic's range,
+or 25 updates do not settle.
+
+If that fails too, the unknowns are set to 0/0, which ends the run at that step. (If h is so large
+that several solutions have a positive determinant, the result may be any of them.)
 """
 
 from __future__ import annotations
@@ -28,19 +30,19 @@ from verify.kernels.step.kinds import Call, Input, Inverse, Negation, Pi, Root, 
 from verify.kernels.step.operations import NewtonLoop, StepProgram
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
-_GUARD = 64  # bits of a given root beyond those of the arithmetic
-MOST_UPDATES = 25  # if h is small 2 … 4 are needed for 17 digits, 5 … 8 for 200
+_ROOT_GUARD_BITS = 64  # a root of a constant has so many bits more than the arithmetic
+MAX_UPDATES = 25  # for a small h 2 … 4 updates give 17 digits, and 5 … 8 give 200
 _ATTEMPTS = 2
 
 
 @dataclass
 class Lowering:
-    """Writes a program's values as variables `prefix` + index.
+    """A writer of a program's lines, with the value of index i in the variable `prefix` + i.
 
-    `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
-    if it has `cos_sin` or `sin_cos`. If it has no `root`, the root of a number is a number
-    too, known to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
-    `verify.arithmetic.number_system`).
+    `functions`: the names of the arithmetic's functions. If `cos_sin` or `sin_cos` is among them,
+    cos and sin of one argument are written as one call. If `root` is not, a root of a constant is
+    computed beforehand, to `bits` bits and some more. `guard`: a condition on `{x}` that numbers in
+    range satisfy (see `verify.arithmetic.number_system`).
     """
 
     program: StepProgram
@@ -61,7 +63,7 @@ class Lowering:
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
         """Return the lines that compute the roots: those before the loop, and those in it."""
         program, live = self.program, self.live(roots)
-        ops, prefix, static_ones = program.ops, self.prefix, program.static
+        ops, prefix, is_static = program.ops, self.prefix, program.static
         static: list[str] = []
         dynamic: list[str] = []
         for index in live:
@@ -78,11 +80,12 @@ class Lowering:
                 continue
             else:
                 line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
-            (static if static_ones[index] else dynamic).append(line)
+            (static if is_static[index] else dynamic).append(line)
         return static, dynamic
 
     def _pair(self, index: int, live: Sequence[int]) -> str | None:
-        """Write cos and sin of one argument as one call, if the arithmetic has that."""
+        """Return the line of cos and sin of one argument as one call; None if the arithmetic has no
+        such call, or one of the two is not needed."""
         op = self.program.ops[index]
         joint_name = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
         names = joint_name.split("_") if joint_name else ()
@@ -93,7 +96,6 @@ class Lowering:
             for i in live
             if isinstance(other := self.program.ops[i], Call) and other.args == op.args
         }
-        # A combined call pays only if both values are needed.
         if not calls.keys() >= {*names}:
             return None
         self._already_written |= {calls[name] for name in names}
@@ -101,11 +103,11 @@ class Lowering:
         return f"{first}, {second} = {joint_name}({self.name(op.args[0])})"
 
     def inner(self, loop: NewtonLoop) -> Lowering:
-        """Return the lowering of an inner loop's program, with a prefix of its own."""
+        """Return the lowering of an inner loop's program, with another prefix."""
         return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
 
     def function(self, index: int) -> str | None:
-        """Return the name of the function that an operation calls, if it calls one."""
+        """Return the name of the function that an operation calls, or None."""
         op = self.program.ops[index]
         if op.kind == "root" and self._radicand(op) is None:
             return "sqrt" if op.degree == 2 else "root"
@@ -142,7 +144,7 @@ class Lowering:
                 return f"1 / {args[0]}"
             case Solution((loop,), number):
                 solving = self.program.ops[loop]
-                assert isinstance(solving, Solving)  # noqa: S101 - what finds it is a loop
+                assert isinstance(solving, Solving)  # noqa: S101 - a Solution's argument is one
                 return f"u{solving.number}_{number}"
             case Root() if self._radicand(op) is not None:
                 return f"number_{self.name(index)}"
@@ -151,8 +153,8 @@ class Lowering:
         return f"{self.function(index)}({args[0]})"
 
     def _radicand(self, op: Root) -> Fraction | None:
-        """Return the number whose root this is, if there is one and the arithmetic has no
-        function for the root."""
+        """Return the radicand, if it is a positive constant and the arithmetic has no function for
+        the root; else None."""
         inner = self.program.ops[op.args[0]]
         if op.degree == 2 or "root" in self.functions or inner.kind != "const":
             return None
@@ -161,10 +163,8 @@ class Lowering:
     def named_constants(
         self, number: Callable[[Fraction], SystemNumber], roots: Sequence[int] | None = None
     ) -> dict[str, SystemNumber]:
-        """Return the constants, and roots of numbers, as numbers by their names in the source.
-
-        `roots`: those alone that these need.
-        """
+        """Return the constants, and the roots of constants, by name in the source; those that the
+        values `roots` need, or all."""
         program, constants = self.program, dict[str, SystemNumber]()
         live = range(len(program.ops)) if roots is None else self.live(roots)
         for index in live:
@@ -172,7 +172,7 @@ class Lowering:
             if op.kind == "const":
                 constants[self.name(index)] = number(op.value)
             elif op.kind == "root" and (radicand := self._radicand(op)) is not None:
-                root = _root(radicand, op.degree, self.bits + _GUARD)
+                root = _root(radicand, op.degree, self.bits + _ROOT_GUARD_BITS)
                 constants[f"number_{self.name(index)}"] = number(root)
         for loop in self.loops(live):
             inner_roots = None if roots is None else [*loop.updates, *loop.determinants]
@@ -181,9 +181,8 @@ class Lowering:
 
 
 def _root(x: Fraction, degree: int, bits: int) -> Fraction:
-    """Return x^(1/degree), less than 2^(1 − bits) below it, for x > 0."""
-    # iroot rounds down, so the result is below the root by less than one unit of 2^−bits, and the
-    # integer division by less than one more.
+    """Return x^(1/degree), too small by less than 2^(1 − bits), for x > 0."""
+    # The integer division and `iroot` round down, each by less than a unit 2^−bits of the root.
     scaled = (x.numerator << degree * bits) // x.denominator
     return Fraction(int(gmpy2.iroot(gmpy2.mpz(scaled), degree)[0]), 1 << bits)
 
@@ -191,8 +190,8 @@ def _root(x: Fraction, degree: int, bits: int) -> Fraction:
 def newton_constants(
     bits: int, number: Callable[[Fraction], SystemNumber]
 ) -> dict[str, SystemNumber]:
-    """Return the numbers that the loops compare with, by their names in the source, for numbers of
-    so many bits."""
+    """Return the numbers with which Newton's loops compare, by name in the source, for an
+    arithmetic with `bits` bits."""
     return {
         "newton_zero": number(Fraction(0)),
         "newton_last": number(Fraction(1, 2 ** (bits + 1))),
@@ -202,10 +201,10 @@ def newton_constants(
 
 
 class LoopSource:
-    """The lines of one of Newton's loops, whose unknowns are `u<number>_0`, `u<number>_1`, ….
+    """A writer of one loop of Newton's method, whose unknowns are `u<number>_0`, `u<number>_1`, ….
 
-    `static`: those before the loop over steps. `turn`: those that compute the updates, to be
-    subtracted, and the determinants, whose product is that of ∂F/∂Z.
+    `static`: the lines before the loop over steps. `turn`: the lines of one iteration that compute
+    the updates, to be subtracted, and the factors of the determinant of ∂F/∂Z.
     """
 
     def __init__(self, loop: NewtonLoop, outer: Lowering) -> None:
@@ -221,12 +220,12 @@ class LoopSource:
 
     def lines(self) -> list[str]:
         """Return the statements of both attempts."""
-        converged = f"{self.prefix}found"
+        converged = f"{self.prefix}found"  # a name in the source
         pairs = zip(self.unknowns, self.starts, strict=True)
         positive = " * ".join(self.determinants)
         attempt = [
             f"{converged} = 0",
-            f"for turn in range({MOST_UPDATES}):",
+            f"for turn in range({MAX_UPDATES}):",
             *(f"    {line}" for line in self._iteration_lines(f"{converged} = 1")),
             f"if {converged} == 1 and {positive} > newton_zero: break",
             f"if attempt == {_ATTEMPTS - 1}:",
@@ -234,7 +233,7 @@ class LoopSource:
             "    break",
             *(f"{u} = newton_zero" for u in self.unknowns),
         ]
-        # The first values of these are never read: they give them a type.
+        # The first values of these names are never read: they give the variables a kind.
         names = [self.prefix + n for n in ("size", "last", "first", "ratio")]
         names += [x for x in self.determinants if any(s.startswith(f"{x} =") for s in self.turn)]
         return [
@@ -245,11 +244,12 @@ class LoopSource:
         ]
 
     def _iteration_lines(self, stop: str) -> list[str]:
-        """Return the statements of one iteration; `stop` is run if it has converged."""
+        """Return the statements of one iteration; the statement `stop` is executed if the method
+        has converged."""
         size, last, first, ratio = (self.prefix + n for n in ("size", "last", "first", "ratio"))
         pairs = zip(self.unknowns, self.updates, strict=True)
         sizes, widths, small = self._by_component()
-        whole = " + ".join(width for width, _ in widths)
+        total_width = " + ".join(width for width, _ in widths)
         end = [f"    {stop}", "    break"]
         return [
             *self._guard_lines(),
@@ -259,9 +259,9 @@ class LoopSource:
             f"{size} = {' + '.join(name for name, _ in sizes)}",
             f"if {small('')}:",
             *end,
-            # The first update sets the scale; one that is 2^16 times as large has diverged.
-            f"if turn == 0: {first} = {size} + {whole}",
-            f"if turn > 0 and {size} <= newton_half * ({whole}):",
+            # The first iteration sets the scale: an update 2^16 times as large has diverged.
+            f"if turn == 0: {first} = {size} + {total_width}",
+            f"if turn > 0 and {size} <= newton_half * ({total_width}):",
             f"    {ratio} = {size} / {last}",
             f"    if {size} >= {last} or {small(f' * {ratio} * {ratio}')}:",
             *(f"    {line}" for line in end),
@@ -272,8 +272,12 @@ class LoopSource:
     def _by_component(
         self,
     ) -> tuple[list[tuple[str, str]], list[tuple[str, str]], Callable[[str], str]]:
-        """Return, for p and for q, names and sums of the sizes of the updates and of the values
-        they are added to; and the condition that all sizes, times a factor, are small."""
+        """Return (sizes, widths, small).
+
+        `sizes` and `widths` have (name, formula) for each coordinate: the sum of |update|, and that
+        of |value| to which the updates are added. `small(factor)` is the condition that every size
+        times a factor is at most 2^−(bits + 1) of its width.
+        """
         sizes, widths = [], []
         for part, base in enumerate(dict.fromkeys(self.added_to)):
             members = [k for k, name in enumerate(self.added_to) if name == base]

@@ -1,8 +1,9 @@
-"""Matrices whose entries are operations of a program: products, systems, the forms of a step.
+"""Matrices whose entries are indices of a program: products, linear systems, and S of a step.
 
-With B = JᵀΩJ, det J = Pf B/Pf Ω exactly. Of B = Ω + S it is a sum over the sets of degrees of
-freedom, det J − 1 = Σ Pf(S of the pairs in I), I ≠ ∅, in which nothing cancels against 1: with one
-pair it is S(p_i, q_i).
+S = JᵀΩJ − Ω for the Jacobian J of a step. With B = JᵀΩJ = Ω + S, det J = Pf B/Pf Ω exactly, where
+Pf is the Pfaffian. It follows that det J − 1 = Σ Pf(S_I) over all sets I ≠ ∅ of degrees of freedom,
+where S_I has the rows and columns p_i, q_i with i in I. In this sum nothing cancels against 1; for
+I = {i} the Pfaffian is S(p_i, q_i).
 """
 
 from collections.abc import Callable, Sequence
@@ -12,25 +13,25 @@ from itertools import combinations
 from verify.kernels.step.operations import StepProgram
 
 Place = tuple[int, int]  # a row and a column
-Matrix = list[list[int]]  # of indices
-Entry = Callable[[int, int], int]  # the index of the entry ab, a < b
+Matrix = list[list[int]]  # the indices of its entries
+Entry = Callable[[int, int], int]  # (a, b) with a < b → the index of that entry
 
 
 def multiply(program: StepProgram, x: Matrix, y: Matrix) -> Matrix:
     """Return the product of two matrices."""
     columns, rows = list(zip(*y, strict=True)), []
     for row in x:
-        line = []
+        product_row = []
         for column in columns:
             total = program.constant(Fraction(0))
             for a, b in zip(row, column, strict=True):
                 total = program.add(total, program.mul(a, b))
-            line.append(total)
-        rows.append(line)
+            product_row.append(total)
+        rows.append(product_row)
     return rows
 
 
-def less_one(program: StepProgram, rows: Sequence[Sequence[int]]) -> list[list[int]]:
+def one_minus(program: StepProgram, rows: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return 1 − the matrix of these rows."""
     matrix = [list(map(program.neg, row)) for row in rows]
     for k, row in enumerate(matrix):
@@ -41,22 +42,22 @@ def less_one(program: StepProgram, rows: Sequence[Sequence[int]]) -> list[list[i
 def eliminate(
     program: StepProgram, matrix: Sequence[Sequence[int]], right: Sequence[Sequence[int]]
 ) -> tuple[list[list[int]], list[int]]:
-    """Solve linear systems whose matrix is 1 + O(h), one for each column of the right side. Return
-    the solutions row by row, and the pivots that are not 1.
+    """Solve linear systems with the same matrix 1 + O(h), one for each column of the right side.
 
-    Without pivoting: at h = 0 the diagonal is 1.
+    Return the solutions row by row, and the pivots that are not 1 (or the constant 1 alone). No
+    rows are exchanged, since at h = 0 the diagonal is 1.
     """
     add, mul, neg = program.add, program.mul, program.neg
     size, rows = len(matrix), [[*row, *more] for row, more in zip(matrix, right, strict=True)]
     width = len(rows[0])
-    pivots, over = [], []
+    pivots, inverses = [], []
     for k in range(size):
         pivot = rows[k][k]
         one = program.is_constant(pivot, 1)
         pivots += [] if one else [pivot]
-        over.append(pivot if one else program.inverse(pivot))
+        inverses.append(pivot if one else program.inverse(pivot))
         for i in range(k + 1, size):
-            factor = mul(rows[i][k], over[k])
+            factor = mul(rows[i][k], inverses[k])
             for j in range(k + 1, width):
                 rows[i][j] = add(rows[i][j], neg(mul(factor, rows[k][j])))
     solutions: list[list[int]] = [[] for _ in range(size)]
@@ -65,7 +66,7 @@ def eliminate(
             total = rows[k][size + column]
             for j in range(k + 1, size):
                 total = add(total, neg(mul(rows[k][j], solutions[j][column])))
-            solutions[k].append(mul(total, over[k]))
+            solutions[k].append(mul(total, inverses[k]))
     return solutions, pivots or [program.constant(Fraction(1))]
 
 
@@ -77,7 +78,7 @@ def defect_from_slopes(program: StepProgram, slopes: Matrix) -> dict[Place, int]
         total = program.constant(Fraction(0))
         for i in range(n):
             u, v = slopes[i], slopes[n + i]
-            # du∧dq + dp∧dv at ab, and du∧dv
+            # With u, v the increments of p, q: first the entry ab of du∧dq + dp∧dv, then du∧dv.
             if b == n + i:
                 total = add(total, u[a])
             if a == n + i:
@@ -94,10 +95,10 @@ def defect_from_slopes(program: StepProgram, slopes: Matrix) -> dict[Place, int]
 
 
 class Pfaffian:
-    """The Pfaffians of the principal submatrices of one matrix, by expansion; each is computed
-    once.
+    """The Pfaffians of principal submatrices of one matrix, by expansion; each is computed once.
 
-    `share`: the index of a factor of all entries but one of each product; None for 1.
+    `share`: the index of a factor s: a product of k entries is multiplied by s^(k − 1). None means
+    s = 1.
     """
 
     def __init__(self, program: StepProgram, entry: Entry, share: int | None = None) -> None:
@@ -105,7 +106,8 @@ class Pfaffian:
         self._cache: dict[tuple[int, ...], int] = {}
 
     def of_rows(self, rows: Sequence[int]) -> int:
-        """Return the Pfaffian of the rows and columns in this order."""
+        """Return the index of the Pfaffian of the submatrix of these rows and columns, in this
+        order."""
         key = tuple(rows)
         if key not in self._cache:
             self._cache[key] = self._expand(key)
@@ -113,15 +115,15 @@ class Pfaffian:
 
     def _expand(self, rows: tuple[int, ...]) -> int:
         # Expansion along the first row: Pf A = Σ_k (−1)^k a_1k Pf(A without rows 1 and k).
-        program, (first, *others) = self.program, rows
+        program, (first_row, *others) = self.program, rows
         if len(others) == 1:
-            return self._entry(first, others[0])
+            return self._entry(first_row, others[0])
         total = program.quotient(0, 1)
         for k, other in enumerate(others):
             minor = self.of_rows([*others[:k], *others[k + 1 :]])
             if self.share is not None:
                 minor = program.mul(self.share, minor)
-            term = program.mul(self._entry(first, other), minor)
+            term = program.mul(self._entry(first_row, other), minor)
             total = program.add(total, program.neg(term) if k % 2 else term)
         return total
 
@@ -129,9 +131,9 @@ class Pfaffian:
         return self.entry(a, b) if a < b else self.program.neg(self.entry(b, a))
 
 
-def change_of_volume(pfaffian: Pfaffian, degrees: int, first: int) -> int:
-    """Return det J − 1 from S as the matrix; `first`: Σ S(p_i, q_i), which is summed elsewhere."""
-    total = first
+def change_of_volume(pfaffian: Pfaffian, degrees: int, pair_sum: int) -> int:
+    """Return the index of det J − 1, for the Pfaffians of S and the index of Σ S(p_i, q_i)."""
+    total = pair_sum
     for count in range(2, degrees + 1):
         for chosen in combinations(range(degrees), count):
             rows = [row for i in chosen for row in (i, degrees + i)]

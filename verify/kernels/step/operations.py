@@ -1,11 +1,12 @@
-"""A straight-line program: operations, none of them twice, and loops that solve equations.
+"""A straight-line program: operations without repetitions, and loops that solve equations.
 
-Operations are hash-consed, so a subexpression that occurs twice is computed once. An operation on
-the step size, the parameters and constants alone is `static`, and is computed once before the loop.
-Constants stay exact rationals; an arithmetic converts them at the edge.
+An operation with the same arguments as an earlier one gets the earlier one's index, so a common
+subexpression is computed once. An operation on the step size, the parameters and constants alone is
+`static`, and is computed once, before the loop. Constants are exact rationals; an arithmetic
+converts them when a kernel is written.
 
-A way to write a sum is tried in the program itself, and cut off again; the best one is put back. So
-a trial costs only the operations that it adds, however long the program is.
+To try a form of a sum, it is written into the program and cut off again; the best one is put back.
+So a trial costs only the operations that it adds, however long the program is.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,16 +18,16 @@ from verify.functions.function import Function
 from verify.kernels.step import kinds
 from verify.kernels.step.kinds import Op
 
-_SPECIAL = (0, 1, -1)  # constants that products and sums are shorter with
+_SIMPLIFYING = (0, 1, -1)  # a product or a sum with one of these constants needs no operation
 
 
 @dataclass(frozen=True)
 class NewtonLoop:
     """Newton's method: x_k ← x_k − `updates`[k] in `inner`, from the outer program's `starts`[k].
 
-    `determinants`: of the blocks of the matrix that it divides by. `added_to`[k] is the value that
-    x_k is a change of, which gives it its scale. In `inner` the inputs `u<number>_<k>` are the
-    unknowns x_k, and `v<index>` are values of the outer program.
+    `determinants`: factors, in `inner`, whose product is the determinant of the matrix of the
+    linear system. `added_to`[k]: the value to which x_k is added, which sets its scale. In `inner`
+    the inputs `u<number>_<k>` are the unknowns x_k, and `v<index>` are values of the outer program.
     """
 
     number: int
@@ -37,11 +38,11 @@ class NewtonLoop:
     determinants: tuple[int, ...]
 
 
-Key = tuple[object, ...]  # what a result is of: its operation, and indices, numbers or texts
+Key = tuple[object, ...]  # identifies a result: its operation, with indices, numbers or texts
 
 
 class Mark(NamedTuple):
-    """The length of a program at some moment: operations, keys, loops, and their cost."""
+    """The length of a program at some moment: its operations, keys and loops; and its cost."""
 
     ops: int
     keys: int
@@ -62,9 +63,10 @@ class Tail(NamedTuple):
 
 
 class StepProgram:
-    """A growing list of operations; each method returns the index of its result.
+    """A growing list of operations; a method that adds one returns the index of its result.
 
-    `cost`: what the loop's operations cost; a product is worth several sums.
+    `cost`: that of all operations in the loop over steps. `depth`: for each value the latency of
+    the longest path to it.
     """
 
     def __init__(self) -> None:
@@ -73,10 +75,10 @@ class StepProgram:
         self.static: list[bool] = []
         self.depth: list[int] = []
         self.cost = 0
-        # Results by their operation, as numbers and texts, since the hash of a Fraction takes long.
+        # Keys have numerators and denominators, since the hash of a Fraction takes long.
         self._index_of: dict[Key, int] = {}
-        self._keys: list[Key] = []  # of `_index_of`, in their order
-        self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
+        self._keys: list[Key] = []  # the keys of `_index_of` in their order
+        self._special: dict[int, int] = {}  # index → value of the constants 0, 1 and −1
         self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
     def copy(self) -> "StepProgram":
@@ -89,7 +91,7 @@ class StepProgram:
     # -- trials -------------------------------------------------------------------------------
 
     def mark(self) -> Mark:
-        """Return the present end, for `cut`."""
+        """Return the mark of the present end, for `cut`."""
         return Mark(len(self.ops), len(self._keys), len(self.loops), self.cost)
 
     def cut(self, mark: Mark) -> Tail:
@@ -117,11 +119,11 @@ class StepProgram:
         self.loops += tail.loops
         self.cost = tail.cost
         self._special.update(
-            (i, x) for x in _SPECIAL if (i := self._index_of.get((x, 1))) is not None
+            (i, x) for x in _SIMPLIFYING if (i := self._index_of.get((x, 1))) is not None
         )
 
     def live(self, roots: Sequence[int]) -> list[int]:
-        """Return the operations that the roots need, in their order."""
+        """Return the indices of the operations that the roots need, in their order."""
         length, live = self._live.get(key := tuple(roots), (-1, []))
         if length != len(self.ops):
             live = self._find_live(roots)
@@ -149,8 +151,6 @@ class StepProgram:
             self.depth.append(0)
             return index
         depth = self.depth
-        # The depth is the latency of the longest path to the result: what a pipelined processor
-        # waits for.
         depth.append(max([depth[a] for a in op.args], default=0) + op.latency)
         self.cost += op.cost
         return index
@@ -182,14 +182,14 @@ class StepProgram:
         return self.quotient(value.numerator, value.denominator)
 
     def quotient(self, numerator: int, denominator: int) -> int:
-        """Return the constant that is their quotient, in lowest terms with a positive
+        """Return the constant numerator/denominator, which must be in lowest terms with a positive
         denominator."""
         key = numerator, denominator
         existing = self._index_of.get(key)
         if existing is not None:
             return existing
         index = self._new(key, kinds.RationalConstant(Fraction(numerator, denominator)), True)
-        if denominator == 1 and numerator in _SPECIAL:
+        if denominator == 1 and numerator in _SIMPLIFYING:
             self._special[index] = numerator
         return index
 
@@ -207,7 +207,7 @@ class StepProgram:
         return self._unary(("root", degree, x), kinds.Root((x,), degree))
 
     def call(self, function: Function, x: int) -> int:
-        """Return the function of x."""
+        """Return the function's value at x."""
         return self._unary((function.name, x), kinds.Call((x,), function))
 
     def _unary(self, key: Key, op: kinds.Unary) -> int:
@@ -215,18 +215,18 @@ class StepProgram:
         return self._new(key, op, self.static[op.args[0]]) if existing is None else existing
 
     def solve(self, loop: NewtonLoop, more_read: Sequence[int]) -> list[int]:
-        """Return the values that a loop computes; `more_read`: the other values of this program
-        that it reads."""
+        """Return the unknowns that a loop computes. `more_read`: the values of this program that
+        the loop reads, besides its `starts` and `added_to`."""
         self.loops.append(loop)
-        read = (*loop.starts, *loop.added_to, *more_read)
-        solving = self._new(("loop", loop.number), kinds.Solving(read, loop.number), False)
+        args = (*loop.starts, *loop.added_to, *more_read)
+        solving = self._new(("loop", loop.number), kinds.Solving(args, loop.number), False)
         return [
             self._new(("solved", solving, k), kinds.Solution((solving,), k), False)
             for k in range(len(loop.starts))
         ]
 
     def is_constant(self, x: int, value: int) -> bool:
-        """Return True if that is the index of this integer."""
+        """Return True if x is the index of the integer constant `value`."""
         return self._index_of.get((value, 1)) == x
 
     def neg(self, x: int) -> int:
@@ -238,7 +238,7 @@ class StepProgram:
         return self._unary(("neg", x), kinds.Negation((x,)))
 
     # Identities with 0, ±1 and signs are applied when an operation is added, so that equal values
-    # get one index whichever way they were written.
+    # get one index in whatever form they are written.
     def add(self, x: int, y: int) -> int:
         special, ops = self._special, self.ops
         if x in special and special[x] == 0:
@@ -256,8 +256,8 @@ class StepProgram:
         special, ops, static = self._special, self.ops, self.static
         if x in special:
             return self._multiple(special[x], x, y)
-        # Signs are moved outwards, where they are merged with sums or cancel; static ones cost
-        # nothing.
+        # Signs are moved outwards, where they merge with sums or cancel; static ones cost nothing,
+        # and stay.
         if ops[x].kind == "neg" and not static[x]:
             return self.neg(self.mul(ops[x].args[0], y))
         if y in special:
@@ -271,7 +271,7 @@ class StepProgram:
         )
 
     def _multiple(self, n: int, constant: int, x: int) -> int:
-        """Return n x for n = 0, 1, −1, which is a constant of that index."""
+        """Return n x for n = 0, 1, −1; `constant` is the index of the constant n."""
         if n == 0:
             return constant
         return x if n == 1 else self.neg(x)

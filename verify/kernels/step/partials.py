@@ -1,8 +1,7 @@
-"""Partial derivatives of a program's values with respect to its inputs, written into the same
-program.
+"""Partial derivatives of a program's values by its inputs, written into the same program.
 
-Forwards, operation by operation. A polynomial that is nested by Horner's rule has its inner sums
-as derivatives, and no operation is written twice, so that they cost little beside the values.
+They are taken forwards, operation by operation. The derivatives of a polynomial in Horner's form
+are its inner sums, and no operation is written twice: so derivatives cost little beside the values.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,11 +12,11 @@ from verify.functions import by_name
 from verify.kernels.step.kinds import Call, Op
 from verify.kernels.step.operations import StepProgram
 
-Gradient = Mapping[int, int]  # by input; zeros are left out
+Gradient = Mapping[int, int]  # input → derivative, both as indices; derivatives 0 are left out
 
 
 class Partials:
-    """∂/∂x of a program's values, for inputs x given by their indices."""
+    """The derivatives ∂/∂x of a program's values, for inputs x, which are indices."""
 
     def __init__(self, program: StepProgram, inputs: Sequence[int]) -> None:
         self.program, self.inputs = program, tuple(inputs)
@@ -26,7 +25,7 @@ class Partials:
     def gradient(self, index: int) -> list[int]:
         """Return the indices of ∂/∂x of a value, input by input.
 
-        Raises NotImplementedError of a value for which equations are solved.
+        Raises NotImplementedError if the value depends on a solution of equations.
         """
         for live_index in self.program.live([index]):
             if live_index not in self._gradients:
@@ -38,8 +37,7 @@ class Partials:
         if index in self.inputs:
             return {index: self.program.constant(Fraction(1))}
         op = self.program.ops[index]
-        # Values that do not depend on the inputs have an empty gradient, which keeps the program
-        # short.
+        # A value that does not depend on the inputs has an empty gradient: the program stays short.
         if self.program.static[index] or op.kind == "input":
             return {}
         parts = [self._gradients[a] for a in op.args]
@@ -50,7 +48,7 @@ class Partials:
         return {x: self._chain(x, parts, slopes) for x in dict.fromkeys(varying)}
 
     def _chain(self, x: int, parts: Sequence[Gradient], slopes: Sequence[int]) -> int:
-        """Return Σ slope · ∂argument/∂x."""
+        """Return the index of Σ slope · ∂argument/∂x."""
         program = self.program
         total = program.constant(Fraction(0))
         for part, slope in zip(parts, slopes, strict=True):
@@ -59,7 +57,7 @@ class Partials:
         return total
 
     def _slopes(self, index: int, op: Op) -> tuple[int, ...]:
-        """Return the derivatives of the operation by each of its arguments."""
+        """Return the indices of the derivatives of the operation by each of its arguments."""
         program = self.program
         one = program.constant(Fraction(1))
         match op.kind:
@@ -76,19 +74,19 @@ class Partials:
             case "root":
                 return (self._of_root(index, op.degree),)
             case "call":
-                return (slope_of(program, op, index),)
+                return (write_derivative(program, op, index),)
         return ()
 
     def _of_root(self, index: int, degree: int) -> int:
-        """Return y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
+        """Return the index of the derivative of y = x^(1/n), as 1/(n y^(n − 1))."""
         program = self.program
-        # Written in y, as x may be an inner value that nothing else needs.
+        # It is not y/(n x), since x may be a value that nothing else needs in the loop.
         below = program.mul(program.quotient(degree, 1), program.power(index, degree - 1))
         return program.inverse(below)
 
 
-def slope_of(program: StepProgram, call: Call, index: int) -> int:
-    """Return the index of f'(x), where y = f(x) is the value of that index."""
+def write_derivative(program: StepProgram, call: Call, index: int) -> int:
+    """Return the index of f′(x), where y = f(x) is the call's value, of index `index`."""
 
     def apply(name: str, x: Operand) -> Operand:
         if name == "inverse":
@@ -105,7 +103,7 @@ def slope_of(program: StepProgram, call: Call, index: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Operand:
-    """A program's value, by its index, with + − * that are written into the program."""
+    """A program's value, by its index, with operators + − * that write into the program."""
 
     program: StepProgram
     index: int

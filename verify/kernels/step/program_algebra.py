@@ -1,11 +1,11 @@
 """A scheme's step written into a kernel's program, without its derivatives by z or with them.
 
-See `verify.schemes.steps.step_algebra`; a value is an operation of a program. Equations are solved
-by Newton's method, with derivatives taken in the loop's own program.
+The algebras are step algebras (see `verify.schemes.steps.step_algebra`) whose values are operations
+of a program. Equations are solved by Newton's method, with derivatives in the loop's program.
 
-Derivatives are taken forwards, operation by operation of the step. Those of f at a stage are
-elements of H's ring, evaluated together with f itself, so that they share its parts; if
-equations are solved, Z = R(Z, z), they are ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
+Derivatives are taken forwards, operation by operation of the step. Those of the field f at a stage
+are elements of H's ring; they are evaluated together with f, and share its parts. The solution of
+Z = R(Z, z) has the derivative ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from typing import Any
 from verify.algebra.ring import Poly
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.kernels.step.evaluator import Evaluator, increments
-from verify.kernels.step.matrix_operations import eliminate, less_one
+from verify.kernels.step.matrix_operations import eliminate, one_minus
 from verify.kernels.step.operations import NewtonLoop, StepProgram
 from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
-Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]
+Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]  # (algebra, Z) → R(Z, z)
 
 
 @dataclass(frozen=True, eq=False)
 class ProgramValue:
-    """An operation, by its index, of the program that it belongs to."""
+    """A value: a program, and the index of an operation of it."""
 
     program: StepProgram
     index: int
@@ -35,18 +35,18 @@ class ProgramValue:
 
 @dataclass(frozen=True, eq=False)
 class Dual(ProgramValue):
-    """A value with its derivatives, as indices in the program, and the algebra that it belongs
-    to."""
+    """A value with its derivatives, as indices in the program, and the algebra that wrote it."""
 
     gradient: tuple[int, ...]
     algebra: TangentAlgebra
 
 
 class ProgramAlgebra(StepAlgebra[ProgramValue]):
-    """Writes into `program`; `inputs` has the indices of h, the coordinates, t, the parameters.
+    """A step algebra that writes into `program`.
 
-    `outer`: the algebra whose values a loop's program takes over. `points`: the coordinates of all
-    points at which f is evaluated.
+    `inputs`: the indices of h, the coordinates, t and the parameters by name. `outer`, of a loop's
+    program: the algebra of the program around it, whose values become inputs here. `points`: the
+    indices of the coordinates of all points at which f is evaluated.
     """
 
     def __init__(
@@ -84,7 +84,8 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
     def shear(
         self, changes: Sequence[ProgramValue], size: Number, clock: Number, places: Sequence[int]
     ) -> list[ProgramValue]:
-        """Write the shear with h and the size in the coefficients of f, which are computed once."""
+        """Write the shear with the factors h and `size` in the coefficients of f, which are static:
+        they are computed once."""
         evaluator, result = self.evaluator_at(changes, clock), list(changes)
         for k, move in zip(places, self.field.shears(size, places), strict=True):
             total = self.program.add(self.local_index(changes[k]), evaluator.evaluate(move))
@@ -92,14 +93,14 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
         return result
 
     def evaluator_at(self, changes: Sequence[ProgramValue], clock: Number) -> Evaluator:
-        """Return an evaluator of ring elements at z + changes, and at t + clock h."""
+        """Return an evaluator of ring elements at z + changes and at t + clock·h."""
         program, inputs = self.program, dict(self.inputs)
         for name, change in zip(self.field.names, changes, strict=True):
             inputs[name] = program.add(inputs[name], self.local_index(change))
             self.points.add(inputs[name])
         if self.field.timed:
-            late = program.mul(inputs["h"], self._coefficient(clock))
-            inputs["t"] = program.add(inputs["t"], late)
+            delay = program.mul(inputs["h"], self._coefficient(clock))
+            inputs["t"] = program.add(inputs["t"], delay)
         return Evaluator(program, self.field.ring, inputs, self.pipelined)
 
     def move(
@@ -116,7 +117,7 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
         return self.value(program.add(self.local_index(x), part))
 
     def solve(self, count: int, right: Right) -> list[ProgramValue]:
-        """Solve by Newton's method, starting from the right side at 0."""
+        """Solve by Newton's method, from the initial value R(0, z)."""
         outer, number, inner = self.program, len(self.program.loops), StepProgram()
         starts = [self.local_index(x) for x in right(self, [self.nothing] * count)]
         unknowns = [inner.input(f"u{number}_{k}", static=False) for k in range(count)]
@@ -124,11 +125,11 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
         tangents = TangentAlgebra(algebra, count)
         sides = tangents.read_right_side(right, [algebra.value(x) for x in unknowns])
         residuals = [inner.add(x, inner.neg(y.index)) for x, y in zip(unknowns, sides, strict=True)]
-        # F(Z) = Z − R(Z) has the derivative 1 − ∂R/∂Z, by which the residual is divided.
-        matrix = less_one(inner, [side.gradient for side in sides])
+        # F(Z) = Z − R(Z, z) has the derivative 1 − ∂R/∂Z: a linear system gives the update.
+        matrix = one_minus(inner, [side.gradient for side in sides])
         updates, pivots = eliminate(inner, matrix, [[x] for x in residuals])
         names = self.field.names
-        # Unknown k is a change of coordinate k mod 2n, whose size decides which update is small.
+        # Unknown k is a change of coordinate k mod 2n, whose size tells whether an update is small.
         scale = [self.inputs[names[k % self.size]] for k in range(count)]
         steps = [x for (x,) in updates]
         loop = NewtonLoop(number, inner, *map(tuple, (steps, starts, scale, pivots)))
@@ -140,11 +141,12 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
         return ProgramValue(self.program, index)
 
     def local_index(self, x: ProgramValue) -> int:
-        """Return a value's index; one of the outer program becomes an input of the loop."""
+        """Return the index of a value; a value of the outer program becomes an input of this
+        one."""
         return x.index if x.program is self.program else self._take_over(x.index)
 
     def _take_over(self, index: int) -> int:
-        assert self.outer is not None  # noqa: S101 - there are values of two programs at most
+        assert self.outer is not None  # noqa: S101 - a value is of this program or of the outer one
         outer_program, program = self.outer.program, self.program
         op = outer_program.ops[index]
         if op.kind == "const":
@@ -162,9 +164,12 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
 
 
 class TangentAlgebra(StepAlgebra[Dual]):
-    """The algebra with derivatives, by the coordinates first, if `outer` is none and they move,
-    then by `unknowns` that are seeds. In a loop's program all values but the unknowns are held
-    constant."""
+    """The step algebra of values with derivatives: first by the coordinates, then by unknowns.
+
+    `coordinates`: the number of coordinates by which derivatives are taken; 0 in a loop's program,
+    where all values but the unknowns are constant. `outer`: the algebra whose derivatives come
+    first instead. `unknowns`: the number of unknowns.
+    """
 
     def __init__(
         self,
@@ -175,8 +180,8 @@ class TangentAlgebra(StepAlgebra[Dual]):
     ) -> None:
         self.plain, self.outer, self.field = plain, outer, plain.field
         self.coordinates: int = outer.coordinates if outer else coordinates
-        self.first: int = outer.width if outer else coordinates  # of the unknowns
-        self.width: int = self.first + unknowns
+        self.first_unknown: int = outer.width if outer else coordinates
+        self.width: int = self.first_unknown + unknowns
         self.program = plain.program
         self.zero, self.one = self.program.quotient(0, 1), self.program.quotient(1, 1)
 
@@ -189,11 +194,11 @@ class TangentAlgebra(StepAlgebra[Dual]):
         return self.plain.size
 
     def read_right_side(self, right: Right, unknowns: Sequence[ProgramValue]) -> list[Dual]:
-        """Return the right side at these unknowns, with its derivatives by them too."""
+        """Return the right side at these unknowns, with its derivatives by them as well."""
         seeds = []
         for k, x in enumerate(unknowns):
             row = [self.zero] * self.width
-            row[self.first + k] = self.one
+            row[self.first_unknown + k] = self.one
             seeds.append(self._dual(x.index, tuple(row)))
         return [self._fit(x) for x in right(self, seeds)]
 
@@ -245,11 +250,10 @@ class TangentAlgebra(StepAlgebra[Dual]):
         return self._dual(index, self._add(dual_x.gradient, scaled))
 
     def solve(self, count: int, right: Right) -> list[Dual]:
-        # Implicit differentiation of Z = R(Z, z) at the solution: no derivative of the iteration is
-        # needed.
+        # Z = R(Z, z) is differentiated implicitly, at the solution: the iteration is not.
         values, program = self.plain.solve(count, right), self.program
         sides = TangentAlgebra(self.plain, count, self).read_right_side(right, values)
-        matrix = less_one(program, [side.gradient[self.width :] for side in sides])
+        matrix = one_minus(program, [side.gradient[self.width :] for side in sides])
         rows, _ = eliminate(program, matrix, [side.gradient[: self.width] for side in sides])
         return [self._dual(x.index, tuple(row)) for x, row in zip(values, rows, strict=True)]
 
@@ -259,8 +263,8 @@ class TangentAlgebra(StepAlgebra[Dual]):
         return Dual(self.program, index, gradient, self)
 
     def _fit(self, x: ProgramValue) -> Dual:
-        """Return the value with as many derivatives as there are here; those of values from
-        elsewhere are 0."""
+        """Return the value with `width` derivatives: its own, those of the outer algebra followed
+        by 0, or 0 for a value without derivatives."""
         if isinstance(x, Dual) and x.algebra is self:
             return x
         gradient = x.gradient if isinstance(x, Dual) and x.algebra is self.outer else ()
@@ -271,14 +275,14 @@ class TangentAlgebra(StepAlgebra[Dual]):
     def _evaluate_dual(
         self, evaluator: Evaluator, x: Poly, index: int, changes: Sequence[Dual]
     ) -> Dual:
-        """Return an element at z + changes, with its derivatives."""
+        """Return the dual of a ring element at z + changes; `index`: its value."""
         row = [evaluator.evaluate(y) for y in self.field.gradient(x)]
         return self._dual(index, self._chain(row, changes))
 
     def _chain(self, row: Sequence[int], changes: Sequence[Dual]) -> tuple[int, ...]:
-        """Return Σ_j row_j ∂(z_j + change_j)."""
+        """Return the derivatives Σ_j row_j ∂(z_j + change_j)."""
         add, mul = self.program.add, self.program.mul
-        # z + change has the derivative 1 + ∂change: the row itself is the part of the 1.
+        # ∂(z_j + change_j) = 1 + ∂change_j by z_j: the row itself is the contribution of the 1.
         total = [*row[: self.coordinates], *[self.zero] * (self.width - self.coordinates)]
         for slope, change in zip(row, changes, strict=True):
             total = [add(x, mul(slope, y)) for x, y in zip(total, change.gradient, strict=True)]

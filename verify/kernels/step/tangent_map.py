@@ -1,12 +1,16 @@
 """The tangent map carried along an orbit in float64: how a small error of the state grows.
 
 M₀ = 1 and M_{k+1} = A_k M_k, with A_k the Jacobian of one step at the orbit's k-th state. A_k − 1
-is evaluated at the state rounded to float64, and its product with M is added in twice the precision
-(Knuth's two-sum), so that one step's error is about h·2⁻⁵³ of M. `verify.runs.a_posteriori_bound`
-bounds the orbit's error by the sums here: `growth` Σ ‖M‖², `growth_top` its greatest term,
-`det_low` the least det M, and the box that the orbit has visited; the kernel adds `least` and
-`most`, between which Λ has been. In n degrees of freedom det M is Pf(MᵀΩM)/Pf Ω, and `form_top` is
-the greatest sum of squares of MᵀΩM's entries above the diagonal.
+is evaluated at the state rounded to float64, and its product with M is added to M in twice the
+precision (Knuth's two-sum), so that the error of one step is about h·2⁻⁵³ of M.
+
+`verify.runs.a_posteriori_bound` bounds the orbit's error by these numbers:
+
+- `growth`: Σ ‖M‖²; `growth_top`: its greatest term;
+- `det_low`: the least det M; in n degrees of freedom det M is computed as Pf(MᵀΩM)/Pf Ω;
+- `form_top`, for n > 1: the greatest sum of squares of the entries of MᵀΩM above the diagonal;
+- `p_low`, `p_high`, …: the box that the orbit has visited;
+- `least`, `most`, which the kernel adds: bounds of Λ so far.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -16,16 +20,17 @@ from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.operations import StepProgram
 
-_SUMS = ("growth", "growth_top", "det_low", "form_top", "least", "most")
+_NOTED_SUMS = ("growth", "growth_top", "det_low", "form_top", "least", "most")
 
 
 def names_of(coordinates: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the noted numbers of the tangent map, if it is carried."""
-    return (*_SUMS, *(f"{name}_{end}" for name in coordinates for end in ("low", "high")))
+    """Return the names of the numbers that are noted if the tangent map is carried."""
+    return (*_NOTED_SUMS, *(f"{name}_{end}" for name in coordinates for end in ("low", "high")))
 
 
 def initial_values(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
-    """Return names and initial values, all float64; a coordinate's name is its initial value."""
+    """Return (name, initial value) of the carried numbers, which are float64; the name of a
+    coordinate stands for its initial value."""
     size = len(coordinates)
     entries = [row + column for row in coordinates for column in coordinates]
     values: list[tuple[str, int | str]] = [
@@ -40,20 +45,22 @@ def initial_values(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
 
 
 class Tangent:
-    """A − 1 of the whole step, row by row, in a float64 program of its own."""
+    """A − 1 of the step, row by row, in a float64 program beside the step's main program."""
 
     def __init__(self, main: StepProgram) -> None:
         self.main, self.program = main, StepProgram()
-        self.main_values: list[int] = []  # values of the main program that are read
-        self.change: list[int] = []
+        self.main_values: list[int] = []  # indices of the values of `main` that are read
+        self.change: list[int] = []  # indices of the entries of A − 1 in `program`
 
     def take(self, change: Sequence[int], points: Collection[int] = ()) -> None:
-        """Take over the change as values of the main program: its sums and products are computed
-        again in float64; all others are read, and so are the coordinates of the points where f is
-        evaluated."""
+        """Write A − 1, given by its indices in the main program, into the float64 program.
+
+        Sums and products are computed again in float64. All other values are read from the main
+        program, and so are the values `points`: the coordinates of the points where f is evaluated.
+        """
         index_of: dict[int, int] = {}
         program = self.program
-        again: dict[str, Callable[..., int]] = {
+        float_operations: dict[str, Callable[..., int]] = {
             "add": program.add, "mul": program.mul, "neg": program.neg,
             "sub": lambda x, y: program.add(x, program.neg(y)),
         }  # fmt: skip
@@ -63,14 +70,18 @@ class Tangent:
             op = self.main.ops[index]
             if op.kind == "const":
                 index_of[index] = program.constant(op.value)
-            elif index not in points and op.kind in again and all(a in index_of for a in op.args):
-                index_of[index] = again[op.kind](*(index_of[a] for a in op.args))
+            elif (
+                index not in points
+                and op.kind in float_operations
+                and all(a in index_of for a in op.args)
+            ):
+                index_of[index] = float_operations[op.kind](*(index_of[a] for a in op.args))
             else:
                 index_of[index] = self._read(index)
         self.change = [index_of[index] for index in change]
-        read = (program.ops[place] for place in program.live(self.change))
-        names = {op.name for op in read if op.kind == "input"}
-        self.main_values = [place for place in self.main_values if _input_name(place) in names]
+        live_ops = (program.ops[index] for index in program.live(self.change))
+        names = {op.name for op in live_ops if op.kind == "input"}
+        self.main_values = [index for index in self.main_values if _input_name(index) in names]
 
     def _read(self, index: int) -> int:
         """Return a value of the main program as an input of this one."""
@@ -87,7 +98,8 @@ def _input_name(index: int) -> str:
 
 
 def statements(change: Sequence[str], coordinates: Sequence[str] = PLANE) -> list[str]:
-    """Return M ← M + (A − 1) M and the sums; `change` names the entries of A − 1, row by row."""
+    """Return the statements of M ← M + (A − 1) M and of the noted numbers; `change`: the names of
+    the entries of A − 1, row by row."""
     size = len(coordinates)
     lines = [
         *(f"f{n} = approx({n})" for n in coordinates),
@@ -123,29 +135,30 @@ def _determinant(p: str, q: str) -> str:
 
 
 def _form(coordinates: Sequence[str]) -> list[str]:
-    """Return MᵀΩM and its Pfaffian, by expansion along the first row that is left."""
+    """Return the statements of MᵀΩM, of its Pfaffian (by expansion along the first row), and of
+    `form_top`."""
     n, lines = len(coordinates) // 2, []
     pairs = list(zip(coordinates[:n], coordinates[n:], strict=True))
-    above = list(combinations(coordinates, 2))
-    for a, b in above:
+    above_diagonal = list(combinations(coordinates, 2))
+    for a, b in above_diagonal:
         parts = (f"m_{p}{a} * m_{q}{b} - m_{q}{a} * m_{p}{b}" for p, q in pairs)
         lines.append(f"f_form_{a}{b} = {' + '.join(parts)}")
     minors: dict[tuple[str, ...], str] = {}
 
     def minor(rows: tuple[str, ...]) -> str:
-        first, *others = rows
+        row, *others = rows
         if len(others) == 1:
-            ascending = (first, others[0]) in above
-            return f"f_form_{first}{others[0]}" if ascending else f"(-f_form_{others[0]}{first})"
+            ascending = (row, others[0]) in above_diagonal
+            return f"f_form_{row}{others[0]}" if ascending else f"(-f_form_{others[0]}{row})"
         if rows not in minors:
             total = ""
             for k, other in enumerate(others):
-                term = f"{minor((first, other))} * {minor((*others[:k], *others[k + 1 :]))}"
+                term = f"{minor((row, other))} * {minor((*others[:k], *others[k + 1 :]))}"
                 total += f" {'-' if k % 2 else '+'} {term}" if total else term
             minors[rows] = f"f_minor{len(minors)}"
             lines.append(f"{minors[rows]} = {total}")
         return minors[rows]
 
     lines.append(f"f_det = {minor(tuple(name for pair in pairs for name in pair))}")
-    squares = (f"f_form_{a}{b} * f_form_{a}{b}" for a, b in above)
+    squares = (f"f_form_{a}{b} * f_form_{a}{b}" for a, b in above_diagonal)
     return [*lines, f"f_all = {' + '.join(squares)}", "if f_all > form_top: form_top = f_all"]

@@ -1,4 +1,4 @@
-"""Axes that several figures share: by decades, step sizes, one exponent for all; panels of them."""
+"""Axes that figures share, with ticks by decades, step sizes or times; and rows of panels."""
 
 from collections.abc import Sequence
 from math import floor, isfinite, log10
@@ -18,15 +18,15 @@ MOST_STYLES = len(SERIES)
 LabelledAbscissa = tuple[float, str]
 """An abscissa, and the label beside the line there."""
 
-# The room between tick labels and that of a letter, as parts of the axis.
-_LABEL_GAP, _LETTER = 0.03, 0.025
+# The gap between tick labels and the width of a letter, as parts of the axis.
+_LABEL_GAP, _LETTER_WIDTH = 0.03, 0.025
 # The height of a line of text, as a part of the axes.
-_LINE = 0.075
+_LINE_HEIGHT = 0.075
 _GRID_STYLE = {"color": INK, "alpha": 0.15, "linewidth": 0.6}
 
 
 def line_style(index: int, count: int) -> dict[str, Any]:
-    """Return colour, marker and dash of a line; more than `MOST_STYLES` lines look alike."""
+    """Return colour, marker and dash of a line of `count`; beyond `MOST_STYLES` all look alike."""
     if count > MOST_STYLES:
         return {"color": SERIES[0], "linewidth": 0.8, "alpha": 0.5}
     style: dict[str, Any] = {
@@ -59,9 +59,9 @@ def set_decade_ticks(axis: Any, *, max_ticks: int = 7) -> None:
 
 
 class _Decades(MaxNLocator):
-    """A locator of whole exponents; if these are too few, of 1, 2, 5 or 1 … 9 times powers.
+    """A locator of whole exponents, of which at least two must be visible.
 
-    If fewer than two of those are visible too, it takes round numbers in between.
+    If they are not, it takes 1, 2 and 5 times powers of ten, else 1 … 9 times, else round numbers.
     """
 
     def tick_values(self, vmin: float, vmax: float) -> Any:
@@ -73,12 +73,14 @@ class _Decades(MaxNLocator):
             if len(visible) > 1:
                 return super().tick_values(vmin, vmax) if len(mantissas) == 1 else visible
         n = floor(low)
-        between = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(10 ** (low - n), 10 ** (high - n))
-        return [n + log10(x) for x in between if x > 0]
+        round_numbers = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(
+            10 ** (low - n), 10 ** (high - n)
+        )
+        return [n + log10(x) for x in round_numbers if x > 0]
 
 
 def _power_of_ten(exponent: float, _: object) -> str:
-    """Return 10ⁿ as text, with a mantissa if there is one."""
+    """Return m·10ⁿ as text, without the mantissa m if it is 1."""
     # A tick may be a little below a whole exponent by rounding.
     n = floor(exponent + 1e-9)
     scale = f"10{superscript(n)}"
@@ -93,16 +95,16 @@ def set_whole_number_ticks(axis: Any) -> None:
 
 
 def set_step_size_axis(axes: Any, sizes: Sequence[str]) -> None:
-    """Set the step sizes as ticks of a logarithmic x axis, in units of a power of ten."""
+    """Set the step sizes as ticks of an x axis of logarithms, in units of a power of ten."""
     sizes_by_lg = sorted({lg(h): h for h in sizes}.items())
     unit = floor(sizes_by_lg[0][0] + 1e-9)
     low, high = sizes_by_lg[0][0], sizes_by_lg[-1][0]
     span = (high - low) or 1.0
     labels: list[tuple[float, str]] = []
-    # From right to left: the largest step size always has a label, others only where there is room.
+    # From right to left: the largest step size always has a label, another one if there is room.
     for tick, _ in reversed(sizes_by_lg):
         label = f"{float(10 ** (tick - unit)):.3g}"
-        if not labels or labels[-1][0] - tick > (_LABEL_GAP + _LETTER * len(label)) * span:
+        if not labels or labels[-1][0] - tick > (_LABEL_GAP + _LETTER_WIDTH * len(label)) * span:
             labels.append((tick, label))
     axes.xaxis.set_major_locator(FixedLocator([tick for tick, _ in reversed(labels)]))
     axes.xaxis.set_major_formatter(FixedFormatter([label for _, label in reversed(labels)]))
@@ -119,7 +121,7 @@ def set_time_axis(axes: Any, max_ticks: int = 5) -> None:
 
 
 def set_scaled_ticks(axis: Any, low: float, high: float) -> None:
-    """Set a few ticks, written x·10ⁿ with one exponent for all."""
+    """Set a few ticks, written as x·10ⁿ with the same n for all."""
     axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     size = max(abs(low), abs(high))
     # Numbers between 0.001 and 10,000 are readable without a power of ten.
@@ -141,22 +143,22 @@ def set_scaled_ticks(axis: Any, low: float, high: float) -> None:
 
 
 def mark_places(axes: Any, labels: Sequence[LabelledAbscissa], room: float) -> None:
-    """Draw a dashed vertical line at each x, its label on a row of its own above all points.
+    """Draw a dashed vertical line at each abscissa, its label in a row of its own above all points.
 
-    `labels`: from left to right, so that no line runs through another's label. `room`: the width of
+    `labels`: from left to right, so that no line crosses the label of another. `room`: the width of
     a label as a part of the axes' width.
     """
-    # The labels take the part `above` of the enlarged range: extra/(range + extra) = above.
+    # The range grows by a part x of itself with x/(1 + x) = label_share, where the labels stand.
     low, high = axes.get_ylim()
-    label_share = _LINE * (len(labels) + 0.5)
+    label_share = _LINE_HEIGHT * (len(labels) + 0.5)
     axes.set_ylim(low, high + (high - low) * label_share / (1 - label_share))
     left, right = axes.get_xlim()
     for row, (x, label) in enumerate(labels):
-        top = 1 - _LINE * row
-        axes.axvline(x, ymax=top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
+        label_top = 1 - _LINE_HEIGHT * row
+        axes.axvline(x, ymax=label_top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
         to_the_right = (right - x) / (right - left) > room
         axes.annotate(
-            label, (x, top), xycoords=axes.get_xaxis_transform(),
+            label, (x, label_top), xycoords=axes.get_xaxis_transform(),
             xytext=(4 if to_the_right else -4, 0), textcoords="offset points",
             ha="left" if to_the_right else "right", va="top", fontsize=11,
         )  # fmt: skip
@@ -170,8 +172,8 @@ def make_panels(
 ) -> tuple[Figure, Any]:
     """Return a figure with `count` panels in rows of `height`, and an array of all their axes.
 
-    Places that stay empty show no axes. `legend_height`: the height of the legend below the panels;
-    `shared`: True if all panels have the same axes.
+    Places without a panel show no axes. `legend_height`: the height of the legend below the panels;
+    `shared`: True if all panels have the same limits.
     """
     columns = min(count, in_a_row)
     rows = -(-count // columns)
@@ -182,21 +184,23 @@ def make_panels(
     return figure, panels
 
 
-def name_states(panels: Any, titles: Sequence[str], names: Sequence[str], room: float) -> None:
-    """Set the titles of the panels and the names of their coordinates, with round numbers."""
+def name_states(
+    panels: Any, titles: Sequence[str], coordinates: Sequence[str], room: float
+) -> None:
+    """Set the panels' titles, the names of their coordinates, round ticks and a grid."""
     for axes, title in zip(panels.flat, titles, strict=False):
         axes.set_title(title)
-        axes.set_xlabel(names[0])
+        axes.set_xlabel(coordinates[0])
         axes.margins(room)
         set_round_ticks(axes)
         axes.tick_params(labelbottom=True)
         draw_grid(axes, "both")
     for row in panels:
-        row[0].set_ylabel(names[1], rotation=0, labelpad=10)
+        row[0].set_ylabel(coordinates[1], rotation=0, labelpad=10)
 
 
 def name_marks(figure: Figure, panels: Any, ncols: int) -> None:
-    """Set one legend below all panels, with each mark once."""
+    """Set one legend below all panels, with one entry for each label."""
     handles = {
         label: handle
         for axes in panels.flat

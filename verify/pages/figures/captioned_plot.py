@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-_WIDTH = re.compile(r'viewBox="0 0 ([0-9.]+) ')
-# Widths in points up to which a picture takes half, or most, of the page.
+_SVG_WIDTH = re.compile(r'viewBox="0 0 ([0-9.]+) ')
+# A picture up to the first width, in points, takes half of the page; up to the second, most of it.
 _HALF_WIDTH, _MOST_WIDTH = 420, 640
 # Significant digits of a number in a caption.
 _MAX_DIGITS = 4
@@ -38,8 +38,8 @@ class Plot:
     @property
     def span(self) -> str:
         """The part of the page's width that it takes, by its width in points: half, most, full."""
-        width = _WIDTH.search(self.svg)
-        points = float(width[1]) if width else 0
+        match = _SVG_WIDTH.search(self.svg)
+        points = float(match[1]) if match else 0
         return "half" if points <= _HALF_WIDTH else "most" if points <= _MOST_WIDTH else "full"
 
 
@@ -48,7 +48,8 @@ def captioned_plot(
 ) -> Plot:
     """Draw the figure and return it with its caption.
 
-    The lead, as a sentence, stands above it and is its text alternative, unless `label` is another.
+    `lead`: a title without a stop; with a stop it is also the text alternative, unless `label` is
+    given.
     `name` prefixes every id in the SVG, so it must be unique on the page.
     """
     # matplotlib takes long to import, and is needed only if something is drawn.
@@ -62,7 +63,7 @@ def captioned_plot(
 
 
 def describe_runs(runs: Sequence[RunResult]) -> str:
-    """Return arithmetic, number of steps and origin of the error bounds in one sentence."""
+    """Return a sentence on the number system, the number of steps and the origin of the bounds."""
     steps = sorted({run.steps for run in runs})
     count = between(whole(steps[0]), whole(steps[-1]), " … ")
     systems = " and ".join(dict.fromkeys(map(name_arithmetic, runs)))
@@ -80,7 +81,7 @@ def name_arithmetic(result: RunResult | FlowImage) -> str:
 
 
 def known_digits(value: Value | None, *, strong: bool = False) -> Markup:
-    """Return the first of the known digits; if none is known, the bound."""
+    """Return a few of the known digits; if none is known, the bound; a dash for no value."""
     if value is None:
         return Markup("–")
     if Decimal(value.value) == 0 and value.bound != "0":
@@ -91,19 +92,19 @@ def known_digits(value: Value | None, *, strong: bool = False) -> Markup:
 
 def round_to_few_digits(text: str) -> str:
     """Return the number rounded to its first few digits."""
-    digits = sum(c.isdigit() for c in text.lower().partition("e")[0])
-    if not is_decimal(text) or digits <= _MAX_DIGITS or Decimal(text) == 0:
+    digit_count = sum(c.isdigit() for c in text.lower().partition("e")[0])
+    if not is_decimal(text) or digit_count <= _MAX_DIGITS or Decimal(text) == 0:
         return number(text)
     return number(f"{Decimal(text):.{_MAX_DIGITS - 1}e}")
 
 
 def round_crossover(step_size: str) -> str:
-    """Return a crossover to two digits, as it is interpolated between distant step sizes."""
+    """Return a crossover to two digits: it is interpolated, and no further digit is reliable."""
     return number(f"{Decimal(step_size):.1e}").replace(" ", NBSP)
 
 
 def lg(text: str) -> float:
-    """Return lg |value| of a decimal or a quotient that no float need hold; −∞ for 0."""
+    """Return lg |value| of a decimal or quotient, whatever its size; −∞ for 0."""
     if "/" in text:
         value = Fraction(text)
         return lg(str(abs(value.numerator))) - lg(str(value.denominator))

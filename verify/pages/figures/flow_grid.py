@@ -1,4 +1,4 @@
-"""A picture of regions carried by maps: panels of images in groups, sentences on what is seen."""
+"""A picture of regions carried by maps: groups of panels, and sentences on what is visible."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -16,15 +16,15 @@ from verify.scenes.results.regions import (
 )
 from verify.studies.regions.polyline import parse_points
 
-_MOST_IN_A_ROW = 6
-_MOST_COUNTS = 6
-# The images of at most so many maps are drawn in one panel.
-_WITH_OTHERS = 2
+_MAX_IN_A_ROW = 6
+_MAX_COUNTS = 6
+# The limit on maps if a map has one panel for all its images.
+_MAX_MAPS_TOGETHER = 2
 # An outline that is stretched more than this has lost its shape.
 _MAX_STRETCH = 3.0
-# An outline within so many widths of a line from another nearly hides it.
+# An outline within this number of line widths of another nearly hides it.
 _NEAR_WIDTHS = 2
-# A stretch is mentioned if the outline is at least so many times as long as before.
+# A stretch is mentioned if the outline is longer than before by at least this factor.
 _MIN_STRETCH = 1.5
 
 Curves = tuple[np.ndarray, ...]
@@ -36,7 +36,7 @@ class FlowPanel:
     """The images of a map with the number of steps of each.
 
     `missing_counts`: the numbers of steps without an image; `exact_curves`: the exact flow's image,
-    below the others; `colour_index`: the place of its colour in `SERIES`.
+    drawn below the others; `colour_index`: an index into `SERIES`.
     """
 
     name: str
@@ -48,7 +48,7 @@ class FlowPanel:
 
 @dataclass(frozen=True)
 class PanelGrid:
-    """Groups of panels, one for each number of steps in `counts`; or one group without a name."""
+    """Groups of panels, one for each heading in `counts`; if `counts` is empty, one group."""
 
     counts: tuple[str, ...]
     groups: tuple[tuple[FlowPanel, ...], ...]
@@ -65,7 +65,7 @@ class PanelGrid:
         group_size = len(self.groups[0])
         if not self.counts:
             return group_size
-        whole_groups = max(1, _MOST_IN_A_ROW // group_size)
+        whole_groups = max(1, _MAX_IN_A_ROW // group_size)
         return min(group_size * whole_groups, len(self.panels))
 
     @property
@@ -88,10 +88,10 @@ def grid_of(flow: FlowResult, plane: int | None = None) -> PanelGrid:
     if flow.plane is not None:
         return _grid_of_plane(flow, maps, plane or flow.plane)
     before = _curves(flow.before)
-    if len(maps) <= _WITH_OTHERS and _keeps_shape(flow, before):
+    if len(maps) <= _MAX_MAPS_TOGETHER and _keeps_shape(flow, before):
         together = tuple(
-            _panel([image for image in flow.images if image.map == name], look)
-            for look, name in enumerate(maps)
+            _panel([image for image in flow.images if image.map == name], colour_index)
+            for colour_index, name in enumerate(maps)
         )
         return PanelGrid((), (together,), before)
     return _grid_by_counts(flow, maps, before)
@@ -120,7 +120,7 @@ def _project_image(image: FlowImage, k: int) -> FlowImage:
 
 
 def _grid_by_counts(flow: FlowResult, maps: Sequence[str], before: Curves) -> PanelGrid:
-    """Return a group of panels for each number of steps."""
+    """Return a group of panels for each of a few numbers of steps, a panel for each scheme."""
     counts = _select_counts(sorted({image.steps for image in flow.images if image.outlines}))
     image_by_map = {(image.map, image.steps): image for image in flow.images}
     times = {image.steps: image.time for image in flow.images}
@@ -139,12 +139,12 @@ def _grid_by_counts(flow: FlowResult, maps: Sequence[str], before: Curves) -> Pa
 
 
 def _select_counts(counts: Sequence[int]) -> list[int]:
-    indices = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_COUNTS))
+    indices = np.linspace(0, len(counts) - 1, min(len(counts), _MAX_COUNTS))
     return [counts[round(index)] for index in indices]
 
 
 def _panel(
-    images: Sequence[FlowImage], look: int, exact_flow_image: FlowImage | None = None
+    images: Sequence[FlowImage], colour_index: int, exact_flow_image: FlowImage | None = None
 ) -> FlowPanel:
     exact_image = (
         exact_flow_image if exact_flow_image and exact_flow_image.map != images[0].map else None
@@ -154,7 +154,7 @@ def _panel(
         tuple((image.steps, _curves(image.outlines)) for image in images if image.outlines),
         tuple(image.steps for image in images if not image.outlines),
         _curves(exact_image.outlines) if exact_image else (),
-        look,
+        colour_index,
     )
 
 
@@ -190,9 +190,9 @@ def picture_sentences(flow: FlowResult, grid: PanelGrid, line_width: float) -> I
 
 
 def _describe_stretch(grid: PanelGrid) -> Iterator[str]:
-    """Yield how far the first map with images stretches; to the eye the others do the same."""
-    first = grid.panels[0]
-    panels = [panel for panel in grid.panels if panel.name == first.name]
+    """Yield how far the first map stretches the outline; the others look much the same."""
+    map_of_first_panel = grid.panels[0].name
+    panels = [panel for panel in grid.panels if panel.name == map_of_first_panel]
     images = [image for panel in panels for image in panel.images]
     if not images:
         return
@@ -201,20 +201,21 @@ def _describe_stretch(grid: PanelGrid) -> Iterator[str]:
     if stretch >= _MIN_STRETCH:
         factor = whole(round(stretch)) if stretch >= 10 else f"{stretch:.1f}"
         yield (
-            f"After N{IS}{whole(steps)} steps by {map_name(first.name)} the outline is "
+            f"After N{IS}{whole(steps)} steps by {map_name(map_of_first_panel)} the outline is "
             f"{factor} times as long as before."
         )
 
 
 def _compare_with_exact(flow: FlowResult, line_width: float) -> Iterator[str]:
     """Yield the maps whose images lie within a line's width of the exact ones, and the others."""
-    furthest: dict[str, Fraction] = {}
+    greatest_distances: dict[str, Fraction] = {}
     for image in flow.images:
         if image.distance is not None:
-            most = abs(Fraction(image.distance)) + Fraction(image.distance_error or 0)
-            furthest[image.map] = max(most, furthest.get(image.map, Fraction(0)))
-    near_maps = [name for name, most in furthest.items() if most < line_width]
-    far_maps = [name for name in furthest if name not in near_maps]
+            bound = abs(Fraction(image.distance)) + Fraction(image.distance_error or 0)
+            earlier = greatest_distances.get(image.map, Fraction(0))
+            greatest_distances[image.map] = max(bound, earlier)
+    near_maps = [name for name, bound in greatest_distances.items() if bound < line_width]
+    far_maps = [name for name in greatest_distances if name not in near_maps]
     if near_maps:
         yield f"All images by {join_and(near_maps)} lie within a line’s width of the exact ones."
     if far_maps:
@@ -225,7 +226,7 @@ def _compare_with_exact(flow: FlowResult, line_width: float) -> Iterator[str]:
 
 
 def _describe_hidden_outline(grid: PanelGrid, line_width: float) -> Iterator[str]:
-    """Yield the numbers of steps whose image hides the outline before."""
+    """Yield the numbers of steps whose image hides the outline of the region before."""
     hiding_counts = {
         steps
         for panel in grid.panels
@@ -240,23 +241,25 @@ def _describe_hidden_outline(grid: PanelGrid, line_width: float) -> Iterator[str
 def _lies_upon(curve: np.ndarray, other_curve: np.ndarray, width: float) -> bool:
     """Return True if two closed polylines (n, 2) lie within that width of each other.
 
-    The corners alone are compared. Most pairs are decided by their boxes; the exact distance is
-    not used, since it takes long to compile for a page.
+    The corners of each are compared with the segments of the other. The exact Hausdorff distance is
+    not used, as its code takes long to compile.
     """
-    # Boxes that differ by the width decide at once; else all corners are compared.
-    ends = np.array([curve.min(0) - other_curve.min(0), curve.max(0) - other_curve.max(0)])
-    if np.abs(ends).max() >= width:
+    # Bounding boxes that differ by the width decide at once.
+    box_differences = np.array(
+        [curve.min(0) - other_curve.min(0), curve.max(0) - other_curve.max(0)]
+    )
+    if np.abs(box_differences).max() >= width:
         return False
     return max(_farthest(curve, other_curve), _farthest(other_curve, curve)) < width
 
 
 def _farthest(points: np.ndarray, curve: np.ndarray) -> float:
-    """Return the greatest distance of the points (n, 2) from the curve's segments."""
+    """Return the greatest distance of the points (n, 2) from the segments of the closed curve."""
     segments = np.roll(curve, -1, axis=0) - curve
     offsets = points[:, None] - curve[None]
-    # The denominator of a segment of no length must not be 0.
-    share = (offsets * segments).sum(-1) / np.maximum(
+    # The nearest point of a segment, as a part of its length; the length may be 0.
+    positions = (offsets * segments).sum(-1) / np.maximum(
         (segments * segments).sum(-1), np.finfo(float).tiny
     )
-    nearest = offsets - np.clip(share, 0, 1)[..., None] * segments
-    return float(np.hypot(nearest[..., 0], nearest[..., 1]).min(1).max())
+    differences = offsets - np.clip(positions, 0, 1)[..., None] * segments
+    return float(np.hypot(differences[..., 0], differences[..., 1]).min(1).max())

@@ -1,4 +1,4 @@
-"""A scene of the gallery: its orbit in the (q, p) plane, and Λ's parts over steps, as SVG."""
+"""Figures of a scene of the gallery: the orbit in the (q, p) plane, and the parts of Λ."""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite, log10, nan
@@ -19,16 +19,16 @@ from verify.pages.text.typography import NBSP, whole
 from verify.scenes.results.exploration import GalleryScene
 
 _HEIGHT = 330
-# Up to this ratio of the two extents both axes have one scale.
-_MOST_UNLIKE = 4
-# The least extent, as a part of the greatest |q| or |p|: an orbit's points have six digits.
+# The greatest ratio of the two extents for which both axes have one scale.
+_MAX_RATIO = 4
+# The least extent of an axis, as a part of the greatest |q| or |p|: the points have six digits.
 _LEAST_SPAN = 1e-3
 # The margin around the orbit, as a part of the axes.
-_ROOM = 0.08
+_MARGIN = 0.08
 # The width of the plane's frame divided by its height.
-_WIDE = 1.3
+_FRAME_RATIO = 1.3
 # The width of a mark's label, as a part of the axes.
-_LABEL_ROOM = 0.5
+_LABEL_WIDTH = 0.5
 
 
 # -- the orbit ------------------------------------------------------------------------------------
@@ -57,19 +57,19 @@ def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
 
 
 def _limits(q: Sequence[float], p: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the least and the greatest (q, p) with some room, also if nothing moves."""
+    """Return the least and the greatest (q, p), with a margin also if nothing moves."""
     least = _LEAST_SPAN * (max(map(abs, (*q, *p))) or 1.0)
-    spans = [(1 + 2 * _ROOM) * max(_span(values), least) for values in (q, p)]
-    if _has_one_scale(q, p):  # then one scale, in a frame that is filled
-        spans = [max(spans[0], _WIDE * spans[1]), max(spans[0] / _WIDE, spans[1])]
+    spans = [(1 + 2 * _MARGIN) * max(_span(values), least) for values in (q, p)]
+    if _has_one_scale(q, p):  # the limits then fill a frame of this ratio
+        spans = [max(spans[0], _FRAME_RATIO * spans[1]), max(spans[0] / _FRAME_RATIO, spans[1])]
     middles = [(min(values) + max(values)) / 2 for values in (q, p)]
     centred_spans = list(zip(middles, spans, strict=True))
     return tuple(m - s / 2 for m, s in centred_spans), tuple(m + s / 2 for m, s in centred_spans)
 
 
 def _has_one_scale(q: Sequence[float], p: Sequence[float]) -> bool:
-    """Return True if the orbit is legible with one scale for both axes."""
-    return max(_span(q), _span(p)) <= _MOST_UNLIKE * min(_span(q), _span(p))
+    """Return True if one scale suits both axes."""
+    return max(_span(q), _span(p)) <= _MAX_RATIO * min(_span(q), _span(p))
 
 
 def _span(values: Sequence[float]) -> float:
@@ -80,18 +80,18 @@ def _span(values: Sequence[float]) -> float:
 
 
 def draw_parts(scene: GalleryScene) -> Figure:
-    """Draw |truncation| and |rounding| on logarithmic axes, dashed lines where one overtakes."""
+    """Draw |truncation| and |rounding| on logarithmic axes, with dashed lines at `marks`."""
     series = scene.separation.plain.series if scene.separation.plain else ()
     figure, axes = canvas(_HEIGHT)
     x = [log10(point.steps) for point in series]
-    kinds = ("truncation", "truncation"), ("total", "rounding, the plain way")
-    for index, (part, label) in enumerate(kinds):
+    parts = ("truncation", "truncation"), ("total", "rounding, the plain way")
+    for index, (part, label) in enumerate(parts):
         y = [_finite_lg(getattr(point, part)) for point in series]
         if any(map(isfinite, y)):
-            axes.plot(x, y, label=label, **line_style(index, len(kinds)))
+            axes.plot(x, y, label=label, **line_style(index, len(parts)))
     axes.margins(x=0.05, y=0.06)
     if crossings := list(marks(scene)):
-        mark_places(axes, crossings, _LABEL_ROOM)
+        mark_places(axes, crossings, _LABEL_WIDTH)
     draw_grid(axes)
     set_decade_ticks(axes.xaxis, max_ticks=6)
     set_decade_ticks(axes.yaxis)
@@ -102,15 +102,15 @@ def draw_parts(scene: GalleryScene) -> Figure:
 
 
 def _finite_lg(size: str) -> float:
-    """Return lg of the size; nan, which breaks the line, for 0 or if no digit is known."""
+    """Return lg of the size; for 0, or if no digit is known, nan, which breaks the line."""
     logarithm = lg(size)
     return logarithm if isfinite(logarithm) else nan
 
 
 def marks(scene: GalleryScene) -> Iterator[LabelledAbscissa]:
-    """Yield the steps at which rounding overtakes truncation, and truncation rounding for good.
+    """Yield the steps after which rounding is the larger part, and after which truncation is again.
 
-    Rounding that is the larger one from the first checkpoint on has overtaken nothing.
+    If rounding is larger from the first checkpoint on, it has not overtaken truncation.
     """
     series = scene.separation.plain.series if scene.separation.plain else ()
     lost_after, resumes_at = scene.meaningless_after, scene.meaningful_from

@@ -20,16 +20,17 @@ def choose_place(
     occupied: list[Bbox],
     room: Bbox,
 ) -> Bbox:
-    """Return the label's box, which is not in `occupied` yet; `target`, `drawn`: points (n, 2).
+    """Return the box of a label of this size, without adding it to `occupied`.
 
-    It is the first of the places above, below and beside the image where least is drawn. A box that
-    leaves the room or overlaps another label is taken only if there is no other.
+    `target`: the points (n, 2) of the image; `obstacles`: those of everything that is drawn. Of the
+    places above, below and beside the image, the first with the fewest obstacles is taken. A box
+    that leaves the room or overlaps another label is taken only if there is no other.
     """
 
     def cost(box: Bbox) -> tuple[bool, int]:
         # False sorts before True, so that free places in the room come first.
-        bad = any(map(box.fully_overlaps, occupied)) or not lies_in(box, room)
-        return bad, box.count_contains(obstacles)
+        is_bad = any(map(box.fully_overlaps, occupied)) or not lies_in(box, room)
+        return is_bad, box.count_contains(obstacles)
 
     return min(_places(size, target, room), key=cost)
 
@@ -39,29 +40,31 @@ def sample_curves(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -
     # The samples are at most two points of the picture apart, so that no label fits between them.
     parts = []
     for curve in curves:
-        ends = np.vstack([curve, curve[:1]])
-        lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
+        closed = np.vstack([curve, curve[:1]])
+        lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
         arc_lengths = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
-        parts.append(np.column_stack([np.interp(arc_lengths, lengths, ends[:, i]) for i in (0, 1)]))
+        parts.append(
+            np.column_stack([np.interp(arc_lengths, lengths, closed[:, i]) for i in (0, 1)])
+        )
     points: np.ndarray = (np.concatenate(parts) - low) * scale
     return points
 
 
 def _places(size: tuple[float, float], target: np.ndarray, room: Bbox) -> Iterator[Bbox]:
-    """Yield the boxes to try, those towards the nearer edge of the room first."""
+    """Yield the boxes to try; above comes first for an image in the upper half, else below."""
     width, height = size
     (left, lower), (right, upper) = target.min(axis=0), target.max(axis=0)
     upper_row = upper + _LABEL_GAP
     lower_row = lower - _LABEL_GAP - height
     is_in_upper_half = (lower + upper) / 2 >= (room.y0 + room.y1) / 2
-    for line in _SHIFTS:
-        rows = upper_row + line * height, lower_row - line * height
+    for shift in _SHIFTS:
+        rows = upper_row + shift * height, lower_row - shift * height
         for y in rows if is_in_upper_half else rows[::-1]:
-            for part in _SHARES:
-                yield Bbox.from_bounds(left + part * (right - left) - width / 2, y, *size)
+            for share in _SHARES:
+                yield Bbox.from_bounds(left + share * (right - left) - width / 2, y, *size)
         for y in ((lower + upper - height) / 2 + k * (upper - lower) / 4 for k in (0, 1, -1)):
-            yield Bbox.from_bounds(right + _LABEL_GAP + line * height, y, *size)
-            yield Bbox.from_bounds(left - _LABEL_GAP - width - line * height, y, *size)
+            yield Bbox.from_bounds(right + _LABEL_GAP + shift * height, y, *size)
+            yield Bbox.from_bounds(left - _LABEL_GAP - width - shift * height, y, *size)
 
 
 def lies_in(box: Bbox, room: Bbox) -> bool:

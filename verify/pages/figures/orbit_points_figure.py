@@ -1,4 +1,4 @@
-"""Orbits as points, once in each period or on a surface, with a panel for each map, as SVG."""
+"""Orbits as points, once in each period or on a surface, with a panel for each map."""
 
 from collections.abc import Sequence
 from math import remainder, tau
@@ -17,27 +17,29 @@ from verify.scenes.results.orbit_points import (
 )
 
 _HEIGHT, _IN_A_ROW = 330, 3
-# The number of points of a figure, beyond which the file becomes large.
-_MOST_DRAWN = 6000
-_FAINT, _ROOM = 0.35, 0.05
-# The part of the points on either side that may lie far out, as those of escaping orbits do.
-_FEW = 0.02
-# Points farther out than this part of the others' extent, on either side, are not drawn.
-_WIDER = 0.5
+# The limit on points in a figure, for the size of the file.
+_MAX_POINTS = 6000
+# The opacity of unconfirmed points, and the margin as a part of the axes.
+_FAINT, _MARGIN = 0.35, 0.05
+# The part of the points on either side that the extent leaves out, as they may belong to escaping
+# orbits.
+_TAIL_SHARE = 0.02
+# Points outside the extent by more than this part of it are not drawn.
+_OUTSIDE_SHARE = 0.5
 Orbit = tuple[np.ndarray, int]
-"""The orbit's points (n, 2), and how many of the first are confirmed."""
+"""The orbit's points (n, 2), and the number of points, from the first on, that are confirmed."""
 
 
 def count_drawn_looks(
     sections: Sequence[MapSections] | Sequence[SchemeSections], starts: int = 0
 ) -> int:
-    """Return how many of the first looks at each orbit are drawn.
+    """Return the number of points of each orbit, from the first on, that are drawn.
 
-    `starts`: so many of an orbit's first points are initial states, not looks.
+    `starts`: the number of points, 0 or 1, that are initial states; they are not counted.
     """
     orbits = sum(len(section.orbits) for section in sections)
     points = (len(orbit.points) for section in sections for orbit in section.orbits)
-    return min(max(points, default=starts) - starts, max(1, _MOST_DRAWN // max(1, orbits)))
+    return min(max(points, default=starts) - starts, max(1, _MAX_POINTS // max(1, orbits)))
 
 
 def _first(points: Sequence[tuple[str, str]], count: int) -> np.ndarray:
@@ -47,22 +49,23 @@ def _first(points: Sequence[tuple[str, str]], count: int) -> np.ndarray:
 def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
     """Return each orbit's first points (n, 2) by map, and the number of points too far out.
 
-    Points of orbits that escape would hide the others: they are replaced by nan.
+    Points too far out, as those of escaping orbits, would shrink the others: they are replaced by
+    nan.
     """
     count = count_drawn_looks(result.sections)
     points = [[_first(o.points, count) for o in section.orbits] for section in result.sections]
     all_points = np.concatenate([x for points_of_map in points for x in points_of_map])
     if not len(all_points):
         return points, 0
-    low, high = np.quantile(all_points, (_FEW, 1 - _FEW), axis=0)
-    room = _WIDER * (high - low)
-    outside = 0
+    low, high = np.quantile(all_points, (_TAIL_SHARE, 1 - _TAIL_SHARE), axis=0)
+    margin = _OUTSIDE_SHARE * (high - low)
+    outside_count = 0
     for orbit in (x for points_of_map in points for x in points_of_map):
         # The quantiles are robust against a few escaping orbits, unlike the extremes.
-        is_outside = ((orbit < low - room) | (orbit > high + room)).any(axis=1)
-        outside += int(is_outside.sum())
+        is_outside = ((orbit < low - margin) | (orbit > high + margin)).any(axis=1)
+        outside_count += int(is_outside.sum())
         orbit[is_outside] = np.nan
-    return points, outside
+    return points, outside_count
 
 
 def draw_passes(result: PoincareResult) -> Figure:
@@ -92,9 +95,9 @@ def _draw(
 ) -> Figure:
     figure, panels = make_panels(len(maps), in_a_row=in_a_row, height=_HEIGHT)
     for axes, orbits in zip(panels.flat, maps.values(), strict=False):
-        for index, (points, count) in enumerate(orbits):
+        for index, (points, confirmed_count) in enumerate(orbits):
             style: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": size}
-            axes.plot(*points[count:].T, color=INK, alpha=_FAINT, **style)
-            axes.plot(*points[:count].T, color=SERIES[index % len(SERIES)], **style)
-    name_states(panels, list(maps), names, _ROOM)
+            axes.plot(*points[confirmed_count:].T, color=INK, alpha=_FAINT, **style)
+            axes.plot(*points[:confirmed_count].T, color=SERIES[index % len(SERIES)], **style)
+    name_states(panels, list(maps), names, _MARGIN)
     return figure

@@ -1,7 +1,7 @@
 """ΔJ and Λ along runs, as bands between the least and greatest value in a bucket, as inline SVG.
 
-det J is 1 + ΔJ and is not drawn again. A band that fills its panel tells nothing; of two runs of
-one orbit, the shorter one therefore shows ΔJ and the longer one Λ.
+A bucket is a number of consecutive steps. det J is 1 + ΔJ and is not drawn again. A band that fills
+its panel tells nothing; so of the runs of one orbit the shortest shows ΔJ, and the longest Λ.
 """
 
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ from verify.pages.figures.axes import draw_grid, make_panels, set_scaled_ticks, 
 from verify.pages.figures.sheet import INK, SERIES
 from verify.scenes.results.run import RunResult, SeriesPoint
 
-_MOST_BUCKETS = 600
+_MAX_BUCKETS = 600
 # The number of ticks on the axis of time.
-_TICKS = 3
+_TICK_COUNT = 3
 # A band that is on average thicker than this part of the panel looks like a rectangle.
-_MAX_FILLED = 0.5
+_MAX_FILLED_SHARE = 0.5
 # The height of a panel in points, and the panels in a row.
 _HEIGHT, _IN_A_ROW = 180, 4
 Quantity = Literal["delta_j", "lam"]
@@ -51,9 +51,11 @@ def is_filled(run: RunResult, quantity: Quantity) -> bool:
     """Return True if the band would fill its panel, as values that oscillate in each bucket do."""
     bands = [_band(getattr(point, quantity)) for point in merge_buckets(run.series)]
     if max(point.last - point.first for point in merge_buckets(run.series)) == 0:
-        return False
+        return False  # each bucket is a single step, and the band is a line
     reach = max(high for _, high in bands) - min(low for low, _ in bands)
-    return reach > 0 and sum(high - low for low, high in bands) > _MAX_FILLED * reach * len(bands)
+    return reach > 0 and sum(high - low for low, high in bands) > _MAX_FILLED_SHARE * reach * len(
+        bands
+    )
 
 
 def draw_over_time(rows: Sequence[OrbitPanels]) -> Figure:
@@ -77,7 +79,7 @@ def _panel(axes: Any, run: RunResult, quantity: Quantity, label: str) -> None:
     _draw_band(axes, edges, [_band(getattr(point, quantity)) for point in points], colour)
     axes.set_xlim(edges[0], edges[-1])
     axes.set_title(f"{name}, {label}" if label else name)
-    set_time_axis(axes, _TICKS)
+    set_time_axis(axes, _TICK_COUNT)
 
 
 def _band(ends: tuple[str, str]) -> Band:
@@ -85,23 +87,23 @@ def _band(ends: tuple[str, str]) -> Band:
 
 
 def _draw_band(axes: Any, edges: Sequence[float], band: Sequence[Band], colour: str) -> None:
-    low: Any = [b[0] for b in band]  # matplotlib's types know one number alone
+    low: Any = [b[0] for b in band]  # matplotlib's type allows a single number only
     high = [b[1] for b in band]
     fill = to_rgba(colour, 0.3)
-    # `Axes.stairs` looks at every vertex for limits, which are set here.
+    # `Axes.stairs` would examine every vertex for the limits, which are set below.
     axes.add_artist(
         StepPatch(high, edges, baseline=low, facecolor=fill, edgecolor=colour, linewidth=0.9)
     )
-    bottom, top = min(0.0, *low), max(0.0, *high)
-    room = 0.08 * (top - bottom) or 1.0
-    axes.set_ylim(bottom - room, top + room)
+    least, greatest = min(0.0, *low), max(0.0, *high)
+    margin = 0.08 * (greatest - least) or 1.0
+    axes.set_ylim(least - margin, greatest + margin)
     axes.axhline(0, color=INK, alpha=0.6, linewidth=0.7)
     draw_grid(axes)
-    set_scaled_ticks(axes.yaxis, bottom, top)
+    set_scaled_ticks(axes.yaxis, least, greatest)
 
 
-def merge_buckets(series: Sequence[SeriesPoint], most: int = _MOST_BUCKETS) -> list[SeriesPoint]:
-    """Return at most `most` buckets by merging neighbours, with the extremes of both."""
+def merge_buckets(series: Sequence[SeriesPoint], most: int = _MAX_BUCKETS) -> list[SeriesPoint]:
+    """Return at most `most` buckets, by merging neighbours, with the extremes of those merged."""
     size = -(-len(series) // most)
     if size <= 1:
         return list(series)

@@ -1,6 +1,6 @@
 """Empty figures in the page's style: colours, settings, sizes in points, and a legend.
 
-A notebook displays them by themselves.
+A notebook displays such a figure without pyplot.
 """
 
 import io
@@ -13,12 +13,12 @@ import matplotlib
 from matplotlib.figure import Figure
 
 INK = "#010203"
-# Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
+# The colours of Okabe and Ito, the pale ones darkened; style.css has those of the dark theme.
 SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a3ffc", "#5b6670")
 
 FONT_SIZE = 12  # points
-# The settings do not depend on the user's matplotlibrc, so that figures are the same everywhere.
-_RC: Any = {
+# These and matplotlib's defaults hold in place of the user's matplotlibrc.
+_SETTINGS: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "areaproof",
     "font.family": "DejaVu Sans",
@@ -44,21 +44,21 @@ _RC: Any = {
     "text.parse_math": False,  # a name or a source with dollar signs stays text
     "path.simplify": False,
 }
-# Inches; a point is the user unit of the SVG.
-_POINT = 1 / 72
+# Inches in a point, which is the user unit of the SVG.
+_INCHES_PER_POINT = 1 / 72
 # Widths in points of a figure in half of the page, and of one that spans it.
 NARROW, WIDE = 370, 900
-# Dots per inch: two for each point, so that it is sharp on a fine screen.
-_DOTS = 144
+# Two dots for each point, so that a figure is sharp on a fine screen.
+_DOTS_PER_INCH = 144
 Layout = Literal["constrained"] | None
 
 
 @contextmanager
 def page_style(**changes: object) -> Iterator[None]:
-    """Run a block under the page's matplotlib settings, which are restored afterwards."""
+    """Set the page's matplotlib settings within the context, and restore the previous ones."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC | changes)
+        matplotlib.rcParams.update(_SETTINGS | changes)
         yield
 
 
@@ -67,13 +67,13 @@ class Drawing(Figure):
 
     def _repr_png_(self) -> bytes:
         stream = io.BytesIO()
-        self.savefig(stream, format="png", dpi=_DOTS)
+        self.savefig(stream, format="png", dpi=_DOTS_PER_INCH)
         return stream.getvalue()
 
 
 def sheet(height: float, width: float = NARROW, layout: Layout = "constrained") -> Drawing:
     """Return an empty figure of this size in points."""
-    return Drawing(figsize=(width * _POINT, height * _POINT), layout=layout)
+    return Drawing(figsize=(width * _INCHES_PER_POINT, height * _INCHES_PER_POINT), layout=layout)
 
 
 def canvas(height: float) -> tuple[Drawing, Any]:
@@ -88,7 +88,7 @@ def canvas_on(ax: Any, height: float) -> tuple[Figure, Any]:
 
 
 def draw_legend(figure: Figure | None, axes: Any, ncols: int = 1) -> None:
-    """Set the legend of these axes below our figure; inside of them if `figure` is None."""
+    """Draw the legend of these axes below our figure, or inside the axes if `figure` is None."""
     if figure is None:
         axes.legend(handlelength=3.2)
     else:
@@ -102,7 +102,7 @@ def draw_legend(figure: Figure | None, axes: Any, ncols: int = 1) -> None:
 def restyle_for_caller(draw: Callable[[], Figure], ax: Any = None) -> Figure:
     """Draw the figure on white for a caller, with its titles moved to the vertical axes.
 
-    `ax`: the caller's axes that it is drawn on; nothing else of their figure is touched.
+    `ax`: the axes of the caller on which it is drawn; nothing else of their figure is changed.
     """
     with page_style(**{"figure.facecolor": "white", "axes.facecolor": "white"}):
         figure = draw()

@@ -1,7 +1,7 @@
-"""Figures over the step size: runs, printed tables, parts of Λ, the growth law, as inline SVG.
+"""Figures over the step size: runs, printed tables, parts of Λ, the growth law.
 
-Logarithms are taken in decimals before anything is drawn, so that 1e-500 has its place too; a zero,
-or a value of which no digit is known, has no place on a logarithmic axis and is left out.
+Logarithms are taken of decimals before anything is drawn, so that 1e-500 has a place too; a zero,
+or a value without a known digit, has none on a logarithmic axis and is left out.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,14 +32,14 @@ from verify.scenes.results.separation import WAYS, SeparationGrid
 # The heights in points of the figures, including the legend: of runs, of a printed table, of the
 # parts of Λ, and of the growth law.
 _RUNS_HEIGHT, _TABLE_HEIGHT, _PARTS_HEIGHT, _GROWTH_HEIGHT = 230, 350, 255, 260
-# The room for a guide's label, as parts of the axes.
+# The width and height of a guide's label, as parts of the axes.
 _LABEL_WIDTH, _LABEL_HEIGHT = 0.1, 0.08
-# Beyond so many lines in one panel, no line can be told from its neighbours.
+# The limit on lines in one panel: with more, a line cannot be told from its neighbours.
 MOST_LINES = 120
 # Decades between a slope guide and the nearest line, of runs and of the growth law.
 _GUIDE_GAP, _GROWTH_GUIDE_GAP = 0.35, 0.4
 # The width of a crossover's label, as a part of the axes.
-_CROSSOVER_ROOM = 0.45
+_CROSSOVER_WIDTH = 0.45
 # The lines of a separation: evaluation, part, label.
 _SEPARATED_LINES = (
     ("plain", "truncation", "truncation"),
@@ -59,22 +59,22 @@ class LogarithmicLine:
 # -- the data of a plot ---------------------------------------------------------------------------
 
 
-def lines(runs: Sequence[RunResult], above: str, below: str = "") -> list[LogarithmicLine]:
-    """Return a line for each initial value: lg |values[above]|, or lg of its ratio to `below`."""
+def lines(runs: Sequence[RunResult], quantity: str, divisor: str = "") -> list[LogarithmicLine]:
+    """Return a line for each initial value: lg |quantity|, or lg of its ratio to `divisor`."""
 
-    def size(run: RunResult, name: str) -> float:
+    def lg_of(run: RunResult, name: str) -> float:
         return lg(run.values[name].value) if run.values.get(name) else nan
 
-    def place(run: RunResult) -> float:
-        return size(run, above) - (size(run, below) if below else 0)
+    def height(run: RunResult) -> float:
+        return lg_of(run, quantity) - (lg_of(run, divisor) if divisor else 0)
 
-    return lines_of(runs, place)
+    return lines_of(runs, height)
 
 
 def lines_of(
     runs: Sequence[RunResult], height_of: Callable[[RunResult], float]
 ) -> list[LogarithmicLine]:
-    """Return a line for each initial value through the finite heights that `height_of` gives."""
+    """Return a line for each initial value with two finite heights or more, by `height_of`."""
     groups: dict[str, list[tuple[str, float]]] = {}
     for run in sorted(runs, key=lambda run: Fraction(run.step_size)):
         height = height_of(run)
@@ -167,19 +167,19 @@ def _frame(axes: Any, plotted: Sequence[LogarithmicLine]) -> None:
 
 
 def _guides(axes: Any, plotted: Sequence[LogarithmicLine], slopes: Sequence[int]) -> None:
-    """Draw straight lines of these slopes above all points, labelled where they lie apart."""
+    """Draw straight lines of these slopes above all points, labelled at the end where they part."""
     if not slopes:
         return
     points = [(lg(h), y) for line in plotted for h, y in line.points]
     ends = min(x for x, _ in points), max(x for x, _ in points)
     heights = {s: max(y - s * x for x, y in points) + _GUIDE_GAP for s in slopes}
     spreads = [
-        max(ends_heights) - min(ends_heights)
-        for ends_heights in ([c + s * x for s, c in heights.items()] for x in ends)
+        max(end_heights) - min(end_heights)
+        for end_heights in ([c + s * x for s, c in heights.items()] for x in ends)
     ]
-    left = spreads[0] >= spreads[1]
-    x = ends[0] if left else ends[1]
-    # A rising line must not cross its own label, nor the next line a label below it.
+    is_left = spreads[0] >= spreads[1]
+    x = ends[0] if is_left else ends[1]
+    # A rising line must not cross its own label, nor the next line the label below it.
     rise = _LABEL_WIDTH * (ends[1] - ends[0])
     height_of_all = max(y for _, y in points) - min(y for _, y in points) + 1
     room = _LABEL_HEIGHT * height_of_all + max(slopes) * rise
@@ -191,8 +191,8 @@ def _guides(axes: Any, plotted: Sequence[LogarithmicLine], slopes: Sequence[int]
         )
         axes.annotate(
             f"∝ {power_of_h(slope)}",
-            (x, base + slope * rise * left), xytext=(0, 2), textcoords="offset points",
-            ha="left" if left else "right", fontsize=11,
+            (x, base + slope * rise * is_left), xytext=(0, 2), textcoords="offset points",
+            ha="left" if is_left else "right", fontsize=11,
         )  # fmt: skip
         lowest = base + room
 
@@ -201,11 +201,11 @@ def _guides(axes: Any, plotted: Sequence[LogarithmicLine], slopes: Sequence[int]
 
 
 def lines_and_marks(grid: SeparationGrid) -> tuple[list[LogarithmicLine], list[LabelledAbscissa]]:
-    """Return the lines of two points or more, and the crossovers that exist."""
+    """Return the lines with two points or more, and the crossovers that exist."""
     lines = [_separated_line(grid, *line_keys) for line_keys in _SEPARATED_LINES]
     marks = [
-        (lg(crossover.step_size), f"h* ≈{NBSP}{round_crossover(crossover.step_size)}, {way_name}")
-        for way, way_name in WAYS.items()
+        (lg(crossover.step_size), f"h* ≈{NBSP}{round_crossover(crossover.step_size)}, {label}")
+        for way, label in WAYS.items()
         if (crossover := getattr(grid, way)).step_size is not None
     ]
     return [line for line in lines if len(line.points) > 1], marks
@@ -230,7 +230,7 @@ def draw_truncation_against_rounding(
     for index, line in enumerate(plotted):
         plot_line(axes, line, line_style(index, len(plotted)))
     axes.margins(x=0.05, y=0.06)
-    mark_places(axes, sorted(marks), _CROSSOVER_ROOM)
+    mark_places(axes, sorted(marks), _CROSSOVER_WIDTH)
     draw_grid(axes)
     set_decade_ticks(axes.xaxis, max_ticks=7)
     set_decade_ticks(axes.yaxis)
@@ -244,7 +244,7 @@ def draw_truncation_against_rounding(
 
 
 def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure:
-    """Draw (a) |Λ|, measured points on predicted lines, and (b) |relative difference| over h."""
+    """Draw (a) |Λ|, predicted lines and measured points, and (b) |relative difference| over h."""
     figure = sheet(_GROWTH_HEIGHT, WIDE)
     left, right = figure.subplots(1, 2)
     for index, orbit in enumerate(orbits):
@@ -278,7 +278,7 @@ def _plot_prediction(axes: Any, orbit: GrowthLawResult, style: dict[str, Any]) -
     plot_line(axes, _growth_line(orbit, "predicted"), {**style, "marker": None})
     points = {"color": style["color"], "marker": style.get("marker", "o"), "markersize": 5}
     plot_line(axes, _growth_line(orbit, "measured"), {**points, "linestyle": "none"})
-    # One entry an orbit: the mark on its line.
+    # The legend has one entry for each orbit, the mark on its line.
     line, marks = axes.lines[-2:]
     line.set_label("_")
     marks.set_label("_")

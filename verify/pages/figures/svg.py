@@ -1,10 +1,10 @@
 """Conversion of a matplotlib figure to SVG inside a page: fluid, themed by CSS, with unique ids.
 
-The figures are drawn in fixed colours that are replaced by CSS here: the ink by `currentColor`, the
-series colours by custom properties with the light theme's colour as their fallback.
+matplotlib draws in fixed colours, which are replaced by CSS here: the ink by `currentColor`, the
+colours of series by custom properties, with the light theme's colour as their fallback.
 
 matplotlib's settings do not suffice: `svg.id` names the root alone, and all other ids (`axes_1`)
-are the same in each figure; a style for `*` and paths of six decimals cannot be switched off.
+are the same in each figure; a style for `*` and paths with six decimals cannot be switched off.
 """
 
 import hashlib
@@ -25,10 +25,10 @@ from verify.pages.text.typography import NBSP
 
 _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
-# Decimals of a coordinate: a tenth of a point is less than a pixel.
-_PLACES = 1
-_UNITS: int = 10**_PLACES
-# The attributes that differ between equal marks; a group has all others.
+# The decimals of a coordinate: a tenth of a point is less than a pixel.
+_DECIMALS = 1
+_UNITS_PER_POINT: int = 10**_DECIMALS
+# The attributes that differ between equal marks; their group has all others.
 _PLACE_ATTRIBUTES = ("x", "y", "href")
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 _FONT_PROPERTIES = {
@@ -59,7 +59,7 @@ def render_svg(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Compute the layout here, since `savefig` would draw the whole figure once more for it."""
+    """Compute the layout, for which `savefig` would draw the whole figure a second time."""
     engine = figure.get_layout_engine()
     if engine is not None:
         FigureCanvasSVG(figure)  # its renderer measures the texts
@@ -68,23 +68,23 @@ def _lay_out(figure: Figure) -> None:
 
 
 def _printable(text: str) -> str:
-    """Replace control characters, which XML does not allow; a number's own blanks stay."""
+    """Replace characters that are not printable, which XML may not allow, but no-break spaces."""
     return "".join(
         c if c.isprintable() or c in ("\n", NBSP) else "\N{REPLACEMENT CHARACTER}" for c in text
     )
 
 
 def _inline(root: Any, name: str, label: str) -> Markup:
-    _drop(root)
+    _drop_superfluous(root)
     for attribute in ("width", "height", "version"):
         root.attrib.pop(attribute)
     used_ids: set[str] = set()
-    # Ids are prefixed by a short hash, since a figure may have thousands of marks.
-    name = f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"  # short: of thousands of marks
+    # The prefix of ids is a short hash, as a figure may have thousands of marks.
+    prefix = f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"
     for element in root.iter():
         element.tag = element.tag.removeprefix(f"{{{_SVG}}}")
         element.text, element.tail = _blank_to_none(element.text), _blank_to_none(element.tail)
-        _tidy(element, name, used_ids)
+        _tidy(element, prefix, used_ids)
     for element in root.iter():
         if element.get("id", "") not in used_ids:
             element.attrib.pop("id", None)
@@ -99,19 +99,19 @@ def _inline(root: Any, name: str, label: str) -> Markup:
     return Markup(ElementTree.tostring(root, encoding="unicode"))  # noqa: S704 - serialised XML
 
 
-def _drop(root: Any) -> None:
+def _drop_superfluous(root: Any) -> None:
     """Remove metadata, global styles (which would affect the whole page) and invisible paths."""
     for parent in list(root.iter()):
         for child in list(parent):
             tag = child.tag.removeprefix(f"{{{_SVG}}}")
-            invisible = tag == "path" and child.get("style") == "fill: none"
-            if tag in ("metadata", "style") or invisible:
+            is_invisible = tag == "path" and child.get("style") == "fill: none"
+            if tag in ("metadata", "style") or is_invisible:
                 parent.remove(child)
 
 
 def _unwrap(root: Any) -> None:
-    """Replace groups without attributes by their content, from the leaves upwards."""
-    # From the leaves upwards, since a group may be empty only after its children are unwrapped.
+    """Replace groups without attributes, and empty definitions, by their content."""
+    # From the leaves upwards, as an element may become empty when its children are unwrapped.
     for parent in reversed(list(root.iter())):
         for index, child in reversed(list(enumerate(parent))):
             if (child.tag == "g" and not child.attrib) or (child.tag == "defs" and not len(child)):
@@ -122,10 +122,10 @@ def _group_marks(root: Any) -> None:
     """Group consecutive equal marks, so that their common attributes are written once."""
     for parent in list(root.iter()):
         children: list[Any] = []
-        for look, alike in groupby(list(parent), key=_look):
-            marks = list(alike)
-            if look is not None and len(marks) > 1:
-                group = ElementTree.Element("g", dict(look))
+        for common, equal_marks in groupby(list(parent), key=_common_attributes):
+            marks = list(equal_marks)
+            if common is not None and len(marks) > 1:
+                group = ElementTree.Element("g", dict(common))
                 for mark in marks:
                     mark.attrib = {k: mark.attrib[k] for k in _PLACE_ATTRIBUTES if k in mark.attrib}
                 group.extend(marks)
@@ -134,7 +134,7 @@ def _group_marks(root: Any) -> None:
         parent[:] = children
 
 
-def _look(element: Any) -> tuple[tuple[str, str], ...] | None:
+def _common_attributes(element: Any) -> tuple[tuple[str, str], ...] | None:
     """Return the attributes of a mark except its place; None if the element is no mark."""
     if element.tag != "use":
         return None
@@ -145,17 +145,17 @@ def _blank_to_none(text: str | None) -> str | None:
     return text if text and text.strip() else None
 
 
-def _tidy(element: Any, name: str, used_ids: set[str]) -> None:
-    """Give the element a unique id, short coordinates, themed colours and the page's fonts."""
+def _tidy(element: Any, prefix: str, used_ids: set[str]) -> None:
+    """Give the element a unique id, short coordinates, themed colours and no fonts of its own."""
     attributes = element.attrib
     if "id" in attributes:
-        attributes["id"] = f"{name}-{attributes['id']}"
+        attributes["id"] = f"{prefix}-{attributes['id']}"
     if _HREF in attributes:
-        target = f"{name}-{attributes.pop(_HREF).removeprefix('#')}"
+        target = f"{prefix}-{attributes.pop(_HREF).removeprefix('#')}"
         attributes["href"] = f"#{target}"
         used_ids.add(target)
     if "clip-path" in attributes:
-        target = f"{name}-{attributes['clip-path'][len('url(#') : -1]}"
+        target = f"{prefix}-{attributes['clip-path'][len('url(#') : -1]}"
         attributes["clip-path"] = f"url(#{target})"
         used_ids.add(target)
     if "d" in attributes:
@@ -177,7 +177,7 @@ def _set_style(element: Any) -> None:
     pairs = (part.partition(":") for part in element.attrib.pop("style").split(";"))
     style = {key.strip(): text.strip() for key, _, text in pairs}
     properties = {k: _apply_theme(v) for k, v in style.items() if k not in _FONT_PROPERTIES}
-    # The join of such thin strokes cannot be seen, and would be repeated for every mark.
+    # The join of such thin strokes is not visible, and would be repeated for every mark.
     if element.tag in ("path", "use"):
         properties.pop("stroke-linejoin", None)
     for key, text in properties.items():
@@ -197,50 +197,49 @@ def _apply_theme(text: str) -> str:
 
 
 def _round_decimal(text: str) -> str:
-    digits = f"{float(text):.{_PLACES}f}".rstrip("0").rstrip(".")
+    digits = f"{float(text):.{_DECIMALS}f}".rstrip("0").rstrip(".")
     return "0" if digits == "-0" else digits
 
 
 def _short_path(path: str) -> str:
     """Return the path with rounded coordinates, relative straight steps, and no empty steps.
 
-    The places are rounded, not the steps between them, so that no errors accumulate.
+    Points are rounded, and rounded points subtracted, so that no errors accumulate.
     """
-    out: list[str] = []
+    commands: list[str] = []
     x = y = 0
-    start = [0, 0]  # where `z` leads back to
+    start = [0, 0]  # the point to which `z` leads back
     for command, arguments in re.findall(r"([MLCQz])([^MLCQz]*)", path):
-        # Rounded places are subtracted, not rounded differences: the errors then do not add up.
-        numbers = [_units(n) for n in _NUMBER.findall(arguments)]
+        numbers = [_to_units(n) for n in _NUMBER.findall(arguments)]
         if command == "L":
-            out.append(_straight(numbers[0] - x, numbers[1] - y))
+            commands.append(_format_straight(numbers[0] - x, numbers[1] - y))
         else:
-            out.append(command + _join_numbers(numbers))
+            commands.append(command + _join_numbers(numbers))
         x, y = numbers[-2:] or start
         if command == "M":
             start = [x, y]
-    return "".join(out)
+    return "".join(commands)
 
 
-def _units(text: str) -> int:
+def _to_units(text: str) -> int:
     """Return a coordinate in units of the last decimal that is written."""
-    return round(float(text) * _UNITS)
+    return round(float(text) * _UNITS_PER_POINT)
 
 
-def _straight(right: int, down: int) -> str:
+def _format_straight(right: int, down: int) -> str:
     if not right:
-        return f"v{_decimal(down)}" if down else ""
-    return f"l{_join_numbers([right, down])}" if down else f"h{_decimal(right)}"
+        return f"v{_format_units(down)}" if down else ""
+    return f"l{_join_numbers([right, down])}" if down else f"h{_format_units(right)}"
 
 
 def _join_numbers(numbers: Sequence[int]) -> str:
     """Join numbers by spaces, except before a minus sign, which separates as well."""
-    return " ".join(_decimal(n) for n in numbers).replace(" -", "-")
+    return " ".join(_format_units(n) for n in numbers).replace(" -", "-")
 
 
-def _decimal(units: int) -> str:
-    integer_part, part = divmod(abs(units), _UNITS)
-    digits = f".{part:0{_PLACES}d}".rstrip("0").rstrip(".")
+def _format_units(units: int) -> str:
+    integer_part, part = divmod(abs(units), _UNITS_PER_POINT)
+    digits = f".{part:0{_DECIMALS}d}".rstrip("0").rstrip(".")
     text = f"{integer_part or ''}{digits}" or "0"
     return f"-{text}" if units < 0 else text
 
@@ -255,11 +254,11 @@ def document(figures: Sequence[Markup]) -> str:
         height=f"{height:g}pt", style='font-family: "DejaVu Sans", Verdana, sans-serif',
     )  # fmt: skip
     ElementTree.SubElement(root, "rect", width="100%", height="100%", fill="#fff")
-    top = 0.0
+    y = 0.0
     for box, (w, h) in zip(boxes, sizes, strict=True):
-        box.set("y", f"{top:g}")
+        box.set("y", f"{y:g}")
         box.set("width", f"{w:g}")
         box.set("height", f"{h:g}")
         root.append(box)
-        top += h
+        y += h
     return ElementTree.tostring(root, encoding="unicode") + "\n"

@@ -1,8 +1,8 @@
 """Error and |Λ| against run time and step size, digits against run time, as inline SVG.
 
-Full marks are limited by truncation, hollow ones by rounding; a cross at the upper edge is a run
-that failed; grey dots are the rounding part of each error. A line has its name beside it, where
-there is room.
+A full mark is limited by truncation, a hollow one by rounding; a cross at the upper edge is a run
+that failed; grey dots are the rounding part of each error. A line has its name beside it, if there
+is room.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,28 +26,30 @@ from verify.pages.figures.axes import (
 from verify.pages.figures.label_place import lies_in
 from verify.pages.figures.sheet import INK, SERIES, WIDE, sheet
 
-_WIDTH = 400
-_PANEL, _LEGEND_ROW, _IN_A_ROW = 200, 17, 2
-_SIZE = 5.5
-# Markers without a face, since a peer's marks are neither full nor hollow.
+# In points: the width of a figure of one panel; the heights of a panel and of a row of the legend.
+_SINGLE_WIDTH, _PANEL_HEIGHT, _LEGEND_ROW_HEIGHT = 400, 200, 17
+_ENTRIES_PER_COLUMN = 2  # those of the legend below each column of panels
+_MARKER_SIZE = 5.5
+# Markers without a face, as the marks of a peer are neither full nor hollow.
 _PEER_MARKERS = ("1", "2", "3", "4")
-_LABEL = 10
+_LABEL_SIZE = 10
+# The offsets in points to try for a name beside its mark.
 _OFFSETS = (
     (6, 3), (6, -11), (-6, 3), (-6, -11), (0, 8), (0, -16), (8, -4), (-8, -4), (10, 12), (-10, 12),
     (10, -20), (-10, -20),
 )  # fmt: skip
-# Decades: a greater error or Λ says nothing about the orbit, and would flatten the others.
-_TOP = 4
-# Pixels between the places of a line that a label must not cover.
+# The greatest visible lg: a greater error says nothing about the orbit, and would flatten others.
+_MAX_LG = 4
+# The distance in pixels between the points of a line that a label must not cover.
 _PIXEL_GAP = 5
 _Box = tuple[float, float, float, float]  # x0, y0, x1, y1
 
 
 @dataclass(frozen=True)
 class WorkMark:
-    """A point by its finite logarithms: of the abscissa and of the ordinate.
+    """A point by the finite logarithms of its abscissa and its ordinate.
 
-    `is_full`: limited by truncation. A failed run has no `y`.
+    `is_full`: True if truncation limits it. `y` is None for a failed run.
     """
 
     x: float
@@ -59,8 +61,8 @@ class WorkMark:
 class DrawnLine:
     """A line of marks.
 
-    `label`: its entry in the legend, which is that of the first panel. `style_index`: the
-    number of its style, the same in every figure; peers have styles of their own.
+    `label`: its entry in the legend, if it is in the first panel. `style_index`: the number of its
+    style, the same in all panels; peers have styles of their own.
     """
 
     name: str
@@ -82,7 +84,7 @@ class WorkPanel:
 
     def is_beyond(self, mark: WorkMark) -> bool:
         """Return True if the value lies above the visible range."""
-        return self.is_logarithmic and mark.y is not None and mark.y > _TOP
+        return self.is_logarithmic and mark.y is not None and mark.y > _MAX_LG
 
 
 def draw_panels(panels: Sequence[WorkPanel], quantity: str = "") -> Figure:
@@ -93,9 +95,9 @@ def draw_panels(panels: Sequence[WorkPanel], quantity: str = "") -> Figure:
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
     entries = _entries(panels)
-    legend_rows = -(-len(entries) // (_IN_A_ROW * columns))
-    width = WIDE if columns > 1 else _WIDTH
-    figure = sheet(_PANEL * rows + _LEGEND_ROW * legend_rows + 16, width)
+    legend_rows = -(-len(entries) // (_ENTRIES_PER_COLUMN * columns))
+    width = WIDE if columns > 1 else _SINGLE_WIDTH
+    figure = sheet(_PANEL_HEIGHT * rows + _LEGEND_ROW_HEIGHT * legend_rows + 16, width)
     figure.set_dpi(72)
     FigureCanvasAgg(figure)
     engine: Any = figure.get_layout_engine()
@@ -107,10 +109,10 @@ def draw_panels(panels: Sequence[WorkPanel], quantity: str = "") -> Figure:
     for axes in all_axes[len(panels) :]:
         axes.set_axis_off()
     figure.legend(
-        handles=entries, loc="outside lower center", ncols=_IN_A_ROW * columns,
+        handles=entries, loc="outside lower center", ncols=_ENTRIES_PER_COLUMN * columns,
         handlelength=3.0, columnspacing=1.2, fontsize=10,
     )  # fmt: skip
-    # The layout is made once, so that names can be placed where nothing else is.
+    # The layout is computed once, and then names are placed where nothing else is.
     engine.execute(figure)
     figure.set_layout_engine("none")
     for axes, panel in zip(all_axes, panels, strict=False):
@@ -119,15 +121,15 @@ def draw_panels(panels: Sequence[WorkPanel], quantity: str = "") -> Figure:
 
 
 def style(line: DrawnLine) -> dict[str, Any]:
-    """Colour, mark and dash of a line; beyond the colours they combine anew."""
+    """Return colour, marker and dash of a line; with more lines than colours, new pairs of them."""
     index = line.style_index
     if line.is_peer:
         marker = _PEER_MARKERS[index % len(_PEER_MARKERS)]
         return {"color": INK, "marker": marker, "markersize": 7, "linewidth": 0.8}
     shifted = (index + index // len(SERIES)) % len(MARKERS)
     look: dict[str, Any] = {
-        "color": SERIES[index % len(SERIES)], "marker": MARKERS[shifted], "markersize": _SIZE,
-        "linewidth": 1.2,
+        "color": SERIES[index % len(SERIES)], "linewidth": 1.2,
+        "marker": MARKERS[shifted], "markersize": _MARKER_SIZE,
     }  # fmt: skip
     return look | ({"dashes": DASHES[shifted]} if DASHES[shifted] else {})
 
@@ -144,7 +146,7 @@ def _panel(axes: Any, panel: WorkPanel) -> None:
     axes.margins(x=0.09, y=0.07)
     # Without a limit, a single value beyond the range would compress all others.
     if any(panel.is_beyond(m) for line in panel.lines for m in line.marks):
-        axes.set_ylim(_bottom(panel) - 1, _TOP)
+        axes.set_ylim(_bottom(panel) - 1, _MAX_LG)
     _mark_edge(axes, panel)
     draw_grid(axes, "both")
     set_decade_ticks(axes.xaxis)
@@ -158,12 +160,12 @@ def _panel(axes: Any, panel: WorkPanel) -> None:
 
 def _line(axes: Any, panel: WorkPanel, line: DrawnLine) -> None:
     look = style(line)
-    placed = [m for m in line.marks if m.y is not None]
-    bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
-    axes.plot([m.x for m in placed], [m.y for m in placed], **bare)
-    for full in (True, False):
-        marks = [m for m in placed if m.is_full is full and not panel.is_beyond(m)]
-        face = look["color"] if full else "none"
+    finished = [m for m in line.marks if m.y is not None]
+    line_only = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
+    axes.plot([m.x for m in finished], [m.y for m in finished], **line_only)
+    for is_full in (True, False):
+        marks = [m for m in finished if m.is_full is is_full and not panel.is_beyond(m)]
+        face = look["color"] if is_full else "none"
         axes.plot(
             [m.x for m in marks], [m.y for m in marks], linestyle="none", color=look["color"],
             marker=look["marker"], markersize=look["markersize"], markerfacecolor=face,
@@ -185,7 +187,7 @@ def _mark_edge(axes: Any, panel: WorkPanel) -> None:
         values_beyond = [m.x for m in line.marks if panel.is_beyond(m)]
         for abscissas, marker in ((failed, "x"), (values_beyond, CARETUPBASE)):
             if not abscissas:
-                continue  # an unclipped line without points would still ask for room
+                continue  # an unclipped line without points would still take room in the layout
             axes.plot(
                 abscissas, [0.985] * len(abscissas), transform=axes.get_xaxis_transform(),
                 linestyle="none", marker=marker, markersize=7, markeredgewidth=1.6, clip_on=False,
@@ -199,19 +201,19 @@ def _mark_edge(axes: Any, panel: WorkPanel) -> None:
 def _legend_of_marks(panels: Sequence[WorkPanel]) -> list[Line2D]:
     """Return legend entries for the marks that occur."""
     marks = [m for panel in panels for line in panel.lines for m in line.marks]
-    hollow = any(not m.is_full and m.y is not None for m in marks)
-    failed = any(m.y is None for m in marks)
+    has_hollow = any(not m.is_full and m.y is not None for m in marks)
+    has_failed = any(m.y is None for m in marks)
     has_values_beyond = any(
         panel.is_beyond(m) for panel in panels for line in panel.lines for m in line.marks
     )
-    floor = any(panel.floor for panel in panels)
+    has_floor = any(panel.floor for panel in panels)
     explanations: tuple[tuple[bool, str, dict[str, Any]], ...] = (
-        (hollow, "hollow: limited by rounding", {"marker": "o", "markerfacecolor": "none"}),
-        (failed, "× at the edge: failed", {"marker": "x"}),
+        (has_hollow, "hollow: limited by rounding", {"marker": "o", "markerfacecolor": "none"}),
+        (has_failed, "× at the edge: failed", {"marker": "x"}),
         (has_values_beyond, "beyond the edge", {"marker": MarkerStyle(CARETUPBASE)}),
-        (floor, "floor: rounding part", {"marker": ".", "alpha": 0.4}),
+        (has_floor, "floor: rounding part", {"marker": ".", "alpha": 0.4}),
     )
-    grey: dict[str, Any] = {"color": INK, "linestyle": "none", "markersize": _SIZE}
+    grey: dict[str, Any] = {"color": INK, "linestyle": "none", "markersize": _MARKER_SIZE}
     return [
         Line2D([], [], label=label, **grey, **look)
         for occurs, label, look in explanations
@@ -228,23 +230,23 @@ def _entries(panels: Sequence[WorkPanel]) -> list[Line2D]:
 
 
 def _place_names(axes: Any, panel: WorkPanel) -> None:
-    """Write each name near its line's last mark, or another one, where it covers nothing."""
+    """Write each line's name near its last mark, or near another; omit it without room."""
     renderer = axes.figure.canvas.get_renderer()
     occupied = [(x - 3, y - 3, x + 3, y + 3) for x, y in _covered_pixels(axes, panel)]
-    inside = axes.get_window_extent(renderer)
+    room = axes.get_window_extent(renderer)
     for line in panel.lines:
         shown_marks = [m for m in line.marks if m.y is not None and not panel.is_beyond(m)]
         text = axes.annotate(
             line.name, (0, 0), xytext=(0, 0), textcoords="offset points",
-            fontsize=_LABEL, color=style(line)["color"],
+            fontsize=_LABEL_SIZE, color=style(line)["color"],
         )  # fmt: skip
-        ends = [*shown_marks[-1:], *shown_marks[:1], *shown_marks[1:-1]]
-        if not any(_find_room(text, (m.x, m.y), occupied, inside, renderer) for m in ends):
+        marks_in_order = [*shown_marks[-1:], *shown_marks[:1], *shown_marks[1:-1]]
+        if not any(_find_room(text, (m.x, m.y), occupied, room, renderer) for m in marks_in_order):
             text.remove()
 
 
 def _covered_pixels(axes: Any, panel: WorkPanel) -> Iterator[tuple[float, float]]:
-    """Yield pixels under marks, lines and the floor, a few pixels apart."""
+    """Yield points under marks, lines and the floor in pixels, a few pixels apart."""
     to_pixels = axes.transData.transform
     for x, y in panel.floor:
         yield tuple(to_pixels((x, y)))
@@ -258,17 +260,18 @@ def _covered_pixels(axes: Any, panel: WorkPanel) -> Iterator[tuple[float, float]
 
 
 def _find_room(
-    text: Any, point: tuple[float, float | None], occupied: list[_Box], inside: Bbox, renderer: Any
+    text: Any, point: tuple[float, float | None], occupied: list[_Box], room: Bbox, renderer: Any
 ) -> bool:
+    """Move the text to the first free offset from the point; return False if there is none."""
     text.xy = point
     for x, y in _OFFSETS:
         text.set_ha("left" if x > 0 else "right" if x < 0 else "center")
         text.set_position((x, y))
         box = text.get_window_extent(renderer)
         x0, y0, x1, y1 = map(float, box.extents)
-        if lies_in(box, inside) and all(
+        if lies_in(box, room) and all(
             x1 < a or c < x0 or y1 < b or d < y0 for a, b, c, d in occupied
-        ):  # as matplotlib's Bbox.overlaps says, which takes ten times as long
+        ):  # as `Bbox.overlaps`, which takes ten times as long
             occupied.append((x0, y0, x1, y1))
             return True
     return False

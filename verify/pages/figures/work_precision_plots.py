@@ -1,4 +1,4 @@
-"""The figures of error against run time, and their content.
+"""The figure of error against run time: its panels, their lines and its caption.
 
 The drawing, and with it matplotlib, is imported only if something is drawn.
 """
@@ -23,7 +23,7 @@ _RUN_TIME = "run time in seconds"
 
 
 def plots(result: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
-    """Yield one figure whose panels show everything that can be drawn."""
+    """Yield one figure, whose panels show everything that can be drawn; none if nothing can."""
     schemes = [line for line in result.lines if not line.peer]
     panel_groups = [
         (list(error_panels(result)), _caption([line for line in schemes if _timed_points(line)])),
@@ -55,12 +55,14 @@ def error_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
     if lines:
         from verify.pages.figures.work_precision_figure import WorkPanel
 
-        of_time = tuple(_drawn_line(result, line, _marks_by_time(line)) for line in lines)
-        yield WorkPanel("error against run time", _RUN_TIME, of_time, tuple(_floor_points(schemes)))
+        lines_by_time = tuple(_drawn_line(result, line, _marks_by_time(line)) for line in lines)
+        yield WorkPanel(
+            "error against run time", _RUN_TIME, lines_by_time, tuple(_floor_points(schemes))
+        )
     if schemes:
-        of_step = tuple(_drawn_line(result, line, _marks_by_step(line)) for line in schemes)
+        lines_by_step = tuple(_drawn_line(result, line, _marks_by_step(line)) for line in schemes)
         floor = tuple(_floor_points(schemes, by_step=True))
-        yield WorkPanel("error against h", "step size h", of_step, floor)
+        yield WorkPanel("error against h", "step size h", lines_by_step, floor)
 
 
 def _area_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
@@ -74,19 +76,19 @@ def _area_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
 
 
 def _caption_of_areas(result: WorkPrecisionResult) -> str:
-    keeping = [line for line in result.lines if line.area_preserving]
+    preserving = [line for line in result.lines if line.area_preserving]
     if result.structure is SYMPLECTIC:
-        names = join_and(line.name for line in keeping)
-        sentence = f" For {names} S ≡ 0 is proved, and W is 0." if keeping else ""
+        names = join_and(line.name for line in preserving)
+        sentence = f" For {names} S ≡ 0 is proved, and W is 0." if preserving else ""
         return f"max |W| is the greatest entry of W, the symplectic defect of the run.{sentence}"
     caption = "Λ in float64 by the closed form of ΔJ."
-    if keeping:
+    if preserving:
         caption += (
-            f" For {join_and(line.name for line in keeping)} ΔJ ≡ 0 is proved and Λ is 0; what is "
-            "drawn, hollow, is what rounding makes of the plain product of determinants."
+            f" For {join_and(line.name for line in preserving)} ΔJ ≡ 0 is proved and Λ is 0; what "
+            "is drawn, hollow, is what rounding makes of the plain product of determinants."
         )
-    if none := [line.name for line in keeping if not _area_marks(line)]:
-        caption += f" That of {join_and(none)} is exactly 1 and has no place here."
+    if undrawn := [line.name for line in preserving if not _area_marks(line)]:
+        caption += f" That of {join_and(undrawn)} is exactly 1 and has no place here."
     return caption
 
 
@@ -125,7 +127,7 @@ def _drawn_line(
     from verify.pages.figures.work_precision_figure import DrawnLine
 
     return DrawnLine(
-        line.name, _label_with_slope(line), tuple(marks), _place(result, line), line.peer
+        line.name, _label_with_slope(line), tuple(marks), _style_index(result, line), line.peer
     )
 
 
@@ -151,7 +153,7 @@ def _label_with_slope(line: WorkLine) -> str:
     return f"{line.name}, slope {float(slope.value):.2f}" if slope.value else line.name
 
 
-def _place(result: WorkPrecisionResult, line: WorkLine) -> int:
+def _style_index(result: WorkPrecisionResult, line: WorkLine) -> int:
     """Return the line's index among the schemes, or among the peers."""
     return [other_line.name for other_line in result.lines if other_line.peer is line.peer].index(
         line.name
@@ -177,7 +179,10 @@ def _marks_by_step(line: WorkLine) -> Iterator["WorkMark"]:
 
 
 def _area_marks(line: WorkLine) -> list["WorkMark"]:
-    """Return the marks of |Λ| against run time, by the plain product if Λ is exactly 0."""
+    """Return the marks of the area error against run time.
+
+    If a scheme preserves area, they are those of Λ by the plain product, which is rounding alone.
+    """
     marks: list[WorkMark] = []
     timed = _timed_points(line)
     for point in timed:
@@ -199,10 +204,10 @@ def _marks_of(
 
 
 def _run_time(point: WorkPoint, timed: Sequence[WorkPoint]) -> float | None:
-    """Return lg of the run time; for a failed run, of the time of as many steps on the line."""
+    """Return lg of the run time; for a failed run, of the time that its steps would have taken."""
     if point.seconds_median:
         return log10(point.seconds_median)
-    # A failed run has no time of its own; its step takes as long as those of the other runs.
+    # The time of a step is the median of those of the runs in `timed`.
     rates = [p.seconds_median / p.steps for p in timed if p.seconds_median and p.steps]
     return log10(median(rates) * point.steps) if rates and point.steps else None
 
@@ -221,7 +226,7 @@ def _floor_points(
 
 
 def standalone(result: WorkPrecisionResult) -> str:
-    """Return all figures below one another as one SVG document."""
+    """Return the figure as an SVG document of its own."""
     from verify.pages.figures.svg import document
 
     return document([plot.svg for plot in plots(result, name="bench")])

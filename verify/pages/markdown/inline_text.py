@@ -4,11 +4,11 @@ Inside a line GitHub allows a few HTML elements, which, unlike asterisks and bac
 same in a table, beside any letter and around any text.
 
 MathML, as `verify.pages.text.mathml` writes it, becomes TeX; any other element is replaced by its
-content. sympy's LaTeX printer is not used, since it orders terms differently (see there). A leaf is
-never taken for a command: its letters are set one by one or as upright text.
+content. sympy's LaTeX printer is not used, as it orders terms differently (see that module). The
+text of a leaf cannot become a command of TeX: its letters are set one by one, or as upright text.
 
-A repository page sets no formula in a <summary>: there MathML becomes indices, powers, fractions
-with a solidus and roots with a sign.
+GitHub does not set formulas in a <summary>: there MathML becomes indices, powers, fractions with a
+solidus and roots with a sign.
 """
 
 import re
@@ -22,7 +22,7 @@ from verify.pages.markdown.markup import MarkupNode, tree
 from verify.pages.text.formula_parts import GREEK
 
 _SPECIAL_CHARACTERS = re.compile(r"[\\`*_\[\]|~#]")
-# At the start of a line these would make a list, an underline or a table's alignment.
+# At the start of a line these would begin a list, underline a heading or align a table.
 _LINE_START = re.compile(r"[-+=:]|[0-9]+(?=[.)](?:\s|$))")
 _ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
 _HTML_TAGS = {
@@ -34,7 +34,7 @@ _HTML_TAGS = {
     "i": "i",
     "code": "code",
 }
-# Classes that the page sets smaller, beside or below a number; here they are in brackets.
+# Classes that the page sets smaller, beside or below a number; in Markdown they are in brackets.
 _ASIDES = {"bound", "beside"}
 # Only links within the report are kept, so that foreign text cannot link anywhere.
 _SAFE_LINK = re.compile(r"#[A-Za-z0-9_.-]+|results\.json")
@@ -43,13 +43,13 @@ _SIGNS = {"\u2061": " ", "\u2062": " "}
 
 
 class Markdown(str):
-    """A text that is Markdown already."""
+    """Text in the syntax of Markdown, which is not escaped again."""
 
     __slots__ = ()
 
 
 def markdown(content: object) -> Markdown:
-    """Return Markdown for inside a line: Markdown unchanged, markup converted, all else as text."""
+    """Return the content as part of a line: Markdown unchanged, markup converted, else as text."""
     if isinstance(content, Markdown):
         return content
     if hasattr(content, "__html__"):
@@ -59,13 +59,13 @@ def markdown(content: object) -> Markdown:
 
 def escape_markdown(text: str) -> Markdown:
     """Return the text in one line, with all marks of Markdown and HTML escaped."""
-    # A private character stands for no-break spaces, which \s would split at.
+    # No-break spaces, at which \s would split, are a private character meanwhile.
     line = " ".join(re.split(r"[\s\x00-\x1f]+", text.replace("\u00a0", "\ue000"))).strip()
     return Markdown(_escape_line_start(_escape_marks(line).replace("\ue000", "\u00a0")))
 
 
 def line(pieces: Iterable[MarkupNode | str], *, escapes_start: bool = True) -> Markdown:
-    """Return pieces of markup in one line; without `escapes_start` its first marks stay marks."""
+    """Return pieces of markup in one line; without `escapes_start` the start may mean a block."""
     text = re.sub(" {2,}", " ", "".join(map(_inline, pieces)).strip(" "))
     return Markdown(_escape_line_start(text) if escapes_start else text)
 
@@ -83,7 +83,7 @@ def _inline(node: MarkupNode | str) -> str:
     if node.tag == "br":
         return "<br>"
     if node.attributes.get("class") == "digits":
-        return _escape_marks(node.text)  # the groups are the style sheet's
+        return _escape_marks(node.text)  # without the groups, which the style sheet sets apart
     inner = "".join(_inline(child) for child in node.children)
     tag = "b" if "badge" in node.classes else _HTML_TAGS.get(node.tag)
     if tag:
@@ -91,7 +91,7 @@ def _inline(node: MarkupNode | str) -> str:
     if node.tag == "a" and _SAFE_LINK.fullmatch(node.attributes.get("href", "")):
         return f"[{inner}]({node.attributes['href']})"
     if node.attributes.get("aria-hidden"):
-        return f"{inner} "  # a sign, which the style sheet sets apart from what it stands before
+        return f"{inner} "  # a sign, which the style sheet sets apart from the text after it
     if _ASIDES & set(node.classes) and not inner.startswith("±"):
         return f"({inner})"
     return inner
@@ -114,20 +114,20 @@ def _escape_line_start(line: str) -> str:
 
 def _escape_marks(text: str) -> str:
     text = _SPECIAL_CHARACTERS.sub(r"\\\g<0>", text.translate(_ENTITIES))
-    # GitHub would read the rest as a formula, or make a link of it.
+    # After a dollar sign GitHub would read a formula, and it would make a link of an address.
     text = text.replace("$", "<span>$</span>").replace("://", "&#58;//")
     return re.sub(r"(?i)\bwww\.", lambda m: f"{m[0][:-1]}&#46;", text)
 
 
-def table(heads: Sequence[object], rows: Iterable[Sequence[object]], words: str = "") -> Markdown:
+def table(
+    heads: Sequence[object], rows: Iterable[Sequence[object]], alignments: str = ""
+) -> Markdown:
     """Return a table whose columns are aligned right, as numbers are.
 
-    `words`: a letter for each of the first columns, l (left) or r (right), if they differ.
+    `alignments`: a letter for each of the first columns, l (left) or r (right), if some are left.
     """
-    alignments = words.ljust(len(heads), "r")
-    rule = "|".join(
-        ":---" if alignment == "l" else "---:" for alignment in alignments[: len(heads)]
-    )
+    letters = alignments.ljust(len(heads), "r")[: len(heads)]
+    rule = "|".join(":---" if letter == "l" else "---:" for letter in letters)
     lines = [
         _row(heads),
         f"|{rule}|",
@@ -146,7 +146,13 @@ _OTHER_LETTERS = {"ε": "varepsilon", "λ": "lambda", "π": "pi", "φ": "varphi"
 _GREEK = {letter: name for name, letter in GREEK.items() if letter != "ο"} | _OTHER_LETTERS
 # The functions by their printed names, without the root, which has a sign; papers also write log.
 _FUNCTIONS = {f.shown: f.tex for f in by_name().values() if f.name != "sqrt"} | {"log": r"\log"}
-_LARGE = {"max": r"\max ", "min": r"\min ", "lim": r"\lim ", "∑": r"\sum ", "∏": r"\prod "}
+_LARGE_OPERATORS = {
+    "max": r"\max ",
+    "min": r"\min ",
+    "lim": r"\lim ",
+    "∑": r"\sum ",
+    "∏": r"\prod ",
+}
 _TEX_SIGNS = {
     "−": "-", "\u2061": "", "\u2062": r"\,", "′": "'", "≡": r"\equiv ", "≤": r"\le ",
     "·": r"\cdot ", "±": r"\pm ", "×": r"\times ", "|": r"\vert ", "⟨": r"\langle ",
@@ -157,7 +163,7 @@ _TEX_SIGNS = {
     "<": r"\lt ", ">": r"\gt ", "\u00a0": r"\ ", "∪": r"\cup ", "∩": r"\cap ",
 }  # fmt: skip
 _ACCENTS = {"\u0304": "bar", "\u0303": "tilde", "\u0307": "dot", "\u0308": "ddot"}
-_PLAIN = re.compile(r"[A-Za-z0-9+\-=/().,;:! ]")
+_PLAIN_CHARACTER = re.compile(r"[A-Za-z0-9+\-=/().,;:! ]")
 _TEX_SPECIAL_CHARACTERS = set("#%&_{}")
 
 
@@ -195,7 +201,7 @@ def tex(node: MarkupNode) -> str:
 def _tex_table(node: MarkupNode) -> str:
     entries = [row.elements() for row in node.elements()]
     lines = r" \\ ".join(" & ".join(tex(e) for e in row) for row in entries)
-    # Lines of one sum carry how they are aligned; the entries of a matrix do not.
+    # The cells of a sum in lines have a class for their alignment; the entries of a matrix do not.
     is_sum = any("class" in e.attributes for row in entries for e in row)
     name = "aligned" if is_sum else "matrix"
     return rf"\begin{{{name}}} {lines} \end{{{name}}}"
@@ -228,7 +234,7 @@ def _tex_character(c: str) -> str:
         return f"\\{_GREEK[c]} "
     if c in _TEX_SPECIAL_CHARACTERS:
         return f"\\{c}"
-    return _TEX_SIGNS.get(c, c if _PLAIN.fullmatch(c) else "?")
+    return _TEX_SIGNS.get(c, c if _PLAIN_CHARACTER.fullmatch(c) else "?")
 
 
 def _brace(base: str) -> str:
@@ -238,7 +244,7 @@ def _brace(base: str) -> str:
 def _large_operator(node: MarkupNode) -> str:
     """Return the TeX of an operator that has its limits above and below it."""
     base = node.elements()[0]
-    return _LARGE.get(base.text) or _brace(tex(base))
+    return _LARGE_OPERATORS.get(base.text) or _brace(tex(base))
 
 
 # -- within HTML ----------------------------------------------------------------------------------

@@ -5,12 +5,15 @@ from html.parser import HTMLParser
 
 from markupsafe import Markup
 
-_VOID = {"br", "img"}
+_VOID_TAGS = {"br", "img"}  # elements without an end tag
 
 
 @dataclass(frozen=True)
 class MarkupNode:
-    """An element: its tag, its attributes and its children, which are texts and elements."""
+    """An element: its tag, its attributes and its children, which are texts and elements.
+
+    An element without a tag only holds its children together.
+    """
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
@@ -22,7 +25,7 @@ class MarkupNode:
         return self.attributes.get("class", "").split()
 
     def elements(self, *tags: str) -> list["MarkupNode"]:
-        """Return the child elements, with `tags` only those of these tags."""
+        """Return the child elements; if `tags` are given, only those with one of these tags."""
         child_elements = [child for child in self.children if isinstance(child, MarkupNode)]
         return [element for element in child_elements if not tags or element.tag in tags]
 
@@ -33,7 +36,10 @@ class MarkupNode:
 
 
 def tree(markup: Markup) -> MarkupNode:
-    """Return the markup under a node without a tag; end tags that close nothing are ignored."""
+    """Return the markup as a tree below a node without a tag.
+
+    An end tag that does not close the innermost element is ignored.
+    """
     reader = _MarkupReader()
     reader.feed(str(markup))
     reader.close()
@@ -48,14 +54,13 @@ class _MarkupReader(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         node = MarkupNode(tag, {key: text or "" for key, text in attrs})
         self.open[-1].children.append(node)
-        if tag not in _VOID:
+        if tag not in _VOID_TAGS:
             self.open.append(node)
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.open[-1].children.append(MarkupNode(tag, {key: text or "" for key, text in attrs}))
 
     def handle_endtag(self, tag: str) -> None:
-        # Only the innermost open element may be closed; other end tags are ignored.
         if len(self.open) > 1 and self.open[-1].tag == tag:
             self.open.pop()
 

@@ -1,10 +1,10 @@
 """A report as one page of GitHub flavoured Markdown with its figures beside it, for a repository.
 
-It is the content of the HTML page in another format; nothing is added here. Only the elements that
-the templates write are known; any other element is replaced by its content. Elements for the screen
-alone are skipped. Text reaches Markdown through `inline_text`, or as code.
+It has the content of the HTML page, and nothing else. It knows the elements that the templates
+write; any other element is replaced by its content. Elements that serve only a screen are skipped.
+Text becomes Markdown by `inline_text`, or as code.
 
-A table becomes one table for each group of rows, with the group's heading above it, since Markdown
+A table becomes a table for each group of rows, with the heading of the group above it, as Markdown
 has neither heads of two rows nor rows of headings.
 """
 
@@ -24,17 +24,17 @@ from verify.scenes.results.report import Report
 
 _CONTENT = '{% include "content.html" %}{% include "footer.html" %}'
 TEXT, FIGURES = "report.md", "figures"
-# The names of figures that `write` has written; other files of the folder are not touched.
+# The names of figures that `write` writes; other files in the folder are left alone.
 _FIGURE_NAME = re.compile(r"figure-[0-9]{2,}\.svg")
-# Elements of these classes help on a screen only, and are left out.
+# Elements of these classes serve only a screen, and are left out.
 _SCREEN_CLASSES = {"mark", "kind"}
 # Elements of these classes are set in bold letters.
 _STRONG = {"finding", "label"}
 _CONTAINERS = {"article", "div", "figure", "header", "section"}
 _LINES = {"p", "figcaption"}
 _HEADINGS = {f"h{level}": "#" * level for level in range(1, 7)}
-_OWN_RULES = {"details", "dl", "footer", "img", "ol", "pre", "table", "ul"}
-_BLOCKS = {*_OWN_RULES, *_CONTAINERS, *_LINES, *_HEADINGS}
+_SPECIAL_TAGS = {"details", "dl", "footer", "img", "ol", "pre", "table", "ul"}
+_BLOCKS = {*_SPECIAL_TAGS, *_CONTAINERS, *_LINES, *_HEADINGS}
 _RowNodes = list[list[MarkupNode]]
 
 
@@ -50,7 +50,7 @@ def write(report: Report, folder: Path) -> Path:
     write_atomically(folder / TEXT, text)
     for file in (folder / FIGURES).glob("figure-*.svg"):
         if _FIGURE_NAME.fullmatch(file.name) and f"{FIGURES}/{file.name}" not in figures:
-            file.unlink()  # of an earlier report, which had more of them
+            file.unlink()  # an earlier report had more figures
     return folder / TEXT
 
 
@@ -59,8 +59,8 @@ def render(report: Report) -> tuple[str, dict[str, str]]:
     figures: dict[str, str] = {}  # in the order in which the text shows them
 
     def image(plot: Plot) -> Markup:
-        """Store the plot as a document and return the image with its text alternative."""
-        from verify.pages.figures import svg  # and with it matplotlib, if something is drawn
+        """Keep the plot as a document, and return an image of it with its text alternative."""
+        from verify.pages.figures import svg  # imports matplotlib
 
         path = f"{FIGURES}/figure-{len(figures) + 1:02}.svg"
         figures[path] = svg.document([plot.svg])
@@ -75,7 +75,7 @@ def render(report: Report) -> tuple[str, dict[str, str]]:
 
 
 def document(root: MarkupNode) -> str:
-    """Return the document as Markdown, with anchors at the targets of its own links."""
+    """Return the document as Markdown, with an anchor at each target of its own links."""
     links = {a.attributes.get("href", "").removeprefix("#") for a in _walk(root) if a.tag == "a"}
     return "\n\n".join(_BlockWriter(links).blocks_in(root)) + "\n"
 
@@ -91,7 +91,7 @@ class _BlockWriter:
         self._links = links - {""}
 
     def blocks_in(self, node: MarkupNode) -> list[Markdown]:
-        """Return the blocks in the node; texts and inline elements are joined to paragraphs."""
+        """Return the blocks in the node; consecutive texts and inline elements form a paragraph."""
         return self._blocks_of(node.children)
 
     def _blocks_of(self, children: Iterable[MarkupNode | str]) -> list[Markdown]:
@@ -145,11 +145,11 @@ class _BlockWriter:
         yield Markdown("</details>")
 
     def _definition(self, node: MarkupNode) -> list[Markdown]:
-        """Return a term with its meaning, on the same line if that begins with text."""
+        """Return a term with its meaning, on the same line if the meaning begins with text."""
         (term,), (meaning,) = node.elements("dt"), node.elements("dd")
         blocks = self.blocks_in(meaning)
-        first = next((c for c in meaning.children if isinstance(c, MarkupNode) or c.strip()), "")
-        is_inline = isinstance(first, str) or first.tag in _LINES or not _is_block(first)
+        opening = next((c for c in meaning.children if isinstance(c, MarkupNode) or c.strip()), "")
+        is_inline = isinstance(opening, str) or opening.tag in _LINES or not _is_block(opening)
         head = f"<b>{line(term.children)}</b>:"
         if is_inline and blocks:
             return [Markdown(f"{head} {blocks[0]}"), *blocks[1:]]
@@ -174,7 +174,7 @@ def _heading(node: MarkupNode) -> Iterator[Markdown]:
 
 
 def _code(node: MarkupNode) -> Markdown:
-    """Return the code between fences that are longer than any run of backticks in it."""
+    """Return the code as a block between fences."""
     language = next((c.removeprefix("language-") for n in _walk(node) for c in n.classes), "")
     longest = max(map(len, re.findall("`+", node.text)), default=0)
     # The fence must be longer than any run of backticks in the code, which would end it.
@@ -183,7 +183,7 @@ def _code(node: MarkupNode) -> Markdown:
 
 
 def _list(items: Iterable[list[Markdown]], *, numbered: bool = False) -> Markdown:
-    """Return the list, with the further blocks of an item below its text."""
+    """Return the list; further blocks of an item are indented below its text."""
     indent = "   " if numbered else "  "
     texts = [re.sub(r"\n(?!\n)", f"\n{indent}", "\n\n".join(item)) for item in items]
     separator = "\n\n" if any("\n" in item for item in texts) else "\n"
@@ -204,11 +204,11 @@ def tables(node: MarkupNode) -> Iterator[Markdown]:
         yield line(caption.children)
     groups = [list(_groups(_rows(body))) for body in node.elements("tbody")]
     all_rows = [row for body in groups for _, rows in body for row in rows]
-    # Rows may have more cells than there are heads; Markdown drops cells without a head.
+    # A row may have more cells than the table has heads, and Markdown drops cells without a head.
     heads += [Markdown("")] * (max(map(len, all_rows), default=0) - len(heads))
     columns = ([row[i] for row in all_rows if len(row) > i] for i in range(len(heads)))
-    numbers = "numbers" in node.classes
-    alignments = "".join(_alignment(column) if numbers else "l" for column in columns)
+    has_numbers = "numbers" in node.classes
+    alignments = "".join(_alignment(column) if has_numbers else "l" for column in columns)
     for label, rows in (group for body in groups for group in body):
         if label:
             yield Markdown(f"<b>{label}</b>")
@@ -234,8 +234,8 @@ def _groups(rows: _RowNodes) -> Iterator[tuple[Markdown, _RowNodes]]:
 
 
 def _heads(rows: _RowNodes) -> list[Markdown]:
-    """Return for each column the texts of all cells above it, from the top."""
-    # (row, column) → text; None where a cell from a row above reaches down.
+    """Return for each column the texts of all heads above it, from the top."""
+    # The text of each (row, column); None if the cell of a row above reaches down to it.
     texts: dict[tuple[int, int], Markdown | None] = {}
     for r, row in enumerate(rows):
         for cell in row:
@@ -247,13 +247,14 @@ def _heads(rows: _RowNodes) -> list[Markdown]:
     return [Markdown(", ".join(filter(None, column_texts))) for column_texts in columns_of_texts]
 
 
-def _span(cell: MarkupNode, way: str) -> int:
-    return int(cell.attributes.get(f"{way}span", "1"))
+def _span(cell: MarkupNode, direction: str) -> int:
+    return int(cell.attributes.get(f"{direction}span", "1"))
 
 
 def _alignment(column: Sequence[MarkupNode]) -> str:
     """Return the alignment of a column: words to the left, numbers to the right."""
     if any("words" in cell.classes for cell in column):
         return "l"
-    alone = [cell.text.strip() for cell in column if _span(cell, "col") == 1]
-    return "l" if any(text[:1].isalpha() for text in alone) else "r"
+    # A cell that spans several columns, as the reason of a failure does, does not count.
+    texts = [cell.text.strip() for cell in column if _span(cell, "col") == 1]
+    return "l" if any(text[:1].isalpha() for text in texts) else "r"

@@ -1,4 +1,4 @@
-"""Sentences on regions carried by maps: on all regions of a scene, and on each of them."""
+"""Sentences on regions carried by maps: on all regions of a scene, and on a single one."""
 
 from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, Decimal
@@ -9,7 +9,7 @@ from verify.pages.sections.table_rows import by_key
 from verify.pages.text.typography import IS, NBSP, join_and, map_name, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
-# The part of an area below which a change cannot be seen in a picture; a sentence says so.
+# A change by less than this part of an area is invisible in a picture; a sentence says so.
 _VISIBLE_SHARE = Fraction(1, 1000)
 
 # -- sentences on all of a scene ------------------------------------------------------------------
@@ -49,7 +49,7 @@ def _describe_largest_change(images: Sequence[FlowFinding], vocabulary: Words) -
 
 
 def _describe_probe_error(images: Sequence[FlowFinding]) -> str:
-    """Return a sentence on the least ratio of a change to the probe's own error."""
+    """Return a sentence on the least ratio of a change to the error of its measurement."""
     ratios = [
         _size(image.area_change) / Fraction(image.probe_error)
         for _, image in images
@@ -68,9 +68,9 @@ def _describe_probe_error(images: Sequence[FlowFinding]) -> str:
 
 def _floor_of(ratio: Fraction) -> int:
     """Return the ratio rounded down to two digits, so that "at least" holds."""
-    count = int(ratio)
-    unit = int("1" + "0" * max(0, len(str(count)) - 2))
-    return count // unit * unit
+    whole_ratio = int(ratio)
+    unit = int("1" + "0" * max(0, len(str(whole_ratio)) - 2))
+    return whole_ratio // unit * unit
 
 
 def _compare_with_means(images: Sequence[FlowFinding], vocabulary: Words) -> Iterator[str]:
@@ -78,7 +78,7 @@ def _compare_with_means(images: Sequence[FlowFinding], vocabulary: Words) -> Ite
     if not compared:
         return
     differing = sum(not image.agree for image in compared)
-    all_of = "In the one image" if len(compared) == 1 else f"In all {whole(len(compared))} images"
+    in_all = "In the one image" if len(compared) == 1 else f"In all {whole(len(compared))} images"
     if differing:
         yield (
             f"The mean of {vocabulary.defect} over the region, computed without "
@@ -87,7 +87,7 @@ def _compare_with_means(images: Sequence[FlowFinding], vocabulary: Words) -> Ite
         )
     else:
         yield (
-            f"{all_of} the mean of {vocabulary.defect} over the region, computed without "
+            f"{in_all} the mean of {vocabulary.defect} over the region, computed without "
             f"{vocabulary.not_used}, is the same within the errors, as it must be by "
             f"{vocabulary.equal_by}."
         )
@@ -105,7 +105,7 @@ def _describe_preserving_maps(images: Sequence[FlowFinding], vocabulary: Words) 
     claim = " and ".join(reasons)
     # A change larger than the probe's error contradicts the proof, so that the probe must be wrong.
     exceeding = [i for i in measured_images if _size(i.area_change) > Fraction(i.probe_error or 0)]
-    most = max(measured_images, key=lambda image: Fraction(image.probe_error or 0))
+    least_accurate = max(measured_images, key=lambda image: Fraction(image.probe_error or 0))
     if exceeding:
         yield (
             f"{_capital(claim)}, but for {whole(len(exceeding))} of these images the probe "
@@ -114,7 +114,7 @@ def _describe_preserving_maps(images: Sequence[FlowFinding], vocabulary: Words) 
         return
     yield (
         f"{_capital(claim)}; what the probe measures there is below its own error, at most "
-        f"{number(most.probe_error or '0')}."
+        f"{number(least_accurate.probe_error or '0')}."
     )
 
 
@@ -123,7 +123,7 @@ def _capital(text: str) -> str:
 
 
 def _describe_distances(images: Sequence[FlowFinding]) -> Iterator[str]:
-    """Yield the greatest distance of each scheme's outlines from the exact ones."""
+    """Yield a sentence with the greatest distance of each scheme's outlines from the exact ones."""
     parts = []
     for name, scheme_images in by_key(images, lambda pair: pair[1].map).items():
         flow, image = max(scheme_images, key=lambda pair: _size(pair[1].distance))
@@ -136,9 +136,9 @@ def _describe_distances(images: Sequence[FlowFinding]) -> Iterator[str]:
 
 
 def finding(flow: FlowResult) -> Iterator[str]:
-    """Yield the change of area by each scheme after the most steps, proofs, and distances.
+    """Yield a sentence on each scheme's image after the most steps, and one on projections.
 
-    If the last image failed, the last one with a measured change is reported too.
+    If the change is not known for that image, the last one with a known change has a sentence too.
     """
     ascending = sorted(flow.images, key=lambda image: image.steps)
     for name, images in by_key(ascending, lambda image: image.map).items():
@@ -159,15 +159,19 @@ def _describe_image(flow: FlowResult, image: FlowImage) -> str:
     if image.area_change is None:
         reason = image.problem or "none was measured"
         return f"{start}: no change of {vocabulary.invariant} is known ({reason})."
-    away = ""
+    distance_note = ""
     if image.distance is not None:
-        away = f" Its outlines are {_format_distance(image)} away from the exact ones."
+        distance_note = f" Its outlines are {_format_distance(image)} away from the exact ones."
     if image.area_preserving:
         change = f"(measured: {_format_change(image)})"
-        return f"{start} keeps {_name_invariant(flow)} by proof {change}.{away}"
-    # The bound on the true change: the measured one and its error.
-    most = _size(image.area_change) + _size(image.probe_error)
-    unseen = ", less than the thousandth that a picture can show" if most < _VISIBLE_SHARE else ""
+        return f"{start} keeps {_name_invariant(flow)} by proof {change}.{distance_note}"
+    # A bound on the true change.
+    change_bound = _size(image.area_change) + _size(image.probe_error)
+    unseen = (
+        ", less than the thousandth that a picture can show"
+        if change_bound < _VISIBLE_SHARE
+        else ""
+    )
     text = f"{start} changes {_name_invariant(flow)} by {_format_change(image)} of it{unseen}."
     doubt = ""
     if image.agree is False:
@@ -175,7 +179,7 @@ def _describe_image(flow: FlowResult, image: FlowImage) -> str:
             f" The mean of {vocabulary.defect} over it, which must be the same, is "
             f"{_with_error(*mean_of(image))}: one of the two is wrong."
         )
-    return f"{text}{doubt}{away}"
+    return f"{text}{doubt}{distance_note}"
 
 
 def mean_of(image: FlowImage) -> tuple[str | None, str | None]:
@@ -195,7 +199,7 @@ def _name_invariant(flow: FlowResult) -> str:
 
 
 def _describe_projections(flow: FlowResult) -> Iterator[str]:
-    """Yield the parts of ∮ p·dq in each plane at the end, by the first map with an image."""
+    """Yield a sentence on the parts of ∮ p·dq in each plane at the end, by the first map."""
     images = [image for image in flow.images if image.outlines and image.outlines[0].projections]
     if not images:
         return
@@ -232,7 +236,7 @@ def _format_change(image: FlowImage) -> str:
 
 
 def _format_distance(image: FlowImage) -> str:
-    """Return a distance with its error; if that is as large, the bound that both give."""
+    """Return a distance with its error; if the error is not smaller, a bound on the distance."""
     distance, error = _size(image.distance), _size(image.distance_error)
     if error < distance:
         return f"up to {_with_error(image.distance, image.distance_error)}"

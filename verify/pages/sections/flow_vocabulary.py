@@ -1,6 +1,6 @@
 """The words for a region's invariant and for the defect that its change is compared with.
 
-In the plane these are the area and Λ; in n degrees of freedom ∮ p·dq, ω's area, and W.
+In the plane they are the area and Λ; in n degrees of freedom ∮ p·dq, the integral of ω, and W.
 """
 
 from collections.abc import Sequence
@@ -15,10 +15,11 @@ from verify.scenes.results.regions import FlowResult
 class Words:
     """The words for one number of degrees of freedom.
 
-    `invariant`: the measured quantity; `defect`: whose mean over the region equals its change;
-    `not_used`: what the mean is computed without; `equal_by`: why the two are equal;
-    `kept_by_flow`: why the exact flow preserves it; `identity`: the identity proved of a scheme;
-    `heads`: the heads of a table's columns; `about`: the explanation of such a table.
+    `invariant`: the measured quantity; `defect`: the quantity whose mean over the region equals its
+    change; `not_used`: a quantity that the computation of that mean does not use; `equal_by`: the
+    theorem by which the two are equal; `kept_by_flow`: a clause on why the exact flow preserves the
+    invariant; `identity`: the identity that is proved for a scheme that preserves it; `heads`: the
+    heads of a table's columns; `about`: the explanation of the table.
     """
 
     invariant: str
@@ -89,5 +90,5 @@ _SEVERAL = Words(
 
 
 def vocabulary_of(flows: Sequence[FlowResult]) -> Words:
-    """Return the words for regions of one H."""
+    """Return the words for these regions, which are all of one H."""
     return _PLANE if all(flow.plane is None for flow in flows) else _SEVERAL

@@ -1,4 +1,4 @@
-"""Sentences on the worst scenes of a hunt; every number is from the data."""
+"""Sentences on the worst scenes of a hunt, with numbers from the data alone."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -11,16 +11,16 @@ from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.separation_parts import EvaluationResult
 
 # The decimal digits of float64: 53 bits times lg 2.
-_ALL_DIGITS = 53 * 0.30103
+_FLOAT64_DIGITS = 53 * 0.30103
 # Numbers whose lg lies in this range are written without a power of ten.
-_PLAIN = (-2, 3)
+_PLAIN_RANGE = (-2, 3)
 
 
 # -- the measure ----------------------------------------------------------------------------------
 
 
 def findings(measure: str, sentence: str, value: float) -> str:
-    """Return a measure's value, given by its lg, as a clause that begins with a small letter."""
+    """Return a clause on a measure whose lg is `value`, without a capital at its start."""
     size = format_power(value)
     if measure == "rounding-share":
         return f"rounding is {size} {_times(value)} the truncation"
@@ -39,7 +39,7 @@ def _digits_lost(value: float) -> str:
     if value < 0:
         error = format_power(value)
         return f"no digit of p and q is lost: their error is {error} of float64’s roundoff"
-    if value >= _ALL_DIGITS:
+    if value >= _FLOAT64_DIGITS:
         return "no digit of p and q is left"
     count = f"{value:.1f}"
     digits, are = ("digit", "is") if count == "1.0" else ("digits", "are")
@@ -47,20 +47,20 @@ def _digits_lost(value: float) -> str:
 
 
 def short_value(measure: str, value: float) -> tuple[str, str]:
-    """Return a measure's value, given by its lg, as a number and its unit."""
+    """Return a measure whose lg is `value` as a number and its unit."""
     if measure == "rounding-share":
         return format_power(value), f"{_times(value)} truncation"
     if measure == "growth":
         return format_power(value), "greatest |Λ|"
-    if measure == "digits-lost" and 0 <= value < _ALL_DIGITS:
+    if measure == "digits-lost" and 0 <= value < _FLOAT64_DIGITS:
         return f"{value:.1f}", "digits lost"
     return format_power(value), "roundoffs" if measure == "digits-lost" else ""
 
 
 def format_power(value: float) -> str:
-    """Return 10^value to two digits, also if it is out of the range of floats."""
+    """Return 10^value to two digits, even if it is beyond the range of floats."""
     exponent = floor(value)
-    if _PLAIN[0] <= value < _PLAIN[1]:
+    if _PLAIN_RANGE[0] <= value < _PLAIN_RANGE[1]:
         return f"{Decimal(f'{10**value:.1e}'):f}"
     mantissa = f"{10 ** (value - exponent):.1f}"
     # 10^0.9999 rounds to 10.0, which is 1.0 with the next exponent.
@@ -73,7 +73,7 @@ def format_power(value: float) -> str:
 
 
 def describe_lambda(scene: GalleryScene) -> Iterator[str]:
-    """Yield the step from which on Λ in float64 is meaningless, or the digits that it keeps."""
+    """Yield sentences on the step after which Λ in float64 is meaningless, or on its digits."""
     separation, lost_after, resumes_at = (
         scene.separation,
         scene.meaningless_after,
@@ -86,8 +86,11 @@ def describe_lambda(scene: GalleryScene) -> Iterator[str]:
     elif lost_after is None:
         yield _describe_digits_kept(separation.plain, count)
     else:
-        first = separation.plain.series[0].steps if separation.plain.series else lost_after
-        already = " already, the first number of steps looked at" if lost_after == first else ""
+        checkpoints = separation.plain.series
+        first_count = checkpoints[0].steps if checkpoints else lost_after
+        already = (
+            " already, the first number of steps looked at" if lost_after == first_count else ""
+        )
         end = f"and stays so over all {count}"
         if resumes_at is not None:
             end = f"until truncation outgrows rounding for good, after {whole(resumes_at)}"
@@ -98,11 +101,11 @@ def describe_lambda(scene: GalleryScene) -> Iterator[str]:
 def _describe_digits_kept(plain: EvaluationResult, count: str) -> str:
     parts = plain.parts
     if _is_zero(parts.truncation.value) and _is_zero(parts.total.value):
-        silent = all(map(_is_zero, plain.largest.values()))
-        if parts.truncation.bound == parts.total.bound == "0" and silent:
+        is_always_zero = all(map(_is_zero, plain.largest.values()))
+        if parts.truncation.bound == parts.total.bound == "0" and is_always_zero:
             return f"Λ is exactly 0 over {count}, in float64 as in exact arithmetic."
         return f"Neither of truncation nor of rounding is a digit known after {count}."
-    # The decades between rounding and truncation are the digits of Λ that are right.
+    # Rounding lies below truncation by as many decades as Λ has right digits.
     margin = decades_below(plain)
     if margin is None:
         return f"No rounding of Λ in float64 is known of over {count}."
@@ -114,7 +117,7 @@ def _describe_digits_kept(plain: EvaluationResult, count: str) -> str:
 
 
 def _describe_pure_rounding(plain: EvaluationResult) -> Iterator[str]:
-    """Yield the size of Λ if the scheme preserves area, so that all of Λ is rounding."""
+    """Yield a sentence on the size of Λ, if truncation is 0 and all of Λ is rounding."""
     truncation = plain.parts.truncation
     if (
         _is_zero(truncation.value)
@@ -130,7 +133,7 @@ def _is_zero(size: str) -> bool:
 
 
 def describe_longer_run(scene: GalleryScene) -> Iterator[str]:
-    """Yield why the longer run is not the one that is shown, if it is not."""
+    """Yield the reason why a longer run is not shown, if there was one."""
     if scene.longer is not None:
         reason = scene.longer.reason or scene.longer.status
         count = count_noun(scene.longer.steps, "step")

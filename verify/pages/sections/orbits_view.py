@@ -1,4 +1,4 @@
-"""Orbits by several maps in one picture: the parts that the sections on orbits share."""
+"""The parts that the sections on orbits share: a view, phrases, pictures."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
 
 @dataclass(frozen=True)
 class OrbitsView:
-    """One of the scene's sections; `source`: the part of a paper that it repeats."""
+    """A picture of orbits, a finding and a table; `source`: the part of a paper that it repeats."""
 
     anchor: str
     title: str
@@ -31,12 +31,15 @@ def pictures(views: Sequence[OrbitsView], rank: int) -> Iterator[Picture]:
 
 
 def title_from(source: str, title: str) -> str:
-    """Return the title, preceded by the part of a paper that is repeated, if any."""
+    """Return the title, preceded by `source`, the part of a paper that is repeated, if any."""
     return f"{source}: {title}" if source else title
 
 
 def describe_partly_known(orbits: Orbits, lost: Orbits, looks: str) -> str:
-    """Return how many orbits are known for a part of the time only, and for how long at least."""
+    """Return a clause on the orbits that are known for a part of the time, and their least time.
+
+    `lost`: these orbits, of `orbits`; `looks`: the unit of the time, a plural.
+    """
     least = min(orbit.known for orbit in lost)
     many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
     part = "is known for a part" if len(lost) == 1 else "are known for a part"

@@ -1,8 +1,8 @@
-"""A section of a report: one object, in a file of a catalogue, with everything it can show.
+"""A section of a report: an object in a file of its own, with everything that it can show.
 
-A file `NAME.py` in `page/`, `scene/` or `scheme/` defines `SECTION`; what it shows is set by the
-template `LEVEL/NAME.html`, as the page and as Markdown. Adding a section is adding these two, and
-a file in `verify/pages/figures/` if it draws.
+A file `NAME.py` in `page/`, `scene/` or `scheme/`, the three levels, defines `SECTION`. Its view is
+an object with the content, which the template `LEVEL/NAME.html` sets for the page and for Markdown.
+A new section needs these two files, and one in `verify/pages/figures/` if it draws.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -30,9 +30,9 @@ class SectionPlace:
 
 @dataclass(frozen=True)
 class ContentsEntry:
-    """A place in the contents: verdicts counted in it, and the places within.
+    """An entry of the contents: a place, the verdicts counted in it, and the places within it.
 
-    `is_numbered`: these are listed by their numbers alone, in a line.
+    `is_numbered`: True if the places within it are listed by their numbers alone, in a line.
     """
 
     anchor: str
@@ -46,7 +46,7 @@ class ContentsEntry:
 class Picture:
     """A picture for the first screen, which takes the one with the least `rank`.
 
-    `place`: where more is said, if that is not the section's own place.
+    `place`: the place that says more of it, if that is not the place of its section.
     """
 
     rank: tuple[int, ...]
@@ -56,7 +56,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Tile:
-    """A tile; `weight`: its share of the bar below the tiles, 0 if the tiles are no counts."""
+    """A tile of the first screen.
+
+    `weight`: its share of the bar below the tiles; 0 if the tiles do not count anything.
+    """
 
     verdict: Verdict
     sign: str
@@ -72,36 +75,37 @@ def _nothing(*_: object) -> tuple[()]:
 
 @dataclass(frozen=True)
 class ReportSection:
-    """A section by its functions, of which `view` alone is required.
+    """A section by its functions, of which only `view` is required.
 
-    `view` takes the subject of its level (`PageContents` on the page; scene and anchor; scene,
-    proof and anchor) and returns the object that the template shows, or None or an empty one if
-    there is nothing to show. All other functions take the view.
+    `view` takes the subject of its level: on the page `PageContents`; of a scene, the scene and its
+    anchor; of a scheme, the scene, the proof and the anchor. It returns the view, which is None or
+    empty if there is nothing to show. The other functions take the view, except `terms`, which
+    takes all views of the section in a report, and `speaks`.
     """
 
-    order: int  # among the sections of its level
+    order: int  # its position among the sections of its level, which are sorted by it
     view: Callable[..., Any]
-    title: str = ""  # its heading, and its name in the contents; "": its template has its own
-    anchor: str = ""  # where the page's contents and links lead, with that of its scene
-    entries: Callable[[Any], Iterable[ContentsEntry]] = _nothing  # within its own; or in its place
-    is_numbered: bool = False  # its entries are numbers
+    title: str = ""  # its heading and its name in the contents; "" if the template has a heading
+    anchor: str = ""  # the beginning of the anchor to which contents and links lead; "" for none
+    # The entries within its entry in the contents; they replace it if it has no title or no anchor.
+    entries: Callable[[Any], Iterable[ContentsEntry]] = _nothing
+    is_numbered: bool = False  # True if its entries are numbers
     inner: Callable[[Any], Iterable["VisibleSection"]] = _nothing  # the sections within it
     pictures: Callable[[Any], Iterable[Picture]] = _nothing
-    keeps: Callable[[Any], Iterable[tuple[Plot, SectionPlace]]] = (
-        _nothing  # plots that stand only here
-    )
-    # Of all views of the section in a report.
+    # Plots that no other section shows.
+    keeps: Callable[[Any], Iterable[tuple[Plot, SectionPlace]]] = _nothing
+    # The terms that these views use, with their meanings.
     terms: Callable[[Sequence[Any]], Mapping[str, Markup]] = lambda _: {}
-    # For a paper's figure that `shows` this: the plots of that label, each with a finding or "".
+    # If a figure of a paper `shows` this kind: the plots with its label, each with a finding or "".
     shows: str = ""
     matching_plots: Callable[[Any, str], Iterable[tuple[Plot | None, str]]] = _nothing
-    # What the first screen says of a report without claims and proofs: a sentence and tiles.
+    # A sentence and tiles for the first screen of a report without claims and proofs.
     speaks: Callable[[Report], tuple[str, Sequence[Tile]] | None] = lambda _: None
 
 
 @dataclass(frozen=True)
 class VisibleSection:
-    """A section that has something to show; `place`: that of its page, scene or scheme."""
+    """A section that has something to show; `place`: the place of its page, scene or scheme."""
 
     section: ReportSection
     template: str
@@ -120,7 +124,7 @@ class VisibleSection:
 
     @property
     def stem(self) -> str:
-        """The name of its file, with hyphens, which is its class in the style sheet."""
+        """The name of its template with hyphens, which is its class in the style sheet."""
         return self.template.partition("/")[2].removesuffix(".html").replace("_", "-")
 
     @property
@@ -130,12 +134,14 @@ class VisibleSection:
 
     @property
     def entries(self) -> tuple[ContentsEntry, ...]:
-        """Its entry in the contents with the inner ones; these alone if it has no title."""
+        """Its entry in the contents with those within; only these without a title or an anchor."""
         inner = tuple(self.section.entries(self.view))
         if not (self.section.title and self.anchor):
             return inner
-        numbered = self.section.is_numbered
-        return (ContentsEntry(self.anchor, self.section.title, inner=inner, is_numbered=numbered),)
+        is_numbered = self.section.is_numbered
+        return (
+            ContentsEntry(self.anchor, self.section.title, inner=inner, is_numbered=is_numbered),
+        )
 
     @property
     def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, SectionPlace]]:
@@ -146,24 +152,24 @@ class VisibleSection:
 
 
 def sections(files: Catalogue) -> list[tuple[str, ReportSection]]:
-    """Return the sections in these files with the names of their templates, in their order."""
-    templates = [
+    """Return the sections in these files by `order`, each with the name of its template first."""
+    named_sections = [
         (f"{files.folder(name)}/{name.replace('-', '_')}.html", files.module(name).SECTION)
         for name in files.names
     ]
-    return sorted(templates, key=lambda template_and_section: template_and_section[1].order)
+    return sorted(named_sections, key=lambda template_and_section: template_and_section[1].order)
 
 
 def select_sections(
     files: Catalogue, place: SectionPlace, *subject: object
 ) -> tuple[VisibleSection, ...]:
-    """Return the sections in these files that have something to show of the subject."""
+    """Return the sections in these files that have something to show of the subject, by `order`."""
     views = ((s, template, s.view(*subject)) for template, s in sections(files))
     return tuple(VisibleSection(s, template, view, place) for s, template, view in views if view)
 
 
 def walk(visible: Iterable[VisibleSection]) -> Iterator[VisibleSection]:
-    """Yield each section, and after it those within it."""
+    """Yield each section, followed by the sections within it."""
     for section in visible:
         yield section
         yield from walk(section.section.inner(section.view))
@@ -173,7 +179,7 @@ def terms(visible: Iterable[VisibleSection]) -> dict[str, Markup]:
     """Return the terms that these sections and those within them use, with their meanings."""
     return {
         term: meaning
-        # A section may be visible in several scenes; its terms are explained once.
+        # A section may be visible in several scenes, and explains its terms once.
         for same_template in by_key(walk(visible), lambda section: section.template).values()
         for term, meaning in same_template[0]
         .section.terms([section.view for section in same_template])

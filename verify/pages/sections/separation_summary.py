@@ -1,7 +1,8 @@
-"""Truncation and the parts of rounding in Λ, or in W: a table, a caption, sentences, from the data.
+"""Truncation and the parts of rounding in Λ, or in W: a table, a caption and sentences.
 
-In sentences a run is represented by the greatest |truncation| and |rounding| along it, since Λ may
-pass through 0 at its end; the parts in the table are those at the end.
+Sentences use the greatest |truncation| and |rounding| along a run, as Λ may pass through 0 at its
+end; the table has the parts at the end. The point of a grid is the separation at one step size, and
+a way is a method to evaluate Λ or W in float64, a key of `WAYS`.
 """
 
 from collections import Counter
@@ -39,8 +40,8 @@ from verify.scenes.results.separation import (
 )
 from verify.scenes.results.separation_parts import AnyEvaluation, EvaluationResult
 
-# The reason of a missing crossover begins so.
-_NONE = "none in this range: "
+# The beginning of the reason for a missing crossover.
+_NO_CROSSOVER = "none in this range: "
 
 Kinds = Callable[["Counter[str]"], str]
 Grids = Sequence[GridOf[Any]]
@@ -55,10 +56,10 @@ Rounding = Callable[[AnyEvaluation], Markup]
 class PartsTable:
     """The table of a scheme's separations."""
 
-    kinds: tuple[str, ...]  # of rounding
+    kinds: tuple[str, ...]  # the kinds of rounding, which are columns
     groups: tuple[Group, ...]
     count: int
-    excerpt: str  # says which rows are shown, if not all are
+    excerpt: str  # a sentence on the rows that are shown, if not all are
     provenance: str
 
 
@@ -70,8 +71,8 @@ def grids_of(grids: Grids, proof: ProofResult) -> list[Any]:
 def parts_table(grids: Grids, rounding: Rounding, size: Size, kinds: Kinds) -> PartsTable:
     """Return the table of these grids.
 
-    `rounding` formats the whole rounding, `size` gives the size of a part, or of a matrix's
-    greatest entry, and `kinds` lists the kinds of bounds.
+    `rounding` formats the total rounding, `size` returns the number to show for a part or a
+    matrix's greatest entry, and `kinds` describes the kinds of bounds.
     """
     points: list[Separation] = [point for grid in grids for point in grid.points]
     (visible,) = select_members([points], _is_unsplit)
@@ -87,7 +88,7 @@ def parts_table(grids: Grids, rounding: Rounding, size: Size, kinds: Kinds) -> P
 
 
 def groups_of_grids(grids: Grids, row: Callable[[Any], TableRow | None]) -> Iterator[Group]:
-    """Yield a group for each grid that has a row, with as many rows as there is room for."""
+    """Yield a group for each grid that has a row, with the rows for which there is room."""
     for grid, visible in zip(
         grids, select_members((grid.points for grid in grids), _is_unsplit), strict=True
     ):
@@ -110,13 +111,15 @@ def _parts_row(point: Separation, rounding: Rounding, size: Size) -> TableRow:
     def cell(name: str) -> Markup:
         return known_digits(size(largest(getattr(parts, name))), strong=name == greatest)
 
-    last = rounding(point.closed_form) if point.closed_form else Markup("–")
+    closed_form_cell = rounding(point.closed_form) if point.closed_form else Markup("–")
     part_cells = map(cell, parts.of_rounding)
-    return TableRow(h, (steps, cell("truncation"), rounding(point.plain), *part_cells, last))
+    return TableRow(
+        h, (steps, cell("truncation"), rounding(point.plain), *part_cells, closed_form_cell)
+    )
 
 
 def greatest_part(evaluation: AnyEvaluation) -> str:
-    """Return the name of the greatest part of rounding; "" if all are 0."""
+    """Return the name of the greatest kind of rounding; "" if all are 0."""
     parts = evaluation.parts
     sizes = {name: abs(largest(getattr(parts, name)).exact) for name in parts.of_rounding}
     greatest = max(sizes, key=lambda name: sizes[name])
@@ -124,14 +127,14 @@ def greatest_part(evaluation: AnyEvaluation) -> str:
 
 
 def list_kinds(kinds: "Counter[str]") -> str:
-    """Return the number of each kind as text."""
+    """Return the kinds of bounds as text, each with its count if there are several."""
     if len(kinds) == 1:
         return f"all {next(iter(kinds))}"
     return join_and(f"{n} {kind}" for kind, n in kinds.most_common())
 
 
 def describe_evaluation(points: Sequence[Separation], format_kinds: Kinds) -> str:
-    """Return the number systems that stood for exact arithmetic, and how errors were bounded."""
+    """Return sentences on the number systems that stood for exact arithmetic, and on the bounds."""
     finished = [p for p in points if p.plain]
     if not finished:
         return ""
@@ -144,7 +147,7 @@ def describe_evaluation(points: Sequence[Separation], format_kinds: Kinds) -> st
 
 
 def end_of(points: Sequence[Separation]) -> str:
-    """Return `, over [t₀, t₀ + T]` if all runs end at one time; else ""."""
+    """Return `, over [t₀, t₀ + T]` if all runs end at the same time; else ""."""
     lengths = {Fraction(point.step_size) * point.steps for point in points}
     if len(lengths) != 1:
         return ""
@@ -155,10 +158,10 @@ def end_of(points: Sequence[Separation]) -> str:
 
 
 def caption(grid: SeparationGrid, provenance: str) -> str:
-    """Return the caption: the crossovers of each way, N, and how they were computed."""
+    """Return the caption: the crossover of each way, N, and `provenance`."""
     crossovers = {name: getattr(grid, way) for way, name in WAYS.items()}
     sentences = [_describe_crossover(crossover, name) for name, crossover in crossovers.items()]
-    # The same reason for both ways is given once.
+    # If both ways have the same reason for no crossover, it is given once.
     if len(set(crossovers.values())) == 1 and not grid.plain.step_size:
         sentences = [_describe_crossover(grid.plain, "either way")]
     steps = sorted(point.steps for point in grid.points)
@@ -176,16 +179,16 @@ def caption(grid: SeparationGrid, provenance: str) -> str:
     )
 
 
-def _describe_crossover(result: CrossoverResult, way: str) -> str:
-    way = way[0].upper() + way[1:]
+def _describe_crossover(result: CrossoverResult, way_name: str) -> str:
+    way_name = way_name[0].upper() + way_name[1:]
     bracket = ""
     if result.bracket:
         low, high = (step(end) for end in result.bracket)
         bracket = f"between {low} and {high}"
     if result.step_size:
-        return f"{way}: h* ≈{NBSP}{round_crossover(result.step_size)}, {bracket}."
-    reason = result.reason.removeprefix(_NONE)
-    return f"{way}: {bracket or 'no crossover'}; {reason}."
+        return f"{way_name}: h* ≈{NBSP}{round_crossover(result.step_size)}, {bracket}."
+    reason = result.reason.removeprefix(_NO_CROSSOVER)
+    return f"{way_name}: {bracket or 'no crossover'}; {reason}."
 
 
 # -- sentences ------------------------------------------------------------------------------------
@@ -194,7 +197,7 @@ def _describe_crossover(result: CrossoverResult, way: str) -> str:
 def describe_separation(points: Sequence[SeparationResult], location: str = "") -> Iterator[str]:
     """Yield sentences on rounding against truncation, its greatest part and the better way.
 
-    `location`: the place of the entries, beginning with a space, for the first sentence.
+    `location`: a phrase for the first sentence, such as " on the grid of runs".
     """
     evaluations = [point.plain for point in points if point.plain]
     if not evaluations:
@@ -212,8 +215,8 @@ def describe_separation(points: Sequence[SeparationResult], location: str = "") 
     if pairs:
         yield _compare_ways(pairs)
     if len(evaluations) < len(points):
-        lost = _count_of(len(points) - len(evaluations), len(points))
-        yield f"{lost} could not be separated; the table says why."
+        unsplit = _count_of(len(points) - len(evaluations), len(points))
+        yield f"{unsplit} could not be separated; the table says why."
 
 
 def _compare_with_truncation(evaluations: Sequence[EvaluationResult], location: str) -> str:
@@ -231,28 +234,31 @@ def _compare_with_truncation(evaluations: Sequence[EvaluationResult], location: 
 
 
 def _compare_ways(pairs: Sequence[tuple[EvaluationResult, EvaluationResult]]) -> str:
-    """Return a sentence on the gain of the closed form with compensated sums of logarithms."""
-    gains = [lg(a.largest["total"]) - lg(b.largest["total"]) for a, b in pairs]
+    """Return a sentence on the rounding of the closed form, compared with that of the plain way."""
+    gains = [
+        lg(plain.largest["total"]) - lg(closed_form.largest["total"])
+        for plain, closed_form in pairs
+    ]
     finite = [gain for gain in gains if isfinite(gain)]
     better, worse = [g for g in finite if g > 0], [-g for g in finite if g < 0]
-    way = "By the closed form of ΔJ with log1p summation rounding is"
+    subject = "By the closed form of ΔJ with log1p summation rounding is"
     clauses = [
         f"{kind} in {_count_of(len(distances), len(pairs))}, by {_format_range(distances)} decades"
         for kind, distances in (("smaller", better), ("greater", worse))
         if distances
     ]
-    return f"{way} {', and '.join(clauses)}." if clauses else f"{way} as great."
+    return f"{subject} {', and '.join(clauses)}." if clauses else f"{subject} as great."
 
 
 def growth_finding(points: Sequence[SeparationResult]) -> str:
-    """Return how often rounding was classified as a random walk, as a drift, or as neither."""
+    """Return a sentence on the runs whose rounding is a random walk, a drift, or undecided."""
     clauses = []
     for way, name in WAYS.items():
         evaluations = [getattr(point, way) for point in points if getattr(point, way)]
         names = Counter(evaluation.growth["total"].name for evaluation in evaluations)
         if names:
-            *most, (last, n) = names.most_common()
-            ranked = [f"{kind} in {k}" for kind, k in most]
+            *others, (last, n) = names.most_common()
+            ranked = [f"{kind} in {k}" for kind, k in others]
             clauses.append(
                 f"{name}, {join_and([*ranked, f'{last} in {_count_of(n, len(evaluations))}'])}"
             )

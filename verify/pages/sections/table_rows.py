@@ -1,4 +1,4 @@
-"""Rows of a section's tables in groups, which the macros `rows` and `groups` set."""
+"""Rows of a section's tables in groups, for the macros `rows` and `groups` of the templates."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from verify.pages.text.typography import whole
 
-# Rows of a table on the page; all of them are in results.json.
+# The limit on rows of a table on the page; all of them are in results.json.
 MOST_ROWS = 600
 Key = TypeVar("Key")
 Member = TypeVar("Member")
@@ -16,7 +16,7 @@ Member = TypeVar("Member")
 
 @dataclass(frozen=True)
 class TableRow:
-    """A row: `label`, then `cells`; a `failure` takes the place of the cells that are missing."""
+    """A row: `label`, then `cells`, then a `failure`, if any, in place of missing cells."""
 
     label: str
     cells: Sequence[str | Markup]
@@ -25,7 +25,7 @@ class TableRow:
 
 @dataclass(frozen=True)
 class Group:
-    """Rows below a heading, with a remark `about` them beside it."""
+    """Rows below a heading `label`, with a remark `about` them beside the heading."""
 
     label: str
     rows: Sequence[TableRow]
@@ -46,8 +46,8 @@ def select_members(
 ) -> Iterator[list[Member]]:
     """Yield for each group the members for which a table has room, in their order.
 
-    Members for which `failed` holds come first, so that no failure is hidden; then the first of
-    the others.
+    All groups share the room. Members for which `failed` holds are selected first, so that no
+    failure is hidden; then the first of the others.
     """
     members = [list(group) for group in groups]
     indices = [(i, k) for i, group in enumerate(members) for k in range(len(group))]
@@ -58,7 +58,7 @@ def select_members(
 
 
 def describe_excerpt(count: int, visible: int, failures: int = 0) -> str:
-    """Return a sentence on the rows that a table without room for all shows; "" if all fit.
+    """Return a sentence on the visible rows of a table that has no room for all; "" if all fit.
 
     >>> describe_excerpt(5000, 600, failures=3)
     '600 of 5,000 are shown, the 3 that did not end well among them; all are in results.json.'

@@ -2,9 +2,9 @@
 
     |Λ| ≤ (1 + ε)^N − 1 ≤ e^(Nε) − 1        Σ_{n=0}^{η} h^n/n! X^n z        "where" D ≠ 0
 
-Letters side by side are a product, except the words in `_WORDS`. The sides of a `/` reach to the
-next space, or are in brackets, which are not shown, nor are those after `_` and `^`. A long formula
-is set in several rows. Anything that is not recognised is set unchanged.
+Letters side by side are a product, except in the words of `_WORDS`. Each side of a `/` reaches to
+the next space, or is in brackets. Such brackets are not shown, nor are those after `_` and `^`. A
+long formula is set in several rows. A sign that is not recognised is set unchanged.
 """
 
 import re
@@ -29,7 +29,7 @@ _WORDS = {
 }  # fmt: skip
 # Operators whose index is set below them.
 _INDEXED_BELOW = {"Σ", "Π", "max", "min", "lim"}
-_LARGE = {"Σ": "∑", "Π": "∏", "∫": "∫", "∂": "∂", "∇": "∇"}
+_LARGE_OPERATORS = {"Σ": "∑", "Π": "∏", "∫": "∫", "∂": "∂", "∇": "∇"}
 _RELATIONS = set("=≠<>≤≥≡→↦∈≈⇒⇔")
 _OPERATORS = set("+−-·×∘∧,;:…±∪∩") | _RELATIONS
 _BRACKETS = {"(": ")", "[": "]", "⟨": "⟩"}
@@ -47,9 +47,9 @@ _SCRIPT = re.compile(r"[−-]?(?:[0-9]+|[A-Za-z]+|[\u0370-\u03ff])")
 
 
 def display_formula(text: str, end: str = "") -> Markup:
-    """Return the formula as a block of its own, with the stop or comma that ends it."""
+    """Return the formula as a block of its own, followed by `end`, a stop or a comma."""
     reader = _FormulaReader(" ".join(text.split()))
-    rows = split_rows(reader.read_items(""))
+    rows = split_rows(reader.read_pieces(""))
     if end:
         rows[-1].append(Piece(f"<mtext>{escape(end)}</mtext>"))
     if len(rows) == 1:
@@ -64,9 +64,9 @@ class _FormulaReader:
     def __init__(self, text: str) -> None:
         self.text = text
         self.position = 0
-        self.script_depth = 0  # how many scripts the text is in
+        self.script_depth = 0  # the number of scripts around the text, one in another
 
-    def read_items(self, end: str) -> list[Piece]:
+    def read_pieces(self, end: str) -> list[Piece]:
         """Read the pieces up to the sign `end`, and skip that sign."""
         pieces: list[Piece] = []
         while self.position < len(self.text):
@@ -78,9 +78,9 @@ class _FormulaReader:
                 numerator = pop_operand(pieces)
                 pieces.append(self._set_fraction(numerator, self._read_product(end)))
                 continue
-            item = self._read_scripts(self._read_atom())
-            item.is_apart = is_apart
-            pieces.append(item)
+            piece = self._read_scripts(self._read_atom())
+            piece.is_apart = is_apart
+            pieces.append(piece)
         self.position += bool(end)
         return pieces
 
@@ -94,17 +94,17 @@ class _FormulaReader:
         return self.position > start
 
     def _is_end(self, end: str) -> bool:
-        # An opening bar and a closing bar are the same sign: it closes after a symbol, or before a
-        # space, a comma or a closing bracket.
+        # An opening and a closing bar are the same sign. It closes if it stands after a symbol, or
+        # before the end, a space, a comma or a closing bracket.
         if end in ("|", "‖") and self._peek() == end:
-            before, after = (
+            sign_before, sign_after = (
                 self.text[self.position - 1],
                 self.text[self.position + 1 : self.position + 2],
             )
-            return before not in " (," or after in ("", " ", ")", ",")
+            return sign_before not in " (," or sign_after in ("", " ", ")", ",")
         return bool(end) and self._peek() == end
 
-    # -- what stands alone ------------------------------------------------------------------------
+    # -- atoms ------------------------------------------------------------------------------------
 
     def _read_atom(self) -> Piece:
         sign = self._peek()
@@ -115,7 +115,7 @@ class _FormulaReader:
             radicand = self._read_atom()
             return Piece(f"<msqrt>{radicand.inside or radicand.markup}</msqrt>")
         match = _TOKEN.match(self.text, self.position)
-        if match is None:  # at the end
+        if match is None:  # at the end of the text
             return Piece("")
         self.position = match.end()
         if (words := match["text"]) is not None:
@@ -128,8 +128,10 @@ class _FormulaReader:
             printed_sign = "−" if sign == "-" else sign
             kind: Kind = "relation" if sign in _RELATIONS else "operator"
             return Piece(f"<mo>{escape(printed_sign)}</mo>", kind, is_sign=printed_sign in "+−")
-        if sign in _LARGE:
-            return Piece(f"<mo>{_LARGE[sign]}</mo>", "word", has_index_below=sign in _INDEXED_BELOW)
+        if sign in _LARGE_OPERATORS:
+            return Piece(
+                f"<mo>{_LARGE_OPERATORS[sign]}</mo>", "word", has_index_below=sign in _INDEXED_BELOW
+            )
         accent = self._read_accent()
         upright = ' mathvariant="normal"' if sign in "ΔΦΨΛΩ∞" else ""
         return Piece(f"<mi{upright}>{escape(sign + accent)}</mi>")
@@ -140,7 +142,7 @@ class _FormulaReader:
         return accent[0] if accent else ""
 
     def _read_word(self, match: re.Match[str]) -> Piece:
-        """Read a word of `_WORDS`; of any other word the first letter alone, with its accent."""
+        """Read a word of `_WORDS`, or the first letter of any other word, with its accent."""
         word = match["word"]
         if word in _WORDS:
             self.position = match.start() + len(word)
@@ -152,24 +154,24 @@ class _FormulaReader:
     def _read_group(self, sign: str) -> Piece:
         self.position += 1
         close = {**_BRACKETS, "{": "}"}.get(sign, sign)
-        items = self.read_items(close)
-        inside = side_by_side(items)
-        is_fraction = len(items) == 1 and items[0].markup.startswith("<mfrac>")
-        # Brackets that hold nothing but a fraction are not needed, unless a script is bound to
-        # them.
+        pieces = self.read_pieces(close)
+        inside = side_by_side(pieces)
+        is_fraction = len(pieces) == 1 and pieces[0].markup.startswith("<mfrac>")
+        # Brackets around a single fraction are superfluous, unless a script follows them.
         if sign == "{" or (is_fraction and self._peek() not in "^_!'′"):
             return Piece(inside, inside=inside)
         fence = '<mo stretchy="false" form="{}">{}</mo>'
-        tall = "<mfrac>" in inside or "<munder" in inside
-        if tall and sign in _BRACKETS:
+        is_tall = "<mfrac>" in inside or "<munder" in inside
+        if is_tall and sign in _BRACKETS:
             fence = '<mo form="{}">{}</mo>'
         markup = f"{fence.format('prefix', sign)}{inside}{fence.format('postfix', close)}"
         return Piece(f"<mrow>{markup}</mrow>", inside=None if sign in "|‖" else inside)
 
-    # -- what is bound to it ----------------------------------------------------------------------
+    # -- scripts and fractions --------------------------------------------------------------------
 
-    def _read_scripts(self, item: Piece) -> Piece:
-        lower = upper = after = ""
+    def _read_scripts(self, atom: Piece) -> Piece:
+        """Return the atom with the indices, powers, primes and factorial signs that follow it."""
+        lower = upper = suffix = ""
         while self.position < len(self.text):
             sign = self._peek()
             if sign == "_" and not lower:
@@ -181,17 +183,18 @@ class _FormulaReader:
             elif sign in _SUBSCRIPT and not lower:
                 lower = self._read_run(_SUBSCRIPT, _SUBSCRIPT_DIGITS)
             elif sign in "'′":
-                after += '<mtext class="prime">′</mtext>'
+                suffix += '<mtext class="prime">′</mtext>'
                 self.position += 1
             elif sign == "!":
-                after += '<mo form="postfix">!</mo>'
+                suffix += '<mo form="postfix">!</mo>'
                 self.position += 1
             else:
                 break
-        if not (lower or upper or after):
-            return item
+        if not (lower or upper or suffix):
+            return atom
         return Piece(
-            attach_scripts(item.markup + after, lower, upper, below=item.has_index_below), item.kind
+            attach_scripts(atom.markup + suffix, lower, upper, below=atom.has_index_below),
+            atom.kind,
         )
 
     def _read_run(self, signs: str, table: dict[int, int]) -> str:
@@ -201,7 +204,7 @@ class _FormulaReader:
         return self._set_inner(self.text[start : self.position].translate(table))
 
     def _read_script(self) -> str:
-        """Read the script after `_` or `^`: a group without brackets, a number, word or letter."""
+        """Read the script after `_` or `^`: a group, set without brackets, a number or a word."""
         self.position += 1
         if self._peek() in ("(", "{"):
             self.script_depth += 1
@@ -217,10 +220,10 @@ class _FormulaReader:
     def _set_inner(self, text: str) -> str:
         reader = _FormulaReader(text)
         reader.script_depth = self.script_depth + 1
-        return side_by_side(reader.read_items(""))
+        return side_by_side(reader.read_pieces(""))
 
     def _read_product(self, end: str) -> list[Piece]:
-        """Read the factors up to the next space, such as n!, (η + 1)!, dt."""
+        """Read the factors of a denominator up to the next space, such as n!, (η + 1)!, dt."""
         self._skip_spaces()
         pieces = [self._read_scripts(self._read_atom())]
         while self._peek() not in ("", " ", "/", "|", "‖") and not self._is_end(end):
@@ -231,7 +234,7 @@ class _FormulaReader:
 
     def _set_fraction(self, numerator: list[Piece], denominator: list[Piece]) -> Piece:
         is_apart = numerator[0].is_apart
-        if self.script_depth:  # too small for one above the other
+        if self.script_depth:  # a stacked fraction would be too small to read
             slash = '<mo lspace="0" rspace="0">/</mo>'
             return Piece(
                 f"<mrow>{side_by_side(numerator)}{slash}{side_by_side(denominator)}</mrow>",

@@ -1,7 +1,7 @@
-"""Parts of a formula as its printer sets them: terms in reading order, names by letter and index.
+"""Parts of a formula as its printer needs them: terms in reading order, names by letter and index.
 
 Sums are ordered by ascending powers of h, then by degree in p and q; a factor of h leads its
-product, sums and functions close it: −(h²/2) p (1 + 3q²).
+product, and sums and functions end it: −(h²/2) p (1 + 3q²).
 """
 
 import re
@@ -12,8 +12,8 @@ import sympy
 
 Expr: TypeAlias = sympy.Expr
 
-_INNER = ("p", "q")
-# sympy's names; `lamda` is written so since `lambda` is a keyword of Python.
+_COORDINATES = ("p", "q")
+# The names that sympy uses; it has `lamda`, as `lambda` is a keyword of Python.
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
     "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
@@ -25,7 +25,7 @@ GREEK = {
 
 @dataclass(frozen=True)
 class FormulaTerm:
-    """coefficient · factors / divisors, the coefficient rational and not yet signed."""
+    """coefficient · factors / divisors, with a rational coefficient, which has the sign."""
 
     coefficient: Expr
     factors: tuple[Expr, ...] = ()
@@ -40,19 +40,19 @@ def terms_of(expression: Expr) -> list[FormulaTerm]:
     """Return the sum's terms in reading order."""
     keyed = sorted(((_sort_key(t), t) for t in sympy.Add.make_args(expression)), key=lambda x: x[0])
     terms = [(key[0], _term(t)) for key, t in keyed]
-    lowest = [term for power, term in terms if power == terms[0][0]]
-    if lowest[0].is_negative:  # −1 + q² reads better as q² − 1
-        lowest.sort(key=lambda term: term.is_negative)
-    return [*lowest, *(term for _, term in terms[len(lowest) :])]
+    lowest_terms = [term for power, term in terms if power == terms[0][0]]
+    if lowest_terms[0].is_negative:  # q² − 1 reads better than −1 + q²
+        lowest_terms.sort(key=lambda term: term.is_negative)
+    return [*lowest_terms, *(term for _, term in terms[len(lowest_terms) :])]
 
 
 def _sort_key(term: Expr) -> tuple[object, ...]:
     powers = {str(b): e for b, e in _powers(term) if b.is_Symbol}
     other_bases = [b for b, _ in _powers(term) if not b.is_Symbol and not b.is_number]
     # Ascending powers of h come first, since h is small; then ascending degree in p and q.
-    degree = sum(powers.get(name, 0) for name in _INNER)
-    inner = tuple(-powers.get(name, 0) for name in _INNER)
-    return powers.get("h", 0), bool(other_bases), degree, inner, str(term)
+    degree = sum(powers.get(name, 0) for name in _COORDINATES)
+    negative_powers = tuple(-powers.get(name, 0) for name in _COORDINATES)
+    return powers.get("h", 0), bool(other_bases), degree, negative_powers, str(term)
 
 
 def _powers(term: Expr) -> list[tuple[Expr, Expr]]:
@@ -94,16 +94,16 @@ def factor_key(factor: Expr) -> tuple[object, ...]:
     base, _ = factor.as_base_exp()
     name = str(base)
     if base.is_number:
-        kind = 4 if base is sympy.E else 0
+        rank = 4 if base is sympy.E else 0
     elif base.is_Symbol:
-        kind = 1 if name == "h" else 3 if name in _INNER else 2
+        rank = 1 if name == "h" else 3 if name in _COORDINATES else 2
     else:
-        kind = 4 if base.is_Add else 5
-    return kind, name
+        rank = 4 if base.is_Add else 5
+    return rank, name
 
 
 def split_name(name: str) -> tuple[str, str]:
-    """Return a name's letter and its index, in Greek letters for their names, "" without one.
+    """Return a name's letter and its index, or "" for no index; Greek letters replace their names.
 
     >>> split_name("omega0"), split_name("k_max"), split_name("x")
     (('ω', '0'), ('k', 'max'), ('x', ''))

@@ -1,14 +1,14 @@
 """MathML within a line, with fractions in one row, as stacked letters would be too small.
 
-`h³/2 · p` becomes ½h³p, if the fraction has a character of its own, else (h³/24) p; a quotient
-becomes p/(2q).
+(h³/2)·p becomes ½h³p, as the fraction ½ has a character of its own; (h³/24)·p keeps a fraction with
+a solidus, and a quotient becomes p/(2q).
 """
 
 from fractions import Fraction
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-_CHARACTERS = {
+_FRACTION_CHARACTERS = {
     Fraction(p, q): sign
     for (p, q), sign in {
         (1, 2): "½", (1, 3): "⅓", (2, 3): "⅔", (1, 4): "¼", (3, 4): "¾", (1, 5): "⅕", (2, 5): "⅖",
@@ -28,11 +28,11 @@ def flatten_fractions(content: str) -> str:
 
 
 def _flatten(node: Element, *, alone: bool) -> Element:
-    """Return the node without stacked fractions; `alone`: it is not a factor of a product."""
+    """Return the node without stacked fractions; `alone`: True unless it is a factor or a base."""
     children = list(node)
-    product = node.tag == "mrow" and any(_is_times(child) for child in children)
+    is_product = node.tag == "mrow" and any(_is_times(child) for child in children)
     inner = [
-        _flatten(child, alone=not product and node.tag not in ("msup", "msubsup"))
+        _flatten(child, alone=not is_product and node.tag not in ("msup", "msubsup"))
         for child in children
     ]
     if node.tag == "mfrac":
@@ -45,19 +45,21 @@ def _flatten(node: Element, *, alone: bool) -> Element:
 
 def _set_in_a_row(numerator: Element, denominator: Element, *, alone: bool) -> Element:
     factors = list(numerator) if numerator.tag == "mrow" else [numerator]
-    head = factors[0]
+    first_factor = factors[0]
     if denominator.tag == "mn" and all(map(_is_factor, factors)):
-        top = int(head.text or 1) if head.tag == "mn" else 1
+        top = int(first_factor.text or 1) if first_factor.tag == "mn" else 1
         # A fraction with a character of its own, such as ½, needs neither slash nor brackets.
-        sign = _CHARACTERS.get(Fraction(top, int(denominator.text or 1)))
+        sign = _FRACTION_CHARACTERS.get(Fraction(top, int(denominator.text or 1)))
         if sign:
-            other_factors = factors[1:] if head.tag == "mn" else [_element("mo", _TIMES), *factors]
+            other_factors = (
+                factors[1:] if first_factor.tag == "mn" else [_element("mo", _TIMES), *factors]
+            )
             return _row([_element("mn", sign), *other_factors])
-    top_alone = numerator.tag != "mrow" or all(map(_is_factor, factors))
+    is_single_term = numerator.tag != "mrow" or all(map(_is_factor, factors))
     slash = _element("mo", "/", lspace="0", rspace="0")
     row = _row(
         [
-            _add_brackets(numerator, not top_alone),
+            _add_brackets(numerator, not is_single_term),
             slash,
             _add_brackets(denominator, denominator.tag == "mrow"),
         ]

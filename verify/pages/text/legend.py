@@ -1,6 +1,6 @@
 """The legend of a page: signs of verdicts, terms with their meanings, kinds of runs in words.
 
-A term stands here if several sections explain it in the same words.
+Terms that several sections explain in the same words are defined here.
 """
 
 from collections.abc import Mapping
@@ -35,15 +35,15 @@ ALWAYS = {
         "at first."
     ),
 }
-# In several degrees of freedom.
-OF_FORM = {
+# Terms of n degrees of freedom.
+FORM_TERMS = {
     "S": Markup(
         "JᵀΩJ − Ω, by how much one step changes the symplectic form Ω = Σ dp<sub>i</sub> ∧ "
         "dq<sub>i</sub>; max |S| is the largest entry in any step. S = 0 is more than det J = 1."
     ),
     "W": Markup("The same of all steps together: W ← W + MᵀSM, with M the Jacobian so far."),
 }
-# Terms that several sections need.
+# Terms of separations, in Λ and in W, and of runs.
 SEPARATED = {
     "Truncation, rounding": Markup(
         "Truncation is Λ in exact arithmetic from the exact inputs: all that the scheme itself "
@@ -54,7 +54,7 @@ SEPARATED = {
         "<code>product</code>, their product (or sum of logarithms) rounded."
     )
 }
-SEPARATED_FORM = {
+FORM_SEPARATION_TERMS = {
     "Truncation, rounding in W": Markup(
         "Truncation is W in exact arithmetic from the exact inputs. Rounding is all that float64 "
         "adds to it, split along a chain so that the parts add up exactly: <code>input</code>, the "
@@ -93,7 +93,7 @@ _ADJECTIVES: dict[Kind, str] = {
 
 
 def counts_of(counts: Mapping[Kind, int]) -> str:
-    """Return the counts of the kinds by adjectives, as the names of kinds do not fit a sentence."""
+    """Return the counts of the kinds with adjectives, as the names of the kinds fit no sentence."""
     return join_and(
         f"{whole(counts[kind])} {_ADJECTIVES[kind]}" for kind in KINDS if counts.get(kind)
     )

@@ -1,12 +1,12 @@
 """Conversion of a formula's text to MathML Core by a small printer.
 
-The text is read by the whitelist parser and never evaluated. A text that the parser refuses (such
-as a formula longer than its limit) is shown as it is written. The order of terms and factors is
+The text is read by the whitelist parser and never evaluated. A text that the parser refuses, such
+as a formula longer than its limit, is shown as plain text. The order of terms and factors is
 defined in `verify.pages.text.formula_parts`.
 
-sympy's own printers, to MathML and to LaTeX, order sums and factors by sympy's rules (3δq² + 1,
-δh³), put every argument in growing brackets, and the first writes a minus as a hyphen. latex2mathml
-over the second keeps that order, and sets the index of k_max as three letters.
+sympy's printers to MathML and to LaTeX order sums and factors by sympy's rules (3δq² + 1, δh³), and
+put every argument in growing brackets; that to MathML writes a minus as a hyphen. latex2mathml,
+applied to the LaTeX, keeps that order, and sets the index of k_max as three letters.
 """
 
 import re
@@ -22,12 +22,12 @@ from verify.hamiltonians.coordinates import PLANE, coordinates_of
 from verify.pages.text.formula_parts import Expr, FormulaTerm, factor_key, split_name, terms_of
 from verify.pages.text.inline_math import flatten_fractions
 
-# Characters of a formula that is shown as plain text; the rest is cut off.
+# The limit on characters of a formula that is shown as plain text; the rest is cut off.
 LONGEST_SHOWN = 600
-# A sum of at least so many terms is set with one term a line, if it is long enough.
-_MIN_STACKED = 4
-# Signs and names of a sum that fits on one line.
-_MAX_LINE = 40
+# A sum of at least this number of terms is set with one term in a line, if it is long enough.
+_MIN_STACKED_TERMS = 4
+# The limit on characters, without tags, of a sum that is set on one line.
+_MAX_LINE_CHARACTERS = 40
 _TAGS = re.compile("<[^>]*>")
 _TIMES = "<mo>\u2062</mo>"
 # A thin space stands before a function's name, as in p sin q.
@@ -39,7 +39,7 @@ _OPEN, _CLOSE = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
 _SLASH = '<mo lspace="0" rspace="0">/</mo>'
 
 
-# -- what the pages ask for -----------------------------------------------------------------------
+# -- whole formulas -------------------------------------------------------------------------------
 
 
 def formula(text: str) -> Markup:
@@ -49,18 +49,18 @@ def formula(text: str) -> Markup:
 
 
 def equation(left: str, text: str) -> Markup:
-    """Return `left` = formula as a display; `left` is markup (`NAMED`); a long sum is stacked."""
+    """Return `left` = formula as a display, a long sum in lines; `left`: markup, as in `NAMED`."""
     expression = read(text)
     if expression is None:
         return _math(f"{left}<mo>=</mo>") + plain(text)
     terms = terms_of(expression)
     line = _sum(expression)
-    if len(terms) < _MIN_STACKED or len(_TAGS.sub("", line)) <= _MAX_LINE:
+    if len(terms) < _MIN_STACKED_TERMS or len(_TAGS.sub("", line)) <= _MAX_LINE_CHARACTERS:
         return _math(f"{left}<mo>=</mo>{line}", display=True)
     rows = []
     for index, term in enumerate(terms):
         sign = _sign(term, first=index == 0)
-        # Without this, MathML would set the sign of a continued line as a prefix, without space.
+        # By default MathML sets a sign at the start of a line as a prefix, without space.
         if index:
             sign = sign.replace("<mo>", '<mo form="infix">')
         start = f"{left}<mo>=</mo>" if index == 0 else ""
@@ -80,9 +80,9 @@ def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
         "<mtr>" + "".join(f"<mtd>{_sum(entry)}</mtd>" for entry in row) + "</mtr>"
         for row in expressions
     )
-    # The style sheet draws them: without a font for mathematics parentheses do not stretch.
-    left_one, right_one = (f'<mo class="drawn">{sign}</mo>' for sign in "()")
-    table = f'{left_one}<mtable class="matrix" displaystyle="true">{cells}</mtable>{right_one}'
+    # The style sheet draws the parentheses, which stretch only in a font for mathematics.
+    opening, closing = (f'<mo class="drawn">{sign}</mo>' for sign in "()")
+    table = f'{opening}<mtable class="matrix" displaystyle="true">{cells}</mtable>{closing}'
     return _math(f"{left}<mo>=</mo><mrow>{table}</mrow>", display=True)
 
 
@@ -91,7 +91,7 @@ NAMED = {
     "H(p, q)": f"<mrow><mi>H</mi>{_OPEN}<mi>p</mi><mo>,</mo><mi>q</mi>{_CLOSE}</mrow>",
     "H(p, q, t)": f"<mrow><mi>H</mi>{_OPEN}<mi>p</mi><mo>,</mo><mi>q</mi><mo>,</mo><mi>t</mi>"
     f"{_CLOSE}</mrow>",
-    # A text font's prime is raised already; math fonts differ in theirs.
+    # The prime of a text font is raised; those of fonts for mathematics differ.
     "p′": '<mrow><mi>p</mi><mtext class="prime">′</mtext></mrow>',
     "q′": '<mrow><mi>q</mi><mtext class="prime">′</mtext></mrow>',
     "J": "<mi>J</mi>",
@@ -138,7 +138,7 @@ def read(text: str) -> Expr | None:
 
 
 def plain(text: str) -> Markup:
-    """Return a formula as plain text, cut if it is too long for any reader."""
+    """Return a formula as plain text, cut if it is longer than `LONGEST_SHOWN`."""
     if len(text) > LONGEST_SHOWN:
         beginning = text[:LONGEST_SHOWN]
         return Markup("<code>{}</code>… ({:,} characters; all of them in results.json)").format(
@@ -188,7 +188,7 @@ def _product(term: FormulaTerm) -> str:
         return f"<mfrac>{_join_factors(size.p, factors)}{denominator}</mfrac>"
     if size.q == 1:
         return _join_factors(size.p, factors)
-    # Over a bare number stand the powers of h, else those of all symbols: (h³/2) p sin q, δq⁴/4.
+    # Above a number stand the powers of h, without h those of all symbols: (h³/2) p sin q, δq⁴/4.
     numerator = [f for f in factors if str(f.as_base_exp()[0]) == "h"]
     numerator = numerator or [f for f in factors if f.as_base_exp()[0].is_Symbol]
     other_factors = [f for f in factors if f not in numerator]
@@ -197,7 +197,7 @@ def _product(term: FormulaTerm) -> str:
 
 
 def _join_factors(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
-    """Return number · factors in a row, without the number if it is 1 and something follows."""
+    """Return before · number · factors in a row, without a number 1 if there is anything else."""
     factors = list(factors)
     is_alone = number == 1 and len(factors) == 1 and not before
     parts = [before] if before else []
@@ -278,7 +278,7 @@ def _in_brackets(expression: Expr) -> str:
 def identifier(text: str, power: str = "") -> str:
     """Return a name as markup: Greek letters for their names, trailing digits as a subscript.
 
-    `power`: markup that stands above the subscript.
+    `power`: markup of an exponent, which is set above the subscript.
     """
     letter_text, index_text = split_name(text)
     letter = _word(letter_text)

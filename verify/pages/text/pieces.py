@@ -1,4 +1,4 @@
-"""Pieces of a displayed formula, set side by side with their indices, in rows if it is long."""
+"""Pieces of a displayed formula: set side by side, with indices, in rows if it is long."""
 
 import re
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Literal
 Kind = Literal["operand", "word", "text", "operator", "relation"]
 _THIN = '<mspace width="0.17em"></mspace>'
 _TAG = re.compile("<[^>]*>")
-# A formula of so many characters fits on one line of a phone.
+# The limit on characters in a row, which fit on the screen of a phone.
 _MAX_CHARACTERS = 36
 
 
@@ -28,7 +28,7 @@ class Piece:
 
 
 def attach_scripts(base: str, lower: str, upper: str, *, below: bool) -> str:
-    """Return the base with its lower and upper scripts, if there are any."""
+    """Return the base with the scripts that are not empty, below and above it if `below`."""
     if not (lower or upper):
         return base
     tag = {(True, True): "subsup", (True, False): "sub", (False, True): "sup"}[
@@ -41,7 +41,7 @@ def attach_scripts(base: str, lower: str, upper: str, *, below: bool) -> str:
 
 
 def pop_operand(items: list[Piece]) -> list[Piece]:
-    """Remove and return the last pieces without a space between them, such as dH before `/dt`."""
+    """Remove and return the last operands without a space between them, such as dH of dH/dt."""
     operand = [items.pop()]
     while items and not operand[0].is_apart and items[-1].kind in ("operand", "word"):
         operand.insert(0, items.pop())
@@ -60,33 +60,35 @@ def as_element(markup: str) -> str:
 
 
 def side_by_side(items: list[Piece]) -> str:
-    """Return the pieces in a row; a sign at its start, or after another, belongs to the next."""
+    """Return the pieces in a row; an operator at the start, or after another, becomes a prefix."""
     markups: list[str] = []
-    before: Piece | None = None
+    previous: Piece | None = None
     for item in items:
         markup = item.markup
-        # A sign without a left operand is a prefix: MathML would put space on both sides of it.
-        if item.kind == "operator" and (before is None or before.kind in ("operator", "relation")):
+        # By default MathML would put space on both sides of an operator without a left operand.
+        if item.kind == "operator" and (
+            previous is None or previous.kind in ("operator", "relation")
+        ):
             markup = markup.replace("<mo>", '<mo form="prefix">', 1)
-        elif _needs_space(before, item):
+        elif _needs_space(previous, item):
             markups.append(_THIN)
         markups.append(markup)
-        before = item
+        previous = item
     return "".join(markups)
 
 
-def _needs_space(before: Piece | None, item: Piece) -> bool:
-    """Return True between factors that are written apart, and around words."""
-    if before is None or {before.kind, item.kind} & {"text", "operator", "relation"}:
+def _needs_space(previous: Piece | None, item: Piece) -> bool:
+    """Return True between factors that are written apart, and before a word."""
+    if previous is None or {previous.kind, item.kind} & {"text", "operator", "relation"}:
         return False
-    return item.is_apart or (item.kind == "word" and before.kind == "operand")
+    return item.is_apart or (item.kind == "word" and previous.kind == "operand")
 
 
 def split_rows(items: list[Piece]) -> list[list[Piece]]:
     """Split a formula that is too long for one row.
 
-    It is cut before each relation but the first, then, if a row is still too long, before each
-    term, and then before the first relation.
+    It is cut before each relation but the first; a row that is still too long, before each term;
+    and one that is too long even then, before its first relation.
     """
     rows = [items]
     for find_cuts in (_later_relations, _terms, _relations):
@@ -105,8 +107,10 @@ def _later_relations(row: list[Piece]) -> list[int]:
 
 
 def _terms(row: list[Piece]) -> list[int]:
-    before = [None, *(item.kind for item in row)]
-    return [k for k, item in enumerate(row) if item.is_sign and before[k] in ("operand", "word")]
+    previous_kinds = [None, *(item.kind for item in row)]
+    return [
+        k for k, item in enumerate(row) if item.is_sign and previous_kinds[k] in ("operand", "word")
+    ]
 
 
 def _cut(items: list[Piece], cuts: list[int]) -> list[list[Piece]]:

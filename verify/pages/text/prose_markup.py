@@ -1,8 +1,8 @@
 """Typesetting of the prose of results, part by part, each by its kind.
 
-Plain text is escaped unchanged; it is not searched for formulas or numbers. Of a formula that is no
-expression the notation is set: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`, or `[0.5 +/- 2e-13]`. What is
-not recognised there is escaped unchanged.
+Plain text is escaped unchanged; it is not searched for formulas or numbers. A formula that is not
+an expression may have indices, powers and intervals: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}` or
+`[0.5 +/- 2e-13]`. The rest of such a formula is escaped unchanged.
 """
 
 import re
@@ -19,9 +19,9 @@ Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]
 
 _EQUALS = " = "
 _STOPS = tuple(".,;:")
-# Characters of a formula that is taken for a name in NAME = VALUE.
+# The limit on characters of NAME in NAME = VALUE.
 _MAX_NAME = 12
-# Characters of a formula that is not broken between lines; a phone has room for them.
+# The limit on characters of a formula that is not broken between lines, for a phone.
 _MAX_UNBROKEN = 40
 
 
@@ -29,7 +29,7 @@ _MAX_UNBROKEN = 40
 
 
 def prose(text: str) -> Markup:
-    """Return evidence or a statement with its formulas and numbers set properly.
+    """Return evidence or a statement as markup, with its formulas and numbers typeset.
 
     >>> str(prose(Prose("2 * 3 of ", Formula("e^(Nε)"), " below ", Number("1e-9"))))
     '2 * 3 of e<sup>Nε</sup> below 1\\xa0×\\xa010⁻⁹'
@@ -49,7 +49,7 @@ def prose(text: str) -> Markup:
 
 
 def _without_stop(parts: Sequence[str], index: int) -> str:
-    """Return the part without a stop or comma that belongs to the displayed formula before it."""
+    """Return the part without a stop or comma that the displayed formula before it has taken."""
     has_stop = index and isinstance(parts[index - 1], Display) and _stop(parts[index])
     return parts[index][1:] if has_stop else parts[index]
 
@@ -87,15 +87,15 @@ def _set_part(part: str, following: str) -> Markup:
 
 
 def _is_index_or_power(formula: str) -> bool:
-    """Return True if only indices or powers are to be set, so that h³ is copied as h³."""
+    """Return True if the formula has indices or powers but no product; then h³ is copied as h³."""
     return "*" not in formula and bool(re.search("[_^]", formula))
 
 
 def sentence(text: str) -> Markup:
-    """Return prose as a sentence: with a capital, unless it opens with a name, and a stop."""
+    """Return prose as a sentence: with a capital, unless a symbol begins it, and a stop."""
     parts = text.parts if isinstance(text, Prose) else (str(text),)
     opening = parts[0] if parts and type(parts[0]) is str else ""
-    # A name or a formula keeps its small letter; det is a formula's beginning.
+    # A symbol or a formula keeps its small letter, and so does det, which begins a formula.
     if re.match(r"(?!det )[a-z]{2,}[ ,]", opening):
         parts = (opening[0].upper() + opening[1:], *parts[1:])
     if not text.endswith((".", "!", "?")):
@@ -112,7 +112,7 @@ def cell(text: str) -> Markup:
 
 
 def notation(text: str) -> Markup:
-    """Return the formula with its indices and powers set as such, and minus signs for hyphens.
+    """Return the formula with its indices and powers typeset, and minus signs for hyphens.
 
     >>> str(notation("f = (-H_q, H_p)"))
     'f = (−H<sub>q</sub>, H<sub>p</sub>)'
@@ -129,7 +129,7 @@ def notation(text: str) -> Markup:
 
 
 def apply_rules(text: str, rules: Sequence[Rule]) -> Markup:
-    """Return the text with the rules applied, each to the parts that earlier rules left."""
+    """Return the text with the rules applied, each to the text that earlier rules did not match."""
     if not rules:
         return escape(text)
     (pattern, setting), *later_rules = rules
@@ -164,7 +164,7 @@ def _strip_brackets(text: str) -> str:
     return text[1:-1] if text[0] in "({" else text
 
 
-# A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}, e^p_k.
+# A letter, perhaps with an accent, and its index: H_qq, z̄_(k+1), L_{H_p}, e^p_k.
 INDEX: Rule = (
     re.compile(
         r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])"
@@ -174,7 +174,7 @@ INDEX: Rule = (
     _subscript,
 )
 INTERVAL: Rule = (re.compile(rf"\[(-?{NUMBER}) \+/- ({NUMBER})\]"), _interval)
-# Names such as stormer-verlet have hyphens, between letters.
+# A hyphen between letters, as in stormer-verlet, stays.
 MINUS: Rule = (re.compile(r"(?<![A-Za-z])-|-(?![A-Za-z])"), lambda _: Markup("−"))
 POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b(?!\.[0-9])"), _power)
 RAISED: Rule = (

@@ -1,6 +1,6 @@
-"""Typesetting of numbers: × 10ⁿ, minus signs, digits in groups.
+"""Typesetting of numbers: × 10ⁿ, minus signs, digits in groups; and phrases with numbers.
 
-A number keeps exactly the digits it comes with.
+A number keeps its digits, of which at most 60 are shown.
 """
 
 import re
@@ -21,15 +21,14 @@ from verify.scenes.results.work_precision import WorkPrecisionResult
 NBSP = "\u00a0"
 IS = f"{NBSP}={NBSP}"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
-# Digits in a group, and groups in a line.
-_GROUP, _IN_A_LINE = 5, 3
-# A number of at most so many digits is left in one piece; float64's have 17.
+_DIGITS_IN_GROUP, _GROUPS_IN_LINE = 5, 3
+# The limit on digits of a number that is left in one piece; those of float64 have 17.
 _MAX_UNGROUPED = 17
-# So many zeros at the end of a number cannot be counted at a glance.
+# From this number of zeros on, those at the end of a number become a power of ten.
 _MIN_ZEROS = 6
 # Step sizes below this are written as powers of ten.
 _SMALL_STEP = Decimal("0.0001")
-# Digits of a number on the page; all of them are in results.json.
+# The limit on digits of a number on the page; all of them are in results.json.
 _MAX_DIGITS = 60
 
 NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
@@ -41,7 +40,7 @@ def superscript(n: int) -> str:
 
 
 def number(text: str) -> str:
-    """Return −1.23 × 10⁻⁵ for `-1.23e-05`, with all its digits; other text unchanged."""
+    """Return −1.23 × 10⁻⁵ for `-1.23e-05`, with at most 60 digits; other text unchanged."""
     if not _PLAIN_NUMBER.fullmatch(text):
         return text
     mantissa, _, exponent = text.lower().partition("e")
@@ -71,14 +70,14 @@ def exact(text: str) -> str:
 
 
 def step(size: str) -> str:
-    """Return a step size; a small one as a power of ten, whose zeros nobody needs to count."""
+    """Return a step size; one below 0.0001 as a multiple of a power of ten."""
     if not _PLAIN_NUMBER.fullmatch(size) or Decimal(size) >= _SMALL_STEP:
         return size
     return number(f"{Decimal(size).normalize():e}").removeprefix(f"1{NBSP}×{NBSP}")
 
 
 def whole(n: int) -> str:
-    """Return a count with its thousands set apart."""
+    """Return a count with commas between its thousands."""
     return f"{n:,}"
 
 
@@ -102,7 +101,7 @@ def power_of_h(n: int) -> str:
 
 
 def value(bounded: Value) -> Markup:
-    """Return the known digits with the error bound below; the bound alone without a digit."""
+    """Return the known digits with the error bound below; if no digit is known, the bound alone."""
     if bounded.bound == "0":
         return group_digits(bounded.value)
     if bounded.unknown:
@@ -113,9 +112,9 @@ def value(bounded: Value) -> Markup:
 
 
 def group_digits(text: str) -> Markup:
-    """Return a number with many digits in groups, three to a line; any other unchanged.
+    """Return a number with many decimals in groups, three in a line; any other as by `number`.
 
-    The gaps are made by the style sheet, so that a copied number has none.
+    The style sheet makes the gaps, so that a copied number has none.
     """
     formatted = number(text)
     digits, times, scale = formatted.partition(NBSP)
@@ -126,11 +125,14 @@ def group_digits(text: str) -> Markup:
         or not _PLAIN_NUMBER.fullmatch(text)
     ):
         return escape(formatted)
-    groups = [decimals[i : i + _GROUP] for i in range(0, len(decimals), _GROUP)]
+    groups = [decimals[i : i + _DIGITS_IN_GROUP] for i in range(0, len(decimals), _DIGITS_IN_GROUP)]
     groups[0] = whole_part + point + groups[0]
     groups[-1] += times + scale
     spans = [Markup("<span>{}</span>").format(group) for group in groups]
-    rows = [Markup("").join(spans[i : i + _IN_A_LINE]) for i in range(0, len(spans), _IN_A_LINE)]
+    rows = [
+        Markup("").join(spans[i : i + _GROUPS_IN_LINE])
+        for i in range(0, len(spans), _GROUPS_IN_LINE)
+    ]
     return Markup('<span class="digits">{}</span>').format(Markup("<br>").join(rows))
 
 
@@ -164,8 +166,8 @@ def map_name(name: str) -> str:
 
 def join_and(items: Iterable[str]) -> str:
     """Return a, b and c as text."""
-    *most, last = items
-    return f"{', '.join(most)} and {last}" if most else last
+    *others, last = items
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def is_number(text: str) -> bool:

@@ -1,6 +1,6 @@
-"""Certificates exported for a proof assistant: they prove nothing unless `coqc` accepts them.
+"""Certificates exported for Rocq: an exported file proves something only if `coqc` accepts it.
 
-A certificate for one H is exported without the functions that are not used in it.
+A certificate for one H is exported without the functions that it does not use.
 """
 
 import re
@@ -22,14 +22,15 @@ from verify.proof.certificates.entries import Expansion, NamedFunction
 from verify.proof.certificates.established_statement import EstablishedStatement, state_theorem
 from verify.proof.certificates.readers import need
 
-_MOST, _DEEPEST = 100, 20  # the time of coqc grows with the square of both
+# Limits of the number and the nesting of functions; coqc's time grows with the square of both.
+_MOST_FUNCTIONS, _MOST_LEVELS = 100, 20
 _PARTNERS = {"sin": "cos", "cos": "sin"}
-_FILE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\.v")
+_FILE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\.v")
 
 
 @dataclass(frozen=True)
 class ExportedFile:
-    """An exported file: its `text`, the `facts` it proves, and its `theorems` in order."""
+    """An exported file: its `text`, the `facts` it states, and its `theorems` in order."""
 
     text: str
     facts: EstablishedStatement
@@ -37,9 +38,10 @@ class ExportedFile:
 
 
 def export_certificate(path: Path, *, stands_alone: bool = True) -> ExportedFile:
-    """Export the certificate in this file for Rocq.
+    """Export the certificate in a file for Rocq.
 
-    Raises InputError if it is no certificate, and if the small checker refuses it.
+    `stands_alone`: True if the export includes the needed parts of the theory. Raises InputError if
+    the file is no certificate, if the small checker refuses it, and if it is too large for `coqc`.
     """
     data = read_json(path, FORMAT)
     try:
@@ -70,20 +72,21 @@ def _export(entries: Stages | ButcherTableau | Expansion) -> Export:
 
 
 def check_file_name(path: Path) -> None:
-    """Raise InputError unless `coqc` takes a file of this name, which is also a module's name."""
-    if not _FILE.fullmatch(path.name) or path.stem in KEYWORDS:
+    """Raise InputError unless `coqc` takes a file of this name, which is also a module name."""
+    if not _FILE_NAME.fullmatch(path.name) or path.stem in KEYWORDS:
         problem = "coqc takes a name of letters, digits and _ that ends in .v, such as lie2.v"
         raise InputError("coq", str(path), problem)
 
 
-# -- functions in use -----------------------------------------------------------------------------
+# -- used functions -------------------------------------------------------------------------------
 
 
 def with_used_functions(entries: Expansion) -> Expansion:
     """Drop the functions that H, the map, L and G, and their derivatives, do not use.
 
-    The statement holds without the others, and also where these are not defined. Raises ValueError
-    if too many remain, or they are nested too deeply, for `coqc` to take minutes only.
+    The statement holds without them, also at points where they are not defined. Raises ValueError
+    if the remaining ones are so many, or nested so deeply, that `coqc` would take more than
+    minutes.
     """
     names_in_use = {name for x in polynomials_of(entries) for names in x for name in names}
     functions_in_use: list[NamedFunction] = []
@@ -91,23 +94,24 @@ def with_used_functions(entries: Expansion) -> Expansion:
         if function.name in names_in_use or _is_partner(function, functions_in_use):
             functions_in_use.insert(0, function)
             names_in_use |= {name for names in function.argument for name in names}
-    # sin' is cos and cos' is −sin, so the partner is needed for the derivatives; a partner may come
-    # earlier in the file than the function that needs it.
+    # sin' is cos and cos' is −sin: derivatives need the partner, which may come earlier in the
+    # file.
     for function in entries.functions:
         if function not in functions_in_use and _is_partner(function, functions_in_use):
             functions_in_use.append(function)
     order = {function.name: k for k, function in enumerate(entries.functions)}
     functions = tuple(sorted(functions_in_use, key=lambda function: order[function.name]))
     need(
-        len(functions) <= _MOST, f"it needs more than {_MOST} functions, which coqc takes long for"
+        len(functions) <= _MOST_FUNCTIONS,
+        f"it needs more than {_MOST_FUNCTIONS} functions, which coqc takes long for",
     )
-    problem = f"its functions are nested more than {_DEEPEST} deep, which coqc takes long for"
-    need(_depth(functions) <= _DEEPEST, problem)
+    problem = f"its functions are nested more than {_MOST_LEVELS} deep, which coqc takes long for"
+    need(_depth(functions) <= _MOST_LEVELS, problem)
     return replace(entries, functions=functions)
 
 
 def _depth(functions: Iterable[NamedFunction]) -> int:
-    """Return the greatest depth to which the functions are nested."""
+    """Return the number of levels to which the functions are nested."""
     depths: dict[str, int] = {}
     for function in functions:  # inner ones first
         inner_depths = (depths.get(name, 0) for names in function.argument for name in names)
@@ -116,7 +120,7 @@ def _depth(functions: Iterable[NamedFunction]) -> int:
 
 
 def _is_partner(function: NamedFunction, functions: list[NamedFunction]) -> bool:
-    """Return True if it is the cos of a sin, or the sin of a cos, that is kept."""
+    """Return True if it is the cos of a sin, or the sin of a cos, in `functions`."""
     return any(
         f.argument == function.argument and _PARTNERS.get(f.kind) == function.kind
         for f in functions

@@ -1,11 +1,11 @@
 """Factors that show the residuals of a certificate for one H to be 0: residual = Σ factor·relation.
 
-The relations are those of the theory, one for each function: sin² + cos² = 1 and u·(1/u) = 1. The
-residuals are the theory's too (`Identities.v`), in its order. The cofactors in the certificate are
-for other residuals, in which D is applied to a coordinate repeatedly.
+The relations are those of the theory, one for each function but exp: sin² + cos² = 1 and
+u·(1/u) = 1. The residuals are the theory's too (`Identities.v`), in its order. The cofactors in the
+certificate are for other residuals, in which X (or D) is applied to a coordinate repeatedly.
 
-Polynomials as sums of multiples of relations: by dividing, and if that is not enough, by a
-Gröbner basis whose elements are known as such sums themselves (Buchberger's algorithm).
+A polynomial is written as a sum of multiples of relations by division. If that is not enough, it is
+divided by a Gröbner basis (Buchberger's algorithm), each element of which is such a sum itself.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,24 +21,24 @@ from verify.proof.certificates.coefficient_entries import polynomial_in
 from verify.proof.certificates.entries import Expansion
 from verify.proof.certificates.readers import Poly
 
-_MOST_PAIRS = 2000  # S-polynomials that are examined
-_MOST_TERMS = 20_000  # of a factor
-Sum = dict[int, fmpq_mpoly]  # factors, by the numbers of their relations
-Factors = list[tuple[int, Poly]]  # each with the number of its relation
+_MOST_PAIRS = 2000  # limit of the S-polynomials that are examined
+_MOST_TERMS = 20_000  # limit of the terms in the factors of a new element
+Sum = dict[int, fmpq_mpoly]  # Σ factor·relation, as factors by the number of the relation
+Factors = list[tuple[int, Poly]]  # (number of a relation, its factor)
 
 
 # -- sums of multiples of relations ---------------------------------------------------------------
 
 
 class _Element(NamedTuple):
-    """A polynomial, and its factors as a sum of multiples of the relations."""
+    """A polynomial of the ideal, with the factors that write it as a sum of multiples."""
 
     poly: fmpq_mpoly
     factors: Sum
 
 
 class Basis:
-    """Relations, each with its number, of polynomials in one ring."""
+    """A basis of the ideal of some relations, polynomials in one ring, each with a number."""
 
     def __init__(self, ring: fmpq_mpoly_ctx, relations: Iterable[tuple[int, fmpq_mpoly]]) -> None:
         self.ring = ring
@@ -47,7 +47,7 @@ class Basis:
         self.complete = False
 
     def find_sum(self, x: fmpq_mpoly) -> Sum | None:
-        """Write the polynomial as a sum of multiples of the relations; None if none is found."""
+        """Write a polynomial as a sum of multiples of the relations; None if none is found."""
         remainder, factors = self._divide(x)
         if remainder and not self.complete:
             self._complete()
@@ -57,7 +57,7 @@ class Basis:
     def _divide(self, x: fmpq_mpoly) -> tuple[fmpq_mpoly, Sum]:
         factors: Sum = {}
         has_changed = True
-        # Division by one element may make a term divisible by another again, so the loop repeats.
+        # Division by one element may make terms divisible by an earlier one: the loop repeats.
         while has_changed and x:
             has_changed = False
             for element in self.elements:
@@ -87,9 +87,9 @@ class Basis:
                 self.elements.append(_Element(remainder, difference.factors))
 
     def _s_polynomial(self, x: _Element, y: _Element) -> _Element | None:
-        """Return the difference of multiples with equal leading terms (the S-polynomial).
+        """Return the S-polynomial: the difference of multiples with equal leading terms.
 
-        None if it is a sum of multiples anyway, by Buchberger's first criterion.
+        None if its remainder is 0 by Buchberger's first criterion.
         """
         a, b = x.poly.monoms()[0], y.poly.monoms()[0]
         common = [max(m, n) for m, n in zip(a, b, strict=True)]
@@ -109,7 +109,7 @@ class Basis:
             total[number] = total.get(number, self.ring.from_dict({})) + factor * x
 
 
-# -- residuals of a certificate -------------------------------------------------------------------
+# -- a certificate's residuals --------------------------------------------------------------------
 
 
 def last_checked_power(entries: Expansion) -> int:
@@ -120,12 +120,12 @@ def last_checked_power(entries: Expansion) -> int:
 
 
 def factors_of(entries: Expansion) -> list[Factors]:
-    """Return the factors of each residual, in order; none for a residual that is 0 as it stands.
+    """Return the factors of each residual, in order; the list is empty for a residual 0.
 
     Raises InputError if a residual is not shown to be 0.
     """
     functions = [function.name for function in entries.functions]
-    # Outer functions first: they bring inner ones, which do not bring outer ones.
+    # Outer functions come first: their relations contain inner ones, and not the other way round.
     names = [*reversed(functions), *entries.coordinates, "t", *entries.parameters]
     identities = Identities(entries)
     by_name = identities.relations
@@ -136,7 +136,7 @@ def factors_of(entries: Expansion) -> list[Factors]:
 
 
 def _residuals(identities: Identities) -> Iterator[Poly]:
-    """Yield what must be 0 in the theory, where Xⁿz/n! comes from the coefficient before it."""
+    """Yield the theory's residuals, in which (k + 1) x_(k+1) is compared with X x_k."""
     entries, add = identities.entries, identities.add
     for coordinate, series in zip(entries.coordinates, entries.after, strict=True):
         coefficients = [*series, *({} for _ in range(entries.convergence_order + 1))]
@@ -152,14 +152,14 @@ def _residuals(identities: Identities) -> Iterator[Poly]:
 
 
 class Reducer:
-    """Polynomials reduced by relations, each with its number, in their order.
+    """Writes polynomials in `names` as sums of multiples of numbered relations.
 
-    `names`: in the order of elimination, the first to be eliminated first.
+    The first names are eliminated first.
     """
 
     def __init__(self, names: Sequence[str], relations: Sequence[tuple[int, Poly]]) -> None:
         self.names, self.places = names, {name: k for k, name in enumerate(names)}
-        # The ring's own names: what a certificate calls a function is no name there.
+        # A certificate's names of functions, such as #1, are no names for the ring.
         plain = [f"x{k}" for k in range(len(names))]
         self.ring = fmpq_mpoly_ctx.get(plain, Ordering.lex)
         self.basis = Basis(self.ring, [(number, self.element(x)) for number, x in relations])

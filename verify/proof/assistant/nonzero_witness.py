@@ -1,7 +1,8 @@
 """Numbers that show Rocq that the leading coefficient of a defect is not 0.
 
-For every H, a polynomial H for which it is not 0 at a rational point. For one H, a derivative of it
-at a rational point at which sin, cos and exp are taken of 0, so that all values are rational.
+For every H, they are a polynomial H and a rational point at which the coefficient is not 0. For one
+H, they are a derivative of the coefficient and a rational point at which it is not 0; the arguments
+of sin, cos and exp are 0 there, so that all values are rational.
 """
 
 import random
@@ -15,18 +16,18 @@ from verify.proof.certificates.checker import Identities
 from verify.proof.certificates.entries import Expansion, NamedFunction, derived_by
 from verify.proof.certificates.readers import Poly, collect_terms
 
-_POINTS = 4000
-_MOST_TRIED = 40  # of them, those where all is defined
+_MOST_POINTS = 4000
+_MOST_WITNESSES = 40  # limit of the points with rational values of all functions
 _NUMBERS = tuple(map(Fraction, ("0", "1", "-1", "2", "1/2", "-2", "3")))
-_ENERGIES = 20  # random attempts
-_DERIVATIVES = 6  # by how many coordinates the coefficient is derived
+_RANDOM_ATTEMPTS = 20
+_MOST_DERIVATIVES = 6  # limit of the order of derivatives of the coefficient
 _AT_ZERO = {"sin": Fraction(0), "cos": Fraction(1), "exp": Fraction(1)}
 Entry = tuple[str, str]
 
 
 @dataclass(frozen=True)
 class EnergyWitness:
-    """An entry of L, and a polynomial H for which it is not 0 at a point, by its coordinates."""
+    """An entry of L, and a polynomial H (`energy`) and a `point` for which it is not 0."""
 
     entry: Entry
     energy: Poly
@@ -44,11 +45,11 @@ def energy_that_shows(entries: Expansion) -> EnergyWitness | None:
 
 
 def _values_of_derivatives(leading: Poly) -> Iterator[dict[str, Fraction]]:
-    """Yield values of H's derivatives at a point; some H has them, as they are free."""
-    for names in sorted(leading, key=len):  # one term that is not 0, and not many beside it
+    """Yield values of the coordinates and of H's derivatives; some H has these values."""
+    for names in sorted(leading, key=len):  # then one term is not 0, and few others
         yield dict.fromkeys(names, Fraction(1))
     names_of_all = sorted({name for names in leading for name in names})
-    for attempt in range(_ENERGIES):
+    for attempt in range(_RANDOM_ATTEMPTS):
         generator = random.Random(attempt)  # noqa: S311 - no secret
         yield {name: Fraction(generator.randint(-3, 3)) for name in names_of_all}
 
@@ -61,9 +62,8 @@ def _energy(values: Mapping[str, Fraction], point: Mapping[str, Fraction]) -> Po
             continue
         coordinates = derived_by(name)
         term: Poly = {(): value / prod(factorial(coordinates.count(x)) for x in set(coordinates))}
-        for x in coordinates:  # times (x - its value)
-            # Taylor's polynomial: value·Π (x − point)ⁿ/n! has this one derivative at the point, and
-            # no other.
+        for x in coordinates:
+            # value·Π (x − point)ⁿ/n! has this one derivative at the point, and no other.
             term = collect_terms([*_times(term, x, Fraction(1)), *_times(term, None, -point[x])])
         energy = collect_terms([*energy.items(), *term.items()])
     return energy
@@ -83,7 +83,7 @@ def _value(x: Poly, values: Mapping[str, Fraction]) -> Fraction:
 
 @dataclass(frozen=True)
 class NonzeroWitness:
-    """An entry of L, the coordinates it is `derived_by`, and values of all names at a point."""
+    """An entry of L, the variables of its derivative, and the values of all names at a point."""
 
     entry: Entry
     derived_by: tuple[str, ...]
@@ -91,18 +91,18 @@ class NonzeroWitness:
 
 
 def point_that_shows(entries: Expansion) -> NonzeroWitness | None:
-    """Find a derivative of an entry of L that is not 0 at a rational point; None if none is.
+    """Find a rational point, and a derivative of an entry of L that is not 0 there; or None.
 
     All functions have rational values there.
     """
-    for values in islice(_points(entries), _MOST_TRIED):
-        algebra = Identities(entries)  # a new one for each point, as it limits its work
+    for values in islice(_points(entries), _MOST_WITNESSES):
+        algebra = Identities(entries)  # a new one for each point, as its work is limited
         try:
             for entry, leading in entries.leading.items():
                 for coordinates, derived in _with_derivatives(algebra, leading):
                     if _value(derived, values):
                         return NonzeroWitness(entry, coordinates, values)
-        except ValueError:  # more work than a checker may have
+        except ValueError:  # the limit of work is reached
             continue
     return None
 
@@ -110,9 +110,9 @@ def point_that_shows(entries: Expansion) -> NonzeroWitness | None:
 def _with_derivatives(algebra: Identities, x: Poly) -> Iterator[tuple[tuple[str, ...], Poly]]:
     """Yield the polynomial and its derivatives, low orders first."""
     level: dict[tuple[str, ...], Poly] = {(): x}
-    for order in range(_DERIVATIVES + 1):
+    for order in range(_MOST_DERIVATIVES + 1):
         yield from level.items()
-        if order < _DERIVATIVES:
+        if order < _MOST_DERIVATIVES:
             chosen = combinations_with_replacement(algebra.entries.coordinates, order + 1)
             level = {index: algebra.diff(level[index[:-1]], index[-1]) for index in chosen}
 
@@ -120,11 +120,11 @@ def _with_derivatives(algebra: Identities, x: Poly) -> Iterator[tuple[tuple[str,
 def _points(entries: Expansion) -> Iterator[dict[str, Fraction]]:
     """Yield points, with values of the parameters, where all functions have rational values."""
     names = (*entries.coordinates, "t", *entries.parameters)
-    # 0 first, as arguments have to be; of a parameter last, as it may hide what is sought.
+    # 0 comes first for coordinates, as arguments must be 0; last for a parameter, as L may vanish.
     numbers = (*_NUMBERS[1:], _NUMBERS[0])
     choices = [numbers if name in entries.parameters else _NUMBERS[:4] for name in names]
     previous: list[dict[str, Fraction]] = []
-    for tried in islice(product(*choices), _POINTS):
+    for tried in islice(product(*choices), _MOST_POINTS):
         values = _make_rational(entries.functions, dict(zip(names, tried, strict=True)))
         if values is not None and values not in previous:
             previous.append(values)
@@ -134,12 +134,10 @@ def _points(entries: Expansion) -> Iterator[dict[str, Fraction]]:
 def _make_rational(
     functions: Sequence[NamedFunction], point: Mapping[str, Fraction]
 ) -> dict[str, Fraction] | None:
-    """Return this point, or one near it where all functions are rational, with their values.
+    """Return a point at which all functions are rational, with their values; None if not found.
 
-    None if no such point is reached.
-
-    Where a function is of something else than 0, one of the names in its argument gets another
-    value, which no function before it depends on.
+    It is `point` if possible. If the argument of a sin, cos or exp is not 0, one of the names in it
+    gets another value; no earlier function may depend on that name.
     """
     values, fixed = dict(point), set[str]()
     for function in functions:
@@ -160,7 +158,7 @@ def _make_rational(
 
 
 def _slope(function: NamedFunction, name: str, values: Mapping[str, Fraction]) -> Fraction:
-    """Return the derivative of the argument by the name, if the name occurs linearly, else 0."""
+    """Return the derivative of the argument by a name; 0 unless the argument is linear in it."""
     if any(names.count(name) > 1 for names in function.argument):
         return Fraction(0)
     slope = {tuple(x for x in m if x != name): c for m, c in function.argument.items() if name in m}

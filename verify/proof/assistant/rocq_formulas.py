@@ -1,8 +1,8 @@
 """The polynomials and names of a certificate as Rocq reads them.
 
-They stand there twice: as formulas in numbered names, for the check (`deep`), and as a person
-writes them (`shallow`), term by term the same, so that the values of one are the other. `Names` has
-the parts that are common to all exports of a map.
+An exported file has each polynomial twice: as a formula in numbered names, for the check (`deep`),
+and as a person writes it (`shallow`). Both have the same terms in the same order, so that the value
+of the first is the second. `Names` has what is common to all exports of a map.
 """
 
 import re
@@ -35,7 +35,7 @@ class Spelling:
     scope: str = ""  # the notation scope in which Rocq reads it
 
     def format_scoped(self, x: Poly) -> str:
-        """Format the polynomial with its scope, so that it reads the same wherever it stands."""
+        """Format the polynomial with its scope, so that it has the same meaning everywhere."""
         if not self.scope:
             return self.poly(x)
         return self.argument(x) if is_name(x) else f"({self.poly(x)})%{self.scope}"
@@ -46,13 +46,13 @@ class Spelling:
         return text if is_name(x) and _WORD.fullmatch(text) else f"({text})"
 
     def poly(self, x: Poly) -> str:
-        """Format the sum of the terms, long ones first."""
+        """Format the polynomial as a sum of terms, long ones first."""
         text = ""
         for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
             first, term = not text, self._term(names, abs(c))
             # Rocq binds a leading minus to the first factor, so a negative product gets
             # parentheses: the deep and the shallow form must have the same structure.
-            if c < 0 and first:  # of a product the sign would be the first factor's
+            if c < 0 and first:
                 text = f"- {term}" if c == -1 and _is_power(names) else f"- ({term})"
             else:
                 text += f"{'' if first else _SIGNS[c < 0]}{term}"
@@ -66,7 +66,7 @@ class Spelling:
         return " * ".join(factors)
 
     def list(self, series: Iterable[Poly]) -> str:
-        """Format a list of polynomials, one a line."""
+        """Format a list of polynomials, each on a line."""
         return "[" + ";\n    ".join(self.format_scoped(x) for x in series) + "]"
 
     def factors(self, factors: Iterable[tuple[int, Poly]]) -> str:
@@ -75,7 +75,7 @@ class Spelling:
 
 
 def is_name(x: Poly) -> bool:
-    """Return True if the polynomial is one name alone."""
+    """Return True if the polynomial is just a name."""
     return len(x) == 1 and all(len(names) == 1 and c == 1 for names, c in x.items())
 
 
@@ -84,7 +84,7 @@ def _is_power(names: Sequence[str]) -> bool:
 
 
 def deep(numbers: dict[str, int]) -> Spelling:
-    """Return the spelling as formulas of the theory, in names that are numbers."""
+    """Return the spelling as formulas of the theory, in numbered names."""
     return Spelling(
         number=lambda c: f"Number {rational(c)}",
         name=lambda name: f"Name {numbers[name]}",
@@ -99,27 +99,28 @@ def rational(c: Fraction) -> str:
 
 
 def real(c: Fraction) -> str:
-    """Format a number of at least 0 as a real one."""
+    """Format a number ≥ 0 as a real number."""
     return str(c.numerator) if c.denominator == 1 else f"{c.numerator} / {c.denominator}"
 
 
 def format_signed(c: Fraction) -> str:
-    """Format a number as a real one; Rocq reads a sign before digits as theirs."""
+    """Format a number as a real number; Rocq reads a sign before digits as part of them."""
     return f"-{real(-c)}" if c < 0 else real(c)
 
 
 def safe_names(
     names: Iterable[str], words: Iterable[str], prefixes: Iterable[str] = ()
 ) -> dict[str, str]:
-    """Map the names to spellings that hide none of these words, and no keyword.
+    """Map the names to spellings that are none of these words, and no keyword.
 
-    `prefixes`: a spelling after one of these is none of the words, and no other spelling, either.
-    A spelling ends in apostrophes where needed, which no name of a certificate has.
+    `prefixes`: a spelling with one of these before it is also none of the words, and differs from
+    all other such spellings. Apostrophes, which no name of a certificate has, are appended as
+    needed.
     """
     reserved, all_prefixes = KEYWORDS | set(words), ("", *prefixes)
     spellings: dict[str, str] = {}
     for name in names:
-        # Of Rocq's commands some are keywords, and all of them begin with a capital letter.
+        # Some of Rocq's commands are keywords; all of them begin with a capital letter.
         spelling = f"{name}'" if re.match("[A-Z].", name) else name
         while reserved & {f"{prefix}{spelling}" for prefix in all_prefixes}:
             spelling += "'"
@@ -129,7 +130,7 @@ def safe_names(
 
 
 def lines(text: str, most: int = 96) -> str:
-    """Break the text's long lines at blanks, where there are any."""
+    """Break the text's long lines at blanks, if there are any."""
     return "\n".join(part for line in text.split("\n") for part in _break_line(line, most))
 
 
@@ -156,7 +157,7 @@ def list_of(items: Iterable[object]) -> str:
 
 
 def form_list(x: Form, coordinates: Mapping[str, int], spelling: Spelling) -> str:
-    """Format a 2-form as a list of its entries, each with the numbers of its coordinates."""
+    """Format a 2-form as a list of its entries, each with the numbers of two coordinates."""
     entries = [
         f"({coordinates[a]}%nat, {coordinates[b]}%nat, {spelling.format_scoped(c)})"
         for (a, b), c in x.items()
@@ -169,7 +170,7 @@ class Names(ABC):
 
     deep: Spelling
     shallow: Spelling
-    zero: str  # as an entry of a form is where it has none
+    zero: str  # the spelling of an entry 0 of a form
 
     def __init__(self, entries: Expansion) -> None:
         self.entries = entries
@@ -177,7 +178,7 @@ class Names(ABC):
 
     @abstractmethod
     def bound(self, polys: Iterable[Poly], text: str) -> str:
-        """Bind the names in these polynomials to what they stand for, around the text."""
+        """Return the text within the bindings of the names that occur in these polynomials."""
 
     def form(self, x: Form) -> str:
         """Format a 2-form as a person writes it."""

@@ -1,15 +1,15 @@
-"""The theory that is shipped for Rocq: its files, its theorems, and what a text needs of them.
+"""The theory that is shipped for Rocq: its files, its theorems, and the parts that a text needs.
 
 The files lie below `theory/`, and each imports those that it depends on. `coqc -Q theory
 AreaPreservation` compiles them one by one; an exported file that stands alone contains the parts of
-them that it needs as modules, and leaves out the rest. Statements that follow from a theorem refer
-to it by a `ShippedTheorem`.
+them that it needs, as modules. A statement in this project that follows from a theorem refers to it
+by a `ShippedTheorem`.
 
-A file of the theory is a sequence of sentences; what they prove or define has a name. A sentence is
-kept if its name is a word of something that is kept and may mean it, whatever it does mean there:
-rather too much is kept than too little, and `coqc` has the last word. What works without its name,
-such as notations, records and instances, is always kept; the declarations of a section are dropped
-with the last sentence that they serve.
+A file of the theory is a sequence of sentences, most of which prove or define a name. A sentence is
+kept if its name occurs as a word in a kept sentence that may refer to it, whatever the word means
+there. So too many sentences may be kept rather than too few, and `coqc` decides in the end.
+Sentences that take effect without their name, such as notations, records and instances, are always
+kept. The declarations of a section are dropped with the last sentence that they serve.
 """
 
 import re
@@ -22,7 +22,7 @@ from verify.files import write_atomically
 from verify.prose import Formula, Prose, join_prose, prose
 
 FOLDER = Path(__file__).parent / "theory"
-LOGICAL = "AreaPreservation"  # by which coqc knows the folder
+LOGICAL = "AreaPreservation"  # the logical name of the folder in coqc
 _THEORY_IMPORT = re.compile(rf"^From {LOGICAL} Require Import ([^.]*)\.\n", re.MULTILINE)
 _LIBRARY_IMPORT = re.compile(r"^From Coq Require Import ([^.]*)\.\n", re.MULTILINE)
 _THEOREM_NAME = re.compile(r"^\s*(?:Theorem|Lemma|Corollary)\s+(\w+)", re.MULTILINE)
@@ -30,12 +30,12 @@ _WORD = re.compile(r"[A-Za-z_][\w']*")
 _END_OF_SENTENCE = re.compile(r"\.(?=\s)")
 _END_OF_PROOF = re.compile(r"\b(?:Qed|Defined)\.(?=\s)")
 _COMMENT = re.compile(r"\(\*|\*\)")
-_DEFINED = re.compile(r"(?:Lemma|Theorem|Corollary|Definition|Fixpoint|Ltac)\s+([A-Za-z_][\w']*)")
-_PROOF = re.compile(r"\s*Proof\b")
+_DEFINING = re.compile(r"(?:Lemma|Theorem|Corollary|Definition|Fixpoint|Ltac)\s+([A-Za-z_][\w']*)")
+_PROOF_START = re.compile(r"\s*Proof\b")
 _IMPORT_SENTENCE = re.compile(r"(?:From \w+ Require )?Import\b")
-_SECTION = re.compile(r"Section (\w+)\.")
-_IN_FILE = re.compile(r"Local\b")
-_IN_SECTION = re.compile(r"(?:Section|End|Context|Let|Notation|Add Ring|Local|Implicit Types)\b")
+_SECTION_START = re.compile(r"Section (\w+)\.")
+_FILE_LOCAL = re.compile(r"Local\b")
+_SECTIONAL = re.compile(r"(?:Section|End|Context|Let|Notation|Add Ring|Local|Implicit Types)\b")
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -49,7 +49,7 @@ def files() -> dict[str, Path]:
 
 @cache
 def text_of(name: str) -> str:
-    """Read the file of this name."""
+    """Return the text of the file of this name."""
     return files()[name].read_text(encoding="utf-8")
 
 
@@ -59,7 +59,7 @@ def imports_of(name: str) -> list[str]:
 
 
 def sort_by_imports(names: Iterable[str]) -> list[str]:
-    """Return these files and all that they depend on, each after its imports."""
+    """Return these files and all that they import, each after its imports."""
     ordered: dict[str, None] = {}
 
     def add(name: str) -> None:
@@ -74,7 +74,7 @@ def sort_by_imports(names: Iterable[str]) -> list[str]:
 
 
 def import_line(names: Iterable[str]) -> str:
-    """Format the line by which a file imports these from an installed theory."""
+    """Format the line that imports these files from an installed theory."""
     return f"From {LOGICAL} Require Import {' '.join(names)}.\n"
 
 
@@ -98,9 +98,9 @@ def install(folder: Path) -> list[Path]:
 
 @dataclass(frozen=True)
 class ShippedTheorem:
-    """The theorem of this name in the file of the theory that is called `file`.
+    """The theorem `name` in the file `file` of the theory.
 
-    Raises ValueError if that file states no such theorem, so no reference can outlive it.
+    Raises ValueError if that file states no such theorem, so that no reference can be outdated.
     """
 
     file: str
@@ -120,8 +120,8 @@ def _stated_theorems(file: str) -> frozenset[str]:
 
 
 def cite_theorems(names: Iterable[str]) -> Prose:
-    """Say that the theorems FILE.NAME prove it; ValueError if one is not stated."""
-    # `ShippedTheorem` checks that the theory states the theorem.
+    """Return a citation of the theorems FILE.NAME; ValueError if one is not stated."""
+    # `ShippedTheorem` raises the ValueError.
     theorems = (Formula(str(ShippedTheorem(*name.split(".")))) for name in names)
     return prose("Rocq, ", join_prose(", ", theorems))
 
@@ -130,14 +130,14 @@ def cite_theorems(names: Iterable[str]) -> Prose:
 
 
 def format_modules(names: Iterable[str], user_text: str) -> str:
-    """Format what `user_text` needs of these files, and of their imports, as modules.
+    """Format as modules the parts of these files and their imports that `user_text` needs.
 
     The text ends with the line that imports these modules.
     """
     names = list(names)
     ordered = sort_by_imports(names)
-    # Libraries are imported once for all modules: each time takes a fifth of a second. Every file
-    # says which scopes it means, and its own names are imported after theirs.
+    # Libraries are imported once for all modules, as each import takes a fifth of a second. That
+    # changes nothing: every file names its scopes, and imports the theory's names after theirs.
     library = sorted({word for name in ordered for word in _words(_LIBRARY_IMPORT, text_of(name))})
     below = {name: sort_by_imports([name]) for name in ordered}
     files = select_needed({name: text_of(name) for name in ordered}, below, user_text)
@@ -167,8 +167,9 @@ def _format_import(names: Iterable[str], files: Container[str]) -> str:
 class Part:
     """A sentence with its proof, and the comment before it.
 
-    `name`: the name that it proves or defines, if that is its only use; `section`: the name of its
-    section; `serves`: whether it only serves other sentences of its file or section.
+    `name`: the name that it proves or defines, if the sentence is needed only for that. `section`:
+    the name of its section. `serves`: True if it only serves other sentences of its file or
+    section.
     """
 
     text: str
@@ -181,7 +182,7 @@ class Part:
 def select_needed(
     files: Mapping[str, str], below: Mapping[str, Iterable[str]], user_text: str
 ) -> dict[str, str]:
-    """Return the parts of these files that `user_text` needs, without files that become empty.
+    """Return the parts of these files that `user_text` needs; empty files are left out.
 
     `below`: for each file, the files whose names it may use, itself among them.
     """
@@ -202,17 +203,17 @@ def select_needed(
 def _numbers_of_kept(
     parts: Sequence[tuple[str, Part]], below: Mapping[str, Iterable[str]], user_words: Iterable[str]
 ) -> set[int]:
-    """Return the numbers of the parts that are kept."""
+    """Return the indices of the parts that are kept."""
     numbers: set[int] = set()
-    words = {file: set(user_words) for file, _ in parts}  # that may mean something of the file
-    in_use: set[tuple[str, str | None]] = set()  # files, and sections in them
+    words = {file: set(user_words) for file, _ in parts}  # words that may refer to the file's names
+    in_use: set[tuple[str, str | None]] = set()  # (file, section) with kept parts; None: the file
 
     def stays(file: str, part: Part) -> bool:
         if part.name is not None:
             return part.name in words[file]
         return not part.serves or (file, part.section) in in_use
 
-    # A fixed point: each round keeps what the round before names, until nothing is added.
+    # Each round keeps the parts that the round before refers to, until nothing is added.
     while added := {
         k for k, (file, part) in enumerate(parts) if k not in numbers and stays(file, part)
     }:
@@ -227,12 +228,12 @@ def _numbers_of_kept(
 
 @cache
 def parts_of(text: str) -> tuple[Part, ...]:
-    """Split the file into parts, whose texts follow one another in it."""
+    """Split a file's text into its consecutive parts."""
     parts: list[Part] = []
     plain, begin, section = without_comments(text), 0, None
     for end in _ends(plain):
         sentence = plain[begin:end].strip()
-        if section is None and (section_start := _SECTION.match(sentence)):
+        if section is None and (section_start := _SECTION_START.match(sentence)):
             section = section_start[1]
         parts.append(_part(text[begin:end], sentence, section))
         if sentence == f"End {section}.":
@@ -242,9 +243,9 @@ def parts_of(text: str) -> tuple[Part, ...]:
 
 
 def _part(text: str, sentence: str, section: str | None) -> Part:
-    definition, imports = _DEFINED.match(sentence), _IMPORT_SENTENCE.match(sentence)
-    serving = _IN_FILE if section is None else _IN_SECTION
-    # The names of imported files are no use of what these files define.
+    definition, imports = _DEFINING.match(sentence), _IMPORT_SENTENCE.match(sentence)
+    serving = _FILE_LOCAL if section is None else _SECTIONAL
+    # An import names files; that is no use of the names that these define.
     words = frozenset() if imports else words_of(sentence)
     serves = bool(imports or serving.match(sentence))
     return Part(text, words, definition[1] if definition else None, section, serves)
@@ -255,7 +256,7 @@ def _ends(plain: str) -> Iterator[int]:
     end = 0
     while sentence_end := _END_OF_SENTENCE.search(plain, end):
         end = sentence_end.end()
-        if _PROOF.match(plain, end):
+        if _PROOF_START.match(plain, end):
             proof = _END_OF_PROOF.search(plain, end)
             end = proof.end() if proof else len(plain)
         yield end

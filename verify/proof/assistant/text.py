@@ -1,4 +1,4 @@
-"""A file for Rocq: what it proves in words, the theory it stands on, and the proofs."""
+"""A file for Rocq: its statement in words, the theory it uses, its theorems and proofs."""
 
 import re
 from collections.abc import Sequence
@@ -14,13 +14,13 @@ from verify.proof.assistant.rocq_formulas import lines
 from verify.proof.assistant.shipped_theory import format_modules, import_line
 from verify.proof.certificates.established_statement import EstablishedStatement
 
-_LONGEST = 2000  # characters of a formula in the words
+_LONGEST_FORMULA = 2000  # characters; longer formulas are cut in the introduction
 _WIDTH = 88
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_INCLUDED = re.compile(r'{% include "(\w+)\.jinja" %}')
-_STATED = re.compile(r"^(?:Lemma|Theorem) ([\w']+)", re.MULTILINE)
-_THEOREM = re.compile(r"^Theorem (\w+)", re.MULTILINE)
-_CLAIMED, _OVER_THE_REALS = "(** * What is proved", "(** * Over the real numbers"
+_INCLUDE = re.compile(r'{% include "(\w+)\.jinja" %}')
+_STATED_NAME = re.compile(r"^(?:Lemma|Theorem) ([\w']+)", re.MULTILINE)
+_THEOREM_NAME = re.compile(r"^Theorem (\w+)", re.MULTILINE)
+_CLAIMS_HEADING, _REALS_HEADING = "(** * What is proved", "(** * Over the real numbers"
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
@@ -28,9 +28,9 @@ _TEMPLATES = Path(__file__).parent / "templates"
 class Export:
     """The parts of an exported file: theory, definitions, theorems and proofs.
 
-    `needs`: files of the theory; `template`, with `values`: definitions, theorems and proofs.
-    `of_rings`: whether the theorems hold in any ring and assume nothing. `shows_nonzero`: whether
-    one of them states that L is not 0, where there is an L.
+    `needs`: the files of the theory. `template`, `values`: the template of definitions, theorems
+    and proofs, and its variables. `of_rings`: True if there are theorems that hold in any ring and
+    assume nothing. `shows_nonzero`: True if a theorem states that L is not 0, or there is no L.
     """
 
     needs: Sequence[str]
@@ -55,10 +55,10 @@ def render_file(export: Export, facts: EstablishedStatement, *, stands_alone: bo
         "shows_nonzero": export.shows_nonzero,
     }
     head = _environment().get_template("head.jinja").render(words)
-    # The theory is reduced to what the body names, so the body is rendered first.
+    # The body is rendered first, as the theory is reduced to the parts that it needs.
     body = body_of(export)
     theory = format_modules(export.needs, body) if stands_alone else import_line(export.needs)
-    assumptions = _print_assumptions(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
+    assumptions = _print_assumptions(body[body.index(_CLAIMS_HEADING) :], of_rings=export.of_rings)
     return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{assumptions}")
 
 
@@ -69,19 +69,19 @@ def body_of(export: Export) -> str:
 
 def theorems_of(body: str) -> tuple[str, ...]:
     """Return the names of the theorems, in order."""
-    return tuple(_THEOREM.findall(body))
+    return tuple(_THEOREM_NAME.findall(body))
 
 
 def _print_assumptions(claimed: str, *, of_rings: bool) -> str:
-    """Write the commands by which Rocq prints what the theorems assume, by kind.
+    """Format the commands by which Rocq prints the theorems' assumptions.
 
-    For each command Rocq goes through the library anew, for about a second: so one command stands
-    for all theorems of rings, and one for those over the real numbers.
+    Each command takes Rocq about a second: so there is one for all theorems of rings, and one for
+    all theorems over the real numbers.
     """
-    rings, _, reals = claimed.partition(_OVER_THE_REALS) if of_rings else ("", "", claimed)
+    rings, _, reals = claimed.partition(_REALS_HEADING) if of_rings else ("", "", claimed)
     kinds = {"theorems_of_rings": rings, "theorems_over_the_reals": reals}
     return "\n".join(
-        _print_command(name, _STATED.findall(text)) for name, text in kinds.items() if text
+        _print_command(name, _STATED_NAME.findall(text)) for name, text in kinds.items() if text
     )
 
 
@@ -94,9 +94,9 @@ def _print_command(name: str, theorems: Sequence[str]) -> str:
 
 @cache
 def template_words(template: str) -> frozenset[str]:
-    """Return the words of a template and its includes, which no certificate's name may hide."""
+    """Return the words of a template and its includes; no certificate's name may be one."""
     text = (_TEMPLATES / f"{template}.jinja").read_text(encoding="utf-8")
-    included = (template_words(name) for name in _INCLUDED.findall(text))
+    included = (template_words(name) for name in _INCLUDE.findall(text))
     return frozenset(_WORD.findall(text)).union(*included)
 
 
@@ -104,8 +104,8 @@ def template_words(template: str) -> frozenset[str]:
 def _environment() -> Environment:
     return Environment(
         loader=FileSystemLoader(_TEMPLATES, encoding="utf-8"),
-        autoescape=False,  # noqa: S701 - no page: what is set is numbers and names that were checked
-        # A variable missing in a template must not become an empty text within a proof.
+        autoescape=False,  # noqa: S701 - no HTML: the values are checked numbers and names
+        # A missing variable must be an error, and not an empty text within a proof.
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -121,16 +121,16 @@ def _formulas_in_words(facts: EstablishedStatement) -> list[str]:
         "map": facts.scheme,
     }
     return [
-        f"{name} = {_comment(text if len(text) <= _LONGEST else _cut(text))}"
+        f"{name} = {_comment(text if len(text) <= _LONGEST_FORMULA else _cut(text))}"
         for name, text in formulas.items()
         if text
     ] + [f"where {_comment(text)}" for text in facts.domain]
 
 
 def _cut(text: str) -> str:
-    return f"{text[:_LONGEST].rsplit(' ', 1)[0]} ..."
+    return f"{text[:_LONGEST_FORMULA].rsplit(' ', 1)[0]} ..."
 
 
 def _comment(text: str) -> str:
-    """Escape everything in the text that ends or begins a comment or a string of Rocq."""
+    """Escape all that begins or ends a comment or a string in Rocq."""
     return text.replace('"', "'").replace("(*", "( *").replace("*)", "* )")

@@ -25,25 +25,25 @@ from verify.proof.certificates.coefficients import (
 from verify.proof.certificates.named_numbers import AlgebraicNumber, QuotientRing
 from verify.proof.certificates.readers import Poly
 
-_SHEARS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
-_FORMULAS = ["Rings", "Formulas", "Calculation", "RealFormulas", "Coefficients"]
-_STAGES = [*_SHEARS, *_FORMULAS, "StageSchemes"]
-_TABLEAU = [*_SHEARS, *_FORMULAS, "RungeKutta"]
+_NEEDS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
+_FORMULA_NEEDS = ["Rings", "Formulas", "Calculation", "RealFormulas", "Coefficients"]
+_STAGE_NEEDS = [*_NEEDS, *_FORMULA_NEEDS, "StageSchemes"]
+_TABLEAU_NEEDS = [*_NEEDS, *_FORMULA_NEEDS, "RungeKutta"]
 
 
 def export_stages(entries: Stages) -> Export:
     """Export the theorems of a certificate by stages, and their proofs."""
     names = _Numbers(entries, "stages")
-    # Shears have a theorem that needs no solvability, so they are exported by it where possible.
+    # The theorem on shears assumes no solvability: it is used if all stages are made of shears.
     shears = list(_shears(entries, names))
     if None not in shears:
-        return Export(_SHEARS, "shears", {**names.values, "shears": shears})
+        return Export(_NEEDS, "shears", {**names.values, "shears": shears})
     zero: Poly = {}
     times = entries.times or [zero] * len(entries.rows)
     rows = [(*row, time) for row, time in zip(entries.rows, times, strict=True)]
     residuals = list(residuals_of_stages(entries, QuotientRing(())))
     return Export(
-        needs=_STAGES,
+        needs=_STAGE_NEEDS,
         template="stages",
         values={
             **names.values,
@@ -64,7 +64,7 @@ def export_tableau(entries: ButcherTableau) -> Export:
     )
     by_stages = [residuals[min(pair), max(pair)] for pair in product(range(len(b)), repeat=2)]
     return Export(
-        needs=_TABLEAU,
+        needs=_TABLEAU_NEEDS,
         template="tableau",
         values={
             **names.values,
@@ -78,7 +78,7 @@ def export_tableau(entries: ButcherTableau) -> Export:
 
 
 def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
-    """Yield kicks and drifts, one after the other; None if a stage is not made of them."""
+    """Yield the kicks and drifts of all stages; None for a stage that is not made of them."""
     for k, (kick, drift, at_p, at_q) in enumerate(entries.rows):
         time = ""
         if entries.times is not None:
@@ -92,7 +92,7 @@ def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
             yield None
         elif not drift or not kick:
             yield from [first] * bool(kick) + [second] * bool(drift)
-        elif not at_q or not at_p:  # one of them is taken where the other has been
+        elif not at_q or not at_p:  # the second shear is at the point that the first leads to
             yield from (first, second) if not at_q else (second, first)
         else:
             yield None
@@ -104,7 +104,7 @@ class _Numbers:
     def __init__(self, entries: Stages | ButcherTableau, template: str) -> None:
         self.numbers = entries.numbers
         words = template_words(template)
-        # The names of statements about a number are prefixes and its name: none may clash.
+        # Statements about a number are called by a prefix and its name: none may clash.
         prefixes = ("is_", "there_is_", "E_")
         self.spelling = safe_names([number.name for number in self.numbers], words, prefixes)
         self.deep = deep({number.name: k for k, number in enumerate(self.numbers, start=1)})
@@ -118,7 +118,7 @@ class _Numbers:
             "numbers": list(map(self._number, self.numbers)),
             "names": names,
             "parameters": f"({' '.join(names)} : R) " if names else "",
-            # Each with a blank before it.
+            # These three have a blank before each item.
             "arguments": "".join(f" {name}" for name in names),
             "proofs": "".join(f" E_{name}" for name in names),
             "equations": "".join(f" (proj1 E_{name})" for name in names),
@@ -127,7 +127,7 @@ class _Numbers:
         }
 
     def deep_values(self, residuals: Sequence[Poly]) -> dict[str, str]:
-        """Return the relations as formulas, and the factors by which the residuals are 0."""
+        """Return the relations as formulas, and the factors that show the residuals to be 0."""
         relations = list(map(_relation, self.numbers))
         names = [number.name for number in self.numbers]
         factors = Reducer(names, list(enumerate(relations))).all_factors(residuals)

@@ -1,4 +1,4 @@
-"""The export of a certificate for every H: of elements of any ring with commuting derivations."""
+"""The export of a certificate for every H, for any ring with commuting derivations."""
 
 from collections.abc import Iterable, Iterator
 
@@ -33,7 +33,7 @@ _NEEDS = [
     "RealMaps",
     "EverySmooth",
 ]
-_WHICH = {  # by (separable, timed)
+_HAMILTONIANS = {  # the class of H, by (separable, timed)
     (False, False): "H(p, q)",
     (True, False): "H = T(p) + V(q)",
     (False, True): "H(p, q, t)",
@@ -57,7 +57,7 @@ def export_for_every_h(entries: Expansion) -> Export:
         shows_nonzero=order is None or witness is not None,
         values={
             **names.values(),
-            "which": _WHICH[entries.separable, entries.timed],
+            "which": _HAMILTONIANS[entries.separable, entries.timed],
             "timed": whole(entries.timed),
             "separable": whole(entries.separable),
             "coordinates": " ".join(f"let {x} := {k} in" for x, k in names.coordinates.items()),
@@ -95,7 +95,7 @@ class _RingNames(Names):
         self.n = entries.layout.degrees
         used_names = {name for x in polynomials_of(entries) for names in x for name in names}
         derived = {self._index(name) for name in used_names if name not in self.coordinates}
-        # The formulas are derived once more, and the slopes of H twice.
+        # The check differentiates the formulas once and H twice, and needs names for the results.
         derived |= {(k,) for k in range(2 * self.n)}
         self.derived = sorted(derived | set(self._slopes(derived)), key=lambda x: (len(x), x))
         letters = list(self.coordinates)
@@ -110,7 +110,7 @@ class _RingNames(Names):
         derived = sorted((self._index(x) for x in used_names - {*plain}), key=lambda x: (len(x), x))
         bound = [f"let {x} := coordinate s {self.coordinates[x]} in" for x in plain]
         if derived:
-            # Rocq expands each `let` where it is used, so only names that occur are bound.
+            # Rocq expands each `let`, so that only names that occur are bound.
             bound.append("let H := hamiltonian s in")
         for index in derived:
             slopes = " (".join(f"by_coordinate {k}" for k in index)
@@ -118,7 +118,7 @@ class _RingNames(Names):
         return "\n  ".join([*bound, text])
 
     def _index(self, name: str) -> tuple[int, ...]:
-        """Return the coordinates by which H is derived, in order."""
+        """Return the numbers of the variables by which H is differentiated, in order."""
         return tuple(sorted(self.coordinates[coordinate] for coordinate in derived_by(name)))
 
     def _name(self, index: tuple[int, ...]) -> str:
@@ -126,7 +126,7 @@ class _RingNames(Names):
         return "H_" + "".join(letters[k] for k in index)
 
     def _slopes(self, derived: Iterable[tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
-        """Yield the derivatives of these by one more coordinate, without those that are 0."""
+        """Yield the derivatives of these by one more variable, without those that are 0."""
         for index in derived:
             for coordinate in range(2 * self.n + self.entries.timed):
                 longer = tuple(sorted((*index, coordinate)))

@@ -1,4 +1,4 @@
-"""The export of a certificate for one H: of real functions."""
+"""The export of a certificate for one H, for real functions."""
 
 from collections.abc import Iterable
 
@@ -35,11 +35,12 @@ _NEEDS = [
     "FlowClaims",
     "AgreementClaims",
 ]
-_WORDS = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that this module writes
-_NEEDS_OF_ORDER = ("RationalValues", "Nonzero")
-_EXACT = ("RealExact", "ExactClaims")
-_TELESCOPING = ("RealPotential",)
-_LONGEST = 20_000  # characters of a function, written out
+# Words that this module writes, and no parameter may hide.
+_RESERVED_WORDS = frozenset(("True", "I", "conj", "proj1", "proj2"))
+_ORDER_NEEDS = ("RationalValues", "Nonzero")
+_EXACT_NEEDS = ("RealExact", "ExactClaims")
+_TELESCOPING_NEEDS = ("RealPotential",)
+_LONGEST_FUNCTION = 20_000  # characters of a function that is written out
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 _KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
 
@@ -51,9 +52,9 @@ def export_for_one_h(entries: Expansion, hamiltonian: Poly) -> Export:
     slopes = [algebra.slopes[name] for name in entries.coordinates]
     spelled, shallow = names.deep, names.shallow
     witness = point_that_shows(entries) if order is not None else None
-    needs = (*_NEEDS, *(_EXACT if order is None else _NEEDS_OF_ORDER))
+    needs = (*_NEEDS, *(_EXACT_NEEDS if order is None else _ORDER_NEEDS))
     return Export(
-        needs=needs if potential is None else (*needs, *_TELESCOPING),
+        needs=needs if potential is None else (*needs, *_TELESCOPING_NEEDS),
         template="one",
         shows_nonzero=order is None or witness is not None,
         values={
@@ -89,7 +90,11 @@ def export_for_one_h(entries: Expansion, hamiltonian: Poly) -> Export:
 
 
 class _RealNames(Names):
-    """The names of coordinates, parameters and functions; `point`: a function's arguments."""
+    """The names of coordinates, parameters and functions.
+
+    `moving`: the coordinates, and t if H depends on it. `point`: the arguments of a function on
+    phase space: these names in the plane, else one vector z.
+    """
 
     zero = "0"
 
@@ -100,15 +105,14 @@ class _RealNames(Names):
         all_names = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
         self.numbers = {name: k for k, name in enumerate(all_names, start=1)}
         self.deep = deep(self.numbers)
-        self.spelling = safe_names(entries.parameters, template_words("one") | _WORDS)
+        self.spelling = safe_names(entries.parameters, template_words("one") | _RESERVED_WORDS)
         self.shallow = Spelling(real, self._word, self._power)
         self.calls = dict[str, str]()
         for function in entries.functions:  # inner ones first
             kind = "/" if function.kind == "inverse" else function.kind
             call = f"{kind} {self.shallow.argument(function.argument)}"
-            # Arguments are written out within arguments, so the length may grow exponentially with
-            # nesting.
-            if len(call) > _LONGEST:
+            # Arguments are written out within arguments: the length may grow exponentially.
+            if len(call) > _LONGEST_FUNCTION:
                 raise ValueError("a function is too long to be written out")
             self.calls[function.name] = call
 
@@ -119,12 +123,11 @@ class _RealNames(Names):
         return f"({base}) ^ {n}" if " " in base else f"{base} ^ {n}"
 
     def format_function(self, function: NamedFunction) -> str:
-        """Format a function of the vocabulary: kind, number of its partner, and argument."""
+        """Format a function for the check: its kind, the number of its partner, its argument."""
         partner = ""
         if function.kind in _PARTNERS:
             key = (_PARTNERS[function.kind], function.argument)
-            # The certificate has both functions of a pair, as sin and cos are each other's
-            # derivatives.
+            # The certificate has both functions of a pair, as each is the other's derivative.
             partners = [f for f in self.entries.functions if (f.kind, f.argument) == key]
             partner = f" {self.numbers[partners[0].name]}"
         return f"({_KINDS[function.kind]}{partner}, {self.deep.format_scoped(function.argument)})"

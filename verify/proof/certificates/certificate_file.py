@@ -1,4 +1,4 @@
-"""The check of a certificate's file: what it establishes, or why it is refused."""
+"""The check of a certificate's file: the statement that it establishes, or a refusal."""
 
 from pathlib import Path
 from typing import Any
@@ -7,12 +7,12 @@ from verify.formats import read_json
 from verify.proof.certificates.established_statement import EstablishedStatement, check_certificate
 
 FORMAT = "areaproof certificate 2"
-Certificate = dict[str, Any]  # as in JSON; its readers check every entry
+Certificate = dict[str, Any]  # a JSON object; its readers check every entry
 
 
 def check_file(path: Path) -> EstablishedStatement | str:
-    """Check a certificate's file: return what it establishes, or the reason of the refusal.
+    """Check a certificate's file: return the statement it establishes, or why it is refused.
 
-    Raises InputError if the file is no such certificate.
+    Raises InputError if the file cannot be read or has another format.
     """
     return check_certificate(read_json(path, FORMAT))

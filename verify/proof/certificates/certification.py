@@ -1,36 +1,40 @@
 """Certificates of proofs, for every H and for one: polynomials and their identities, as JSON.
 
-A polynomial is a list of terms `[coefficient, name, name, …]`, a name once for each power, and a
-number is a text such as "-3/2".
-- `format`: what this is, with its version (see `verify.formats`).
+A polynomial is a list of terms `[coefficient, name, name, …]`, in which a name stands once for each
+power. A number is a text such as "-3/2". J is the Jacobian of the map, X the derivative along the
+flow.
+- `format`: the name of the format with its version (see `verify.formats`).
 - `hamiltonian`: a polynomial, or "every": then the names are p, q and H_p, H_q, H_pp, … as free
   derivatives of H (`separable`: the mixed ones are 0).
-- `time_dependent`: true where H depends on t, and else not there. Then t is a name, H_pt, H_qtt, …
-  are derivatives of H, and D = ∂_t + X takes the place of X.
+- `time_dependent`: true if H depends on t, else left out. If true, t is a name, H_pt, H_qtt, … are
+  derivatives of H, and D = ∂_t + X takes the place of X.
 - `parameters`: the names of H's parameters, for one H.
-- `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first, for
-  one H; a sin and the cos of the same argument stand together.
-- `p_next`, `q_next`: the coefficients of h⁰, h¹, … of the map, as far as they are needed.
-- `convergence_order` c: those of h⁰ … h^c are (Xⁿp)/n! and (Xⁿq)/n!, by X = H_p ∂_q − H_q ∂_p.
-- `order` r and `leading`: the coefficients of h … h^(r−1) in det J vanish, that of h^r is
-  `leading`, not zero. null: all vanish, and `leading` has no term.
+- `functions`: for one H, `[name, kind, argument]` with the kind sin, cos, exp or inverse, inner
+  functions first; with a sin there is the cos of the same argument, and with a cos the sin.
+- `p_next`, `q_next`: the coefficients of h⁰, h¹, … in the map, as far as they are needed.
+- `convergence_order` c: for n = 0 … c, the coefficients of hⁿ are (Xⁿp)/n! and (Xⁿq)/n! with
+  X = H_p ∂_q − H_q ∂_p.
+- `order` r and `leading`: the coefficients of h … h^(r−1) in det J vanish, and that of h^r is
+  `leading` ≠ 0. If `order` is null, all vanish, and `leading` has no term.
 - `witness`: for one H, a point at which `leading` and all denominators are other than 0.
-- `potential` G, where it is there: X·G = `leading`.
-- `cofactors`: what has to be zero is Σ cofactor·relation over the functions' relations.
-- `stages`, alone with `hamiltonian`, `separable`, `time_dependent`, `degrees` and `numbers`: rows
-  (kick, drift, share of p', share of q') of a scheme that is p' = p − h·kick·H_q,
-  q' = q + h·drift·H_p, with H_p and H_q taken at those shares of the way from (p, q) to (p', q'):
-  det J = 1. Where H depends on t a row has a fifth number c: both are taken at t + c h.
-- `tableau`, as alone: an object of a Runge–Kutta method's `a`, a list of rows a_ij, and `b`, and
-  where H depends on t of `c`, the stages' times: det J = 1.
-- `numbers`, where the scheme's coefficients are irrational: `[name, polynomial, low, high]`, real
-  numbers, each the one root of a polynomial between two rational ends. The polynomial is the list
-  of its coefficients c₀, c₁, …, whole numbers. A coefficient of `stages` or `tableau` is a number,
+- `potential` G, which may be left out: X·G = `leading`.
+- `cofactors`: for one H, by the name of an identity: its residual, which must be zero, is
+  Σ cofactor·relation over the functions' relations.
+- `stages`, only with `hamiltonian`, `separable`, `time_dependent`, `degrees` and `numbers`: rows
+  (kick, drift, share of p', share of q') of a scheme p' = p − h·kick·H_q, q' = q + h·drift·H_p, in
+  which H_p and H_q are taken at these shares of the way from (p, q) to (p', q'). The statement is
+  det J = 1. If H depends on t, a row has a fifth number c: both are taken at t + c h.
+- `tableau`, only with the same keys: the `a`, a list of rows a_ij, and `b` of a Runge–Kutta method,
+  and if H depends on t also `c`, the stages' times. The statement is det J = 1.
+- `numbers`, if the scheme's coefficients are irrational: `[name, polynomial, low, high]`, real
+  numbers, each the only root of a polynomial between two rational ends. The polynomial is the list
+  of its coefficients c₀, c₁, …, whole numbers. A coefficient in `stages` or `tableau` is a number,
   or a polynomial in these names.
 
-In n degrees of freedom: `degrees` n; `next` has the coefficients of each coordinate's new value, by
-its name; `leading` and `potential` are 2-forms, lists of [coordinate, coordinate, polynomial]. What
-has to be zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
+In n degrees of freedom `degrees` is n, and S = JᵀΩJ − Ω takes the place of det J − 1. `next` has
+the coefficients of each coordinate's new value, by name; `leading` and `potential` are 2-forms,
+lists of [coordinate, coordinate, polynomial]. The identities are called `p1 0`, `S 3 p1 q2`,
+`potential p1 q2`.
 
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
@@ -70,7 +74,7 @@ _NOT_COVERED = "the checker knows coefficients of what preserves area, and Taylo
 
 
 def certify_for_every_h(proof: ProofForEveryH) -> Certificate:
-    """Write the certificate of a proof for every H; InputError if nothing is proved."""
+    """Return the certificate of a proof for every H; InputError if nothing is proved."""
     scheme, agreed = get(proof.scheme), proof.convergence_order
     every_h = scheme.every_h
     if proof.verdict is not Verdict.PROVED or every_h is None or agreed is None:
@@ -83,8 +87,7 @@ def certify_for_every_h(proof: ProofForEveryH) -> Certificate:
         "separable": proof.separable,
         **({"time_dependent": True} if proof.timed else {}),
     }
-    # Coefficients are the shorter certificate, and suffice where the scheme preserves the
-    # structure.
+    # A certificate by coefficients is shorter, and suffices if the scheme preserves the structure.
     coefficients = write_coefficients(scheme, timed=proof.timed) if proof.symplectic else None
     if coefficients is not None:
         return data | coefficients
@@ -107,10 +110,10 @@ def certify_for_every_h(proof: ProofForEveryH) -> Certificate:
 
 
 def certify_for_one_h(proof: Proof, potential: Potential | None = None) -> Certificate:
-    """Write the certificate of a proof for one H.
+    """Return the certificate of a proof for one H.
 
-    `potential`: of ΔJ's leading coefficient in the plane. Raises InputError if nothing is
-    proved, if the map has no closed form that is a polynomial in h, and if H needs other
+    `potential`: the potential of ΔJ's leading coefficient, in the plane. Raises InputError if
+    nothing is proved, if the map has no closed form that is a polynomial in h, and if H has other
     functions than sin, cos, exp and denominators.
     """
     if proof.verdict is not Verdict.PROVED or proof.convergence_order is None:
@@ -128,7 +131,7 @@ def _in_plane(proof: Proof, potential: Potential) -> tuple[CanonicalField, State
     field, (*after, leading, telescoping) = canonical_field(step.hamiltonian, *expressions)
     length = max(order, agreed) + 1 if order else None
     has_potential = order is not None and potential.potential is not None
-    # X·c = 0 for a constant c, so G is written without constants.
+    # X·c = 0 for a constant c, so that G is written without its constant term.
     without = without_constants(field.ring, telescoping, (*PLANE, "t"))
     return field, Statement(
         layout_of(field.names),
@@ -151,7 +154,7 @@ def _in_degrees(proof: Proof, _: Potential) -> tuple[CanonicalField, Statement]:
     form = None if order is None else proof.first.form
     series, entries = series_of(step, last_power), entries_of(form)
     if isinstance(series, ClosedSeries):
-        # Where h stands in a function each coefficient has a ring of its own, and so has S.
+        # If h stands within a function, each coefficient has its own ring, and so has S.
         expressions = [form.ring.expression(x) for x in entries.values()] if form else []
         field, rows, elements = series.in_one_field(step.hamiltonian, last_power, *expressions)
         entries = dict(zip(entries, elements, strict=True))
@@ -159,7 +162,7 @@ def _in_degrees(proof: Proof, _: Potential) -> tuple[CanonicalField, Statement]:
         field, columns = series.flow, [series.coefficient(n) for n in range(last_power + 1)]
         rows = [list(row) for row in zip(*columns, strict=True)]
     eta = step.flow_up_to
-    has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # of odd η S ≡ 0 does, without
+    has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # for odd η there is none
     potential = entries_of(potential_of_lie(field, eta)) if has_potential else None
     return field, Statement(layout_of(field.names), rows, order, agreed, entries, potential)
 

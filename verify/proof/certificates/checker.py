@@ -1,37 +1,37 @@
-"""Checks a certificate with the standard library alone; it shares nothing with the prover.
+"""Check a certificate with the standard library alone, and no code of the prover.
 
-**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q; with
-`degrees` that is summed over p_i and q_i. With `time_dependent` H is one of t, too, and in all that
-follows X stands for D = ∂_t + X, "flow" for that from t to t + h, and J and each identity are taken
-at one t, which is any.
+**Theorem**, which acceptance proves. Let X f = H_p f_q − H_q f_p for a function H of p and q; with
+`degrees` this is summed over p_i and q_i. With `time_dependent` H depends on t, too: then in all
+that follows X stands for D = ∂_t + X, "the flow" is that from t to t + h, and J and each identity
+are taken at one t, which is arbitrary.
 
-*Of one H*, a polynomial in p, q, parameters and functions. Where no denominator among them is 0,
-which is so at the witness: for every map p' = Σ p_n hⁿ + O(h^(m+1)), q' likewise, with the `p_next`
+*For one H*, a polynomial in p, q, parameters and functions. At all points where no denominator is
+0, as at the witness, and for every map p' = Σ p_n hⁿ + O(h^(m+1)), q' likewise, with the `p_next`
 and `q_next` of the certificate and a smooth remainder, m the larger of `order` r and
-`convergence_order` c,
+`convergence_order` c:
 
 1. p_n = Xⁿp/n! and q_n = Xⁿq/n! for n ≤ c: the map agrees with the flow of H up to h^c;
 2. det J − 1 = L h^r + O(h^(r+1)) with L = `leading`, which is not 0 at the witness, and so, being
    analytic, not the zero function on any open set;
-3. X·G = L for the `potential` G, where there is one.
+3. X·G = L for the `potential` G, if there is one.
 
-With `order` null, for the map p' = Σ p_n hⁿ, q' = Σ q_n hⁿ without a remainder: 1, and det J = 1.
+With `order` null, for the map p' = Σ p_n hⁿ, q' = Σ q_n hⁿ without a remainder: 1., and det J = 1.
 
-With `degrees`, the same with S = JᵀΩJ − Ω in place of det J − 1 and 2-forms in place of L and G:
-2. S = L h^r + O(h^(r+1)), an entry of L being other than 0 at the witness; 3. the Lie derivative of
-G is L. With `order` null: S = 0, and the map is symplectic.
+With `degrees`, S = JᵀΩJ − Ω takes the place of det J − 1, and 2-forms that of L and G:
+2. S = L h^r + O(h^(r+1)), and an entry of L is not 0 at the witness; 3. the Lie derivative of G is
+L. With `order` null: S = 0, and the map is symplectic.
 
-*Of every H* (`separable`: every H = T(p) + V(q)), the same for each smooth H at every point; L is
-a polynomial in p, q and the derivatives of H that is not 0, and so is not 0 for some H. (Of a
-2-form, one of its entries is.)
+*For every H* (`separable`: every H = T(p) + V(q)), the same for each smooth H at every point; L, or
+an entry of the 2-form L, is a polynomial in p, q and the derivatives of H that is not 0, and so is
+not 0 for some H.
 
-*Of stages*, for every H: det J = 1 for each smooth map (p, q) ↦ (p', q') that solves
+*For stages*, for every H: det J = 1 for each smooth map (p, q) ↦ (p', q') that solves
 p' = p − h k H_q, q' = q + h d H_p at (p + s (p' − p), q + u (q' − q)), wherever the derivatives of
 these equations by (p', q') have a determinant det A ≠ 0; and so for one stage after the other. With
 `time_dependent` a stage has one time, t + c h with c any, at which both H_q and H_p are taken. With
-`degrees`, S = 0 in so many degrees of freedom.
+`degrees`, S = 0 in n degrees of freedom.
 
-*Of a tableau* (a_ij; b_i), for every H: S = 0, and in the plane det J = 1, of each map
+*For a tableau* (a_ij; b_i), for every H: S = 0, and in the plane det J = 1, of each map
 (p, q) ↦ (p', q') with p' = p − h Σ b_i H_q and q' = q + h Σ b_i H_p, these taken at (P_i, Q_i), and
 with `time_dependent` at t + c_i h, wherever P_i, Q_i depend smoothly on (p, q) and solve
 P_i = p − h Σ a_ij H_q, Q_i = q + h Σ a_ij H_p, taken at (P_j, Q_j) and t + c_j h.
@@ -39,15 +39,15 @@ P_i = p − h Σ a_ij H_q, Q_i = q + h Σ a_ij H_p, taken at (P_j, Q_j) and t + 
 Coefficients of stages and of a tableau may be polynomials in `numbers`: each name stands for the
 one real number that is a root of its polynomial in its interval.
 
-**Proof.** Names are differentiated by the rules for what they stand for, and the relations are true
-of that (sin² + cos² = 1, u · 1/u = 1): an identity up to Σ cofactor · relation is one of functions.
-For every H its derivatives are free: an identity of polynomials in them holds for each H, and at a
-point they take any values. With t as a coordinate, t' = 1, the flow is that of D. The entry ab of S
-is Σ_i (p_i',a q_i',b − p_i',b q_i',a) less that of Ω; in the plane its one entry is det J − 1, and
-the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq. For stages and tableaux see
-`verify.proof.certificates.coefficients`: at its own time the H of each stage is a function of p and
-q. That each number is one, and one alone, `verify.proof.certificates.named_numbers` shows; a
-polynomial in them that is a sum of multiples of their own polynomials has the value 0.
+**Proof.** Names are differentiated by the rules for the functions they stand for, which satisfy the
+relations (sin² + cos² = 1, u · 1/u = 1): so an identity of polynomials up to Σ cofactor · relation
+is an identity of functions. For every H its derivatives are free: an identity of polynomials in
+them holds for each H, and at a point they take any values. With t as a coordinate, t' = 1, the flow
+is that of D. The entry ab of S is Σ_i (p_i',a q_i',b − p_i',b q_i',a) less that of Ω. In the plane
+its one entry is det J − 1, and the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq.
+For stages and tableaux see `verify.proof.certificates.coefficients`: at the time of a stage H is a
+function of p and q. `verify.proof.certificates.named_numbers` shows that each name stands for
+exactly one number; a sum of multiples of the numbers' polynomials has the value 0.
 """
 
 from collections.abc import Iterable, Iterator
@@ -61,7 +61,7 @@ from verify.proof.certificates.entries import Expansion, derived_by, read
 from verify.proof.certificates.readers import Monomial, Poly, bits_of, collect_terms, need
 
 Term = tuple[Monomial, Fraction]
-_MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
+_MOST_WORK = 1_000_000  # limit in terms, long ones counting more; it takes some seconds
 
 
 def check(data: object) -> Stages | ButcherTableau | Expansion:
@@ -75,15 +75,15 @@ def check(data: object) -> Stages | ButcherTableau | Expansion:
 
 
 def single(name: str) -> Poly:
-    """Return the polynomial that is one name."""
+    """Return the polynomial that is just this name."""
     return {(name,): Fraction(1)}
 
 
 class Identities:
     """The identities that the theorem asserts, checked one by one.
 
-    The derivatives of every name by the coordinates and t are the free derivatives of H, or follow
-    from the chain rule for functions of arguments.
+    A name is differentiated by the coordinates and t: a derivative of H gives one more derivative
+    of H, and a function follows the chain rule.
     """
 
     def __init__(self, entries: Expansion) -> None:
@@ -101,7 +101,7 @@ class Identities:
             self.images[entry.name] = {
                 by: self.mul(slope, self.diff(entry.argument, by)) for by in self.variables
             }
-        # The derivatives of H by each coordinate; for every H they are names of their own.
+        # The derivatives of H by each coordinate; for every H they are names.
         self.slopes: dict[str, Poly] = {}
         for by in entries.coordinates:
             h = entries.hamiltonian
@@ -125,7 +125,7 @@ class Identities:
 
     def image(self, name: str, by: str) -> Poly:
         if name in self.images or not name.startswith("H_"):
-            return self.images.get(name, {}).get(by, {})  # a parameter has none
+            return self.images.get(name, {}).get(by, {})  # a parameter has the derivative 0
         derived = sorted([*derived_by(name), by], key=self.variables.index)
         mixed = len({x[0] for x in derived} & {"p", "q"}) == 2
         return {} if self.entries.separable and mixed else single("H_" + "".join(derived))
@@ -157,7 +157,7 @@ class Identities:
 
     def count_work(self, term: Term) -> Term:
         names, c = term
-        # The work is counted in about 64-bit words, so that no certificate can stall the checker.
+        # Work is counted roughly in words of 64 bits, so that no certificate can stall the checker.
         self.work += 1 + (8 * len(names) + bits_of(c)) // 64
         need(self.work <= _MOST_WORK, "is too large to be checked here")
         return term
@@ -176,7 +176,7 @@ class Identities:
                 need(name in self.relations, f"cofactors of {identity}: {name!a} has no relation")
                 residual = self.add(residual, self.mul(cofactor, self.relations[name]), -1)
             need(not residual, f"{identity} is not zero")
-        # A cofactor that is not used may be a misspelled name: nothing in the file goes unread.
+        # Cofactors of an unknown identity may be a misspelled name, and are refused.
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
         self.check_witness()
@@ -197,7 +197,7 @@ class Identities:
                 yield f"{coordinate} {n}", self.add(coefficient, flow, Fraction(-1, factorial(n)))
 
     def residuals_of_defect(self, last: int) -> Iterator[tuple[str, Poly]]:
-        """Yield the residuals of S up to h^last; none at h⁰, where the map is the identity."""
+        """Yield the residuals of S at h¹ … h^last; at h⁰ the map is the identity."""
         entries = self.entries
         after = dict(zip(entries.coordinates, entries.after, strict=True))
         slopes = {
@@ -212,8 +212,7 @@ class Identities:
                 for p, q in self.pairs:
                     products = (slopes[p, a], slopes[q, b]), (slopes[p, b], slopes[q, a])
                     for (x, y), sign in zip(products, (1, -1), strict=True):
-                        # The coefficient of hⁿ in a product of two series, as far as both have
-                        # coefficients.
+                        # The coefficient of hⁿ in the product of two series of finite lengths.
                         for k in range(max(0, n - len(y) + 1), min(n + 1, len(x))):
                             residual = self.add(residual, self.mul(x[k], y[n - k]), sign)
                 yield entries.layout.defect.format(n, a, b), residual
@@ -232,7 +231,7 @@ class Identities:
         field |= {q: self.slopes[p] for p, q in self.pairs}
         for a, b in combinations(entries.coordinates, 2):
             residual = self.add(self.along_flow(entry(a, b)), entries.leading.get((a, b), {}), -1)
-            # f_a,a + f_b,b is 0 of a pair, and so of all that there is in the plane.
+            # The divergence f_a,a + f_b,b is 0 if a, b are a pair p_i, q_i, as in the plane.
             divergence = self.add(self.diff(field[a], a), self.diff(field[b], b))
             residual = self.add(residual, self.mul(divergence, entry(a, b)))
             for c in (x for x in entries.coordinates if x not in (a, b)):
@@ -241,7 +240,7 @@ class Identities:
             yield entries.layout.potential.format(a, b), residual
 
     def check_witness(self) -> None:
-        """Check that at the witness all functions have a value, and L one other than 0."""
+        """Check that at the witness no denominator is 0, and L, or an entry of it, is not 0."""
         inverses = [f.name for f in self.entries.functions if f.kind == "inverse"]
         if self.entries.hamiltonian is None or not (inverses or self.entries.leading):
             need(not self.entries.witness, "witness: there is nothing to see")

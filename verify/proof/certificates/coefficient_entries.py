@@ -1,15 +1,15 @@
 """The coefficients of a scheme in a certificate: `stages` or a `tableau`, and `numbers`.
 
-All coefficients are embedded in one ring. Each of its generators is a real algebraic number, and
-gets a name, its minimal polynomial, such as b wⁿ − a, and an interval in which the checker finds
-one root.
+All coefficients are embedded in one ring. Each of its generators is a real algebraic number, which
+gets a name, its minimal polynomial, such as b wⁿ − a, and an interval in which the checker verifies
+exactly one root.
 
-The minimal polynomial has whole coefficients. A generator of a ring without variables is the root,
-or the inverse, of a number u that is a polynomial in older generators, u = x(g_1, …, g_k). Let P_j
-be the minimal polynomial of g_j. The resultant of X − x(x_1, …, x_k) and P_1(x_1), then of that and
-P_2(x_2), and so on, vanishes at X = u. With f(u) = 0, f(wⁿ) is 0 for the n-th root w, and the
-reversed f for 1/u. The irreducible factor that vanishes at the number is the one whose enclosures
-there never exclude 0.
+The minimal polynomial has integer coefficients. A generator of a ring without variables is the
+root, or the inverse, of a number u that is a polynomial in older generators, u = x(g_1, …, g_k).
+Let P_j be the minimal polynomial of g_j. The resultant of X − x(x_1, …, x_k) and P_1(x_1), then of
+that and P_2(x_2), and so on, vanishes at X = u. With f(u) = 0, f(wⁿ) is 0 for the n-th root w, and
+the reversed f for 1/u. The irreducible factor that vanishes at the number is the one whose
+enclosures there never exclude 0.
 """
 
 import math
@@ -35,10 +35,10 @@ from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
 
-Rows = list[list[Any]]  # of sympy's numbers, or of what stands for them in the file
-_PRECISION = 512  # bits, of the enclosure that an interval is found by
-_HALVED = 300  # halvings of an interval, at most, until it has one root
-_PRECISIONS = (256, 1024, 4096)  # bits, by which a factor is told from the others
+Rows = list[list[Any]]  # rows of numbers, as sympy has them or as the file does
+_ISOLATION_BITS = 512  # the precision of the enclosure from which an interval is derived
+_MOST_HALVINGS = 300  # limit of the halvings of an interval until it has one root
+_FACTOR_BITS = (256, 1024, 4096)  # precisions that are tried to single out a factor
 
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -53,7 +53,7 @@ class MinimalPolynomials:
         self._cache: dict[int, flint.fmpz_poly] = {}
 
     def polynomial_of(self, index: int) -> flint.fmpz_poly:
-        """Return the minimal polynomial of the generator; ValueError says why there is none."""
+        """Return the minimal polynomial of a generator; ValueError says why there is none."""
         if index not in self._cache:
             self._cache[index] = self._compute(index)
         return self._cache[index]
@@ -77,7 +77,7 @@ class MinimalPolynomials:
             return flint.fmpz_poly([-int(c.p), int(c.q)])
         indices = places_in(x)
         self._check(math.prod(self.polynomial_of(index).degree() for index in indices))
-        # X − x, from which one generator after the other is taken by its own polynomial.
+        # X − x, from which each generator is eliminated by a resultant with its polynomial.
         names = ["x", *(f"_{index}" for index in indices)]
         context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)
         variable, *generators = context.gens()
@@ -96,9 +96,9 @@ class MinimalPolynomials:
             raise ValueError(f"is of degree {degree}, or seems so; allowed: up to {self.most}")
 
     def _factor(self, polynomial: flint.fmpz_poly, x: Poly) -> flint.fmpz_poly:
-        """Return the irreducible factor that vanishes at x."""
+        """Return the irreducible factor that vanishes at x; ValueError if that is undecided."""
         factors = [factor for factor, _ in polynomial.factor()[1]]
-        for precision in _PRECISIONS:
+        for precision in _FACTOR_BITS:
             ball = enclose(self.ring, x, {}, precision)
             with working_precision(precision):
                 factors = [f for f in factors if ball is None or f(ball).contains(0)]
@@ -108,11 +108,11 @@ class MinimalPolynomials:
 
 
 def _number(scheme: str, minimal: MinimalPolynomials, g: Generator, name: str) -> list[Any]:
-    """Return the entry of `numbers` for this generator."""
+    """Return the entry of `numbers` for a generator; InputError if there is none."""
     element = minimal.ring.context.gens()[g.index]
     try:
         polynomial = tuple(int(c) for c in minimal.polynomial_of(g.index).coeffs())
-        number = _isolate(name, polynomial, enclose(minimal.ring, element, {}, _PRECISION))
+        number = _isolate(name, polynomial, enclose(minimal.ring, element, {}, _ISOLATION_BITS))
     except ValueError as problem:
         expression = str(minimal.ring.expression(element))[:60]
         raise InputError("scheme", scheme, f"{expression} {problem}: no certificate") from None
@@ -123,9 +123,10 @@ def _isolate(name: str, polynomial: tuple[int, ...], ball: Ball | None) -> Algeb
     """Isolate the number in the largest dyadic interval that is shown to have no other root."""
     if ball is not None and is_representable(ball):
         least, greatest = bounds(ball)
-        for k in range(_HALVED):
+        for k in range(_MOST_HALVINGS):
             low = Fraction(math.floor(least * 2**k), 2**k)
-            # Halving ends: near the root the derivative has one sign, and the ball is far narrower.
+            # The halving succeeds: near a simple root the derivative has one sign, and the ball is
+            # far narrower than the interval.
             number = AlgebraicNumber(name, polynomial, low, low + Fraction(1, 2**k))
             if greatest <= number.high and _has_one_root(number):
                 return number
@@ -144,7 +145,7 @@ def _has_one_root(number: AlgebraicNumber) -> bool:
 
 
 def write_coefficients(scheme: Scheme, *, timed: bool) -> dict[str, Any] | None:
-    """Return the certificate's entries for the coefficients; None for a scheme without such.
+    """Return the certificate's entries for the coefficients; None for a scheme without any.
 
     Raises InputError for a coefficient that is not expressed by roots, or of too high a degree.
     """
@@ -152,7 +153,7 @@ def write_coefficients(scheme: Scheme, *, timed: bool) -> dict[str, Any] | None:
     rows = _rows(every_h)
     if rows is None:
         return None
-    # The clock is one more row while the numbers are embedded, so all share one set of generators.
+    # The clock is embedded as one more row, so that all numbers share one set of generators.
     if timed:
         rows.append(list(conditions_for(every_h).clock))
     texts, numbers = _write_rows(scheme.name, rows)
@@ -168,7 +169,7 @@ def write_coefficients(scheme: Scheme, *, timed: bool) -> dict[str, Any] | None:
 
 
 def _rows(every_h: object) -> Rows | None:
-    """Return the rows of the stages, or of the tableau with its weights."""
+    """Return the rows of the stages, or those of the tableau with the weights last."""
     zero = sympy.S.Zero
     if isinstance(every_h, Splitting):
         row_of = {"kick": lambda x: [x, zero, zero, zero], "drift": lambda x: [zero, x, zero, zero]}
@@ -182,7 +183,7 @@ def _rows(every_h: object) -> Rows | None:
 
 
 def _write_rows(scheme: str, rows: Rows) -> tuple[Rows, list[list[Any]]]:
-    """Return the rows in JSON's form, with terms in names for irrational numbers, and these."""
+    """Return the rows as in JSON, and the entries of `numbers` whose names they use."""
     ring, elements = embed([x for row in rows for x in row], ())
     generators = _generators_in(ring, elements)
     names = {g.index: "w" if len(generators) == 1 else f"w{k}" for k, g in enumerate(generators, 1)}
@@ -193,7 +194,7 @@ def _write_rows(scheme: str, rows: Rows) -> tuple[Rows, list[list[Any]]]:
 
 
 def _generators_in(ring: Ring, elements: list[Poly]) -> list[Generator]:
-    """Return the generators that occur in the elements, without those in their arguments."""
+    """Return the generators that occur in the elements themselves, not in arguments."""
     indices = {k for x in elements for m, _ in terms_of(x) for k, n in enumerate(m) if n}
     return [g for g in ring.generators if g.index in indices]
 
@@ -206,7 +207,7 @@ def _coefficient(x: Poly, names: Mapping[int, str]) -> str | list[list[str]]:
 
 
 def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
-    """Return the polynomial as a list of terms; `names`: of the variables by their index."""
+    """Return the polynomial as a list of terms; `names[k]` is the name of variable k."""
     return [
         [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
         for monomial, c in terms_of(x)
@@ -216,7 +217,7 @@ def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
 def polynomial_in(
     context: flint.fmpq_mpoly_ctx, places: Mapping[str, int], x: Mapping[Monomial, Fraction]
 ) -> Poly:
-    """Convert the checker's polynomial to a ring; `places`: of the variables by their names."""
+    """Convert a polynomial of the checker to a ring; `places`: variables' indices by name."""
     by_powers = {}
     for names, c in x.items():
         powers = [0] * context.nvars()

@@ -1,7 +1,7 @@
 """Schemes for every H given by coefficients, and the conditions that make them symplectic.
 
-A coefficient is a rational number, or a polynomial in the certificate's `numbers`; whether an
-expression in these is 0 is decided by their polynomials.
+A coefficient is a rational number, or a polynomial in the certificate's `numbers`. Such a
+polynomial is shown to be 0 by reducing it by the numbers' own polynomials.
 """
 
 from collections.abc import Iterator
@@ -22,16 +22,16 @@ from verify.proof.certificates.readers import (
 )
 
 ONE: Poly = {(): Fraction(1)}
-_MOST_ROWS = 1000
-_MOST_STAGES = 32  # of a tableau
+_MOST_ROWS = 1000  # limit of the rows of `stages`
+_MOST_STAGES = 32  # limit of the stages of a tableau
 
 
 @dataclass(frozen=True)
 class Stages:
     """Rows (kick, drift, share of p', share of q') of a scheme for every H.
 
-    `times`: one of each row, in parts of h from the step's start; None if H has no time.
-    Coefficients are reduced by the `numbers`.
+    `times`: the time of each row, in parts of h from the step's start; None if H has no time.
+    Coefficients are reduced by the polynomials of `numbers`.
     """
 
     separable: bool
@@ -43,7 +43,7 @@ class Stages:
 
 @dataclass(frozen=True)
 class ButcherTableau:
-    """A Runge–Kutta method for every H: a_ij in `rows`, b_i in `weights`; the rest as `Stages`."""
+    """A Runge–Kutta method for every H: `rows` are a_ij, `weights` b_i; see also `Stages`."""
 
     separable: bool
     rows: tuple[tuple[Poly, ...], ...]
@@ -126,14 +126,14 @@ def check_coefficients(entries: Stages | ButcherTableau) -> None:
 
 
 def residuals_of_stages(entries: Stages, ring: QuotientRing) -> Iterator[Poly]:
-    """Yield k d (1 − s − u) and k − d of each stage; all 0 suffices for det J = 1, and for S = 0.
+    """Yield k d (1 − s − u) and, unless H is separable, k − d; if all are 0, det J = 1 and S = 0.
 
-    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
-    h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
+    By implicit differentiation A J = B with det A = 1 + h b (k s − d u) + h² k d s u (a c − b²),
+    a, b, c = H_pp, H_pq, H_qq at the stage's point, and det B the same with s − 1 and u − 1.
 
     In n degrees of freedom: with K = k V + d T for H = T + V, or K = k H for k = d, the stage is
-    that of K with k = d = 1; where k d = 0, what moves does so by a gradient of what does not. With
-    P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
+    that of K with k = d = 1; if k d = 0, what moves does so by a gradient in the other variables.
+    With P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
     dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
     """
     for k, d, s, u in entries.rows:
@@ -143,14 +143,14 @@ def residuals_of_stages(entries: Stages, ring: QuotientRing) -> Iterator[Poly]:
 
 
 def residuals_of_tableau(entries: ButcherTableau, ring: QuotientRing) -> Iterator[tuple[str, Poly]]:
-    """Yield M_ij = b_i a_ij + b_j a_ji − b_i b_j, with their names; all 0 suffices for S = 0.
+    """Yield M_ij = b_i a_ij + b_j a_ji − b_i b_j with its name, i ≤ j; if all are 0, S = 0.
 
     With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and
     p' = p + h Σ b_i F_i, likewise with Q, q and G:
 
         dp'∧dq' − dp∧dq = h Σ b_i (dP_i∧dG_i + dF_i∧dQ_i) − h² Σ M_ij dF_i∧dG_j,
 
-    and dP∧dH_p + dQ∧dH_q = −d(dH) = 0 at each stage, where its time is one number for all (p, q).
+    and dP∧dH_p + dQ∧dH_q = −d(dH) = 0 at each stage, as its time does not depend on (p, q).
     """
     a, b = entries.rows, entries.weights
     for i, j in combinations_with_replacement(range(len(b)), 2):

@@ -1,12 +1,12 @@
 """The entries of a certificate, each checked for its type and range: nothing in it is trusted.
 
-Every reader raises ValueError, which names the entry. Entries that no reader takes are refused, and
-so are undefined names: a term's names are the coordinates, t where H depends on time, the
-parameters and the functions listed before it, or, for every H, the derivatives of H. t is time
-and never a parameter, or printed formulas would be read as those of another H.
+Every reader raises ValueError with the name of the entry. Entries that no reader takes are refused,
+and so are undefined names. A term may contain the coordinates, t if H depends on time, and for one
+H the parameters and the functions listed before the term, for every H the derivatives of H. t is
+never a parameter, or a printed formula would be read as that of another H.
 
-Coordinates are p and q, or p1 … pn, q1 … qn of a certificate with `degrees`. A 2-form is its
-entries above the diagonal, by the names of the two coordinates; in the plane it has one.
+Coordinates are p and q, or p1 … pn, q1 … qn in a certificate with `degrees`. A 2-form is given by
+its entries above the diagonal, by the names of two coordinates; in the plane it has one.
 """
 
 import re
@@ -34,10 +34,10 @@ from verify.proof.certificates.readers import (
 Form = dict[tuple[str, str], Poly]  # entries that are not 0
 
 # A parameter must not look like a derivative of H or a coordinate.
-_PARAMETER = re.compile(r"(?!H_|[pq][0-9]+$)[A-Za-z][A-Za-z0-9_]{0,63}")
+_PARAMETER_NAME = re.compile(r"(?!H_|[pq][0-9]+$)[A-Za-z][A-Za-z0-9_]{0,63}")
 KINDS = ("sin", "cos", "exp", "inverse")
-_DERIVATIVE = re.compile("H_((?:[pq][0-9]{0,2}|t)+)")
-_ONE = re.compile("[pq][0-9]*|t")
+_DERIVATIVE_NAME = re.compile("H_((?:[pq][0-9]{0,2}|t)+)")
+_VARIABLE_NAME = re.compile("[pq][0-9]*|t")
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class NamedFunction:
 class Expansion:
     """A map as coefficients of powers of h, and the statements about it.
 
-    `after`: the coefficients of each coordinate's new value, in the order of `coordinates`.
-    `hamiltonian` None: every H; `timed`: H depends on t.
+    `after`: for each of `coordinates`, the coefficients of its new value. `hamiltonian`: None for
+    every H. `timed`: True if H depends on t.
     """
 
     layout: CoordinateLayout
@@ -73,12 +73,12 @@ class Expansion:
 
     @property
     def last(self) -> int | None:
-        """The last power of h of which anything is said; None: the map is a polynomial in h."""
+        """The last power of h that a statement is about; None if the map is a polynomial in h."""
         return None if self.order is None else max(self.order, self.convergence_order)
 
     @property
     def length(self) -> int:
-        """The number of coefficients of the map, the greatest over the coordinates."""
+        """The largest number of coefficients of a coordinate's new value."""
         return max(map(len, self.after))
 
     @property
@@ -88,7 +88,7 @@ class Expansion:
 
 
 def read(data: object) -> Stages | ButcherTableau | Expansion:
-    """Read the entries of a certificate; ValueError for what has no meaning."""
+    """Read the entries of a certificate; ValueError for an entry without a meaning."""
     entries = _Entries(data)
     kind = next((kind for kind in ("stages", "tableau") if kind in entries.unread), None)
     result = entries.expansion() if kind is None else read_coefficients(entries, kind)
@@ -143,7 +143,7 @@ class _Entries(UnreadEntries):
             places = [self.coordinates.index(x) for x in (a, b) if x in self.coordinates]
             problem = f"{name}: {short(a)}, {short(b)} are no two coordinates in their order"
             need(len(places) == 2 and places[0] < places[1], problem)
-            # Only entries above the diagonal: a 2-form is antisymmetric, so these determine it.
+            # A 2-form is antisymmetric, so that the entries above the diagonal determine it.
             need((a, b) not in entries, f"{name}: {short(a)}, {short(b)} stand twice")
             entries[a, b] = self.poly(entry[2], name)
         return {pair: x for pair, x in entries.items() if x}
@@ -159,7 +159,7 @@ class _Entries(UnreadEntries):
     def parameters(self) -> tuple[str, ...]:
         names = [text_of(x, "parameters") for x in array_of(self.take("parameters"), "parameters")]
         for name in names:
-            fits = _PARAMETER.fullmatch(name) and name not in {*RESERVED, *self.coordinates}
+            fits = _PARAMETER_NAME.fullmatch(name) and name not in {*RESERVED, *self.coordinates}
             need(fits and names.count(name) == 1, f"parameters: {short(name)} is no new name")
         return tuple(names)
 
@@ -173,8 +173,7 @@ class _Entries(UnreadEntries):
             need(new, f"functions: {short(name)} is no new name such as #1")
             need(kind in KINDS, f"functions: {short(kind)} is none of {', '.join(KINDS)}")
             listed.append(NamedFunction(name, kind, self.poly(entry[2], name)))
-            # Later functions may use this name; earlier ones could not, so arguments have no
-            # cycles.
+            # Only later functions may use this name, so that arguments have no cycles.
             self.names.add(name)
         return tuple(listed)
 
@@ -204,7 +203,7 @@ class _Entries(UnreadEntries):
     def _is_name(self, name: str) -> bool:
         if name in self.names:
             return True
-        if not self.every or len(name) > MOST_FACTORS or not _DERIVATIVE.fullmatch(name):
+        if not self.every or len(name) > MOST_FACTORS or not _DERIVATIVE_NAME.fullmatch(name):
             return False
         names = derived_by(name)
         order = [*self.coordinates, *(["t"] if self.timed else [])]
@@ -216,5 +215,5 @@ class _Entries(UnreadEntries):
 
 
 def derived_by(name: str) -> list[str]:
-    """Return the names by which H is derived in the name of a derivative, repeated as there."""
-    return _ONE.findall(name.removeprefix("H_"))
+    """Return the variables by which H is differentiated in H_…, with repetitions."""
+    return _VARIABLE_NAME.findall(name.removeprefix("H_"))

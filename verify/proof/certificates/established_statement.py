@@ -1,7 +1,7 @@
 """The statement that a checked certificate establishes, in self-contained formulas.
 
-Everything here is derived from the entries that the checker has examined; no name is trusted.
-Formulas are written as `verify` reads them, with each function in the place of its name.
+Everything here is derived from the entries that the checker has examined. Formulas are written as
+`verify` reads them, with each function in place of its name.
 """
 
 from collections.abc import Sequence
@@ -14,21 +14,21 @@ from verify.proof.certificates.entries import Expansion, Form, NamedFunction
 from verify.proof.certificates.named_numbers import AlgebraicNumber
 from verify.proof.certificates.readers import PLANE, Monomial, Poly, need
 
-_LONGEST = 1_000_000  # characters of a formula with its functions written out
-_ALMOST = "L does not vanish identically in p and q"
+_LONGEST_FORMULA = 1_000_000  # characters, with functions written out
+_ALMOST_EVERYWHERE = "L does not vanish identically in p and q"
 _SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
-_QUANTIFIERS = {  # H, by (separable, timed)
+_QUANTIFIERS = {  # the class of H, by (separable, timed)
     (False, False): "every smooth H",
     (True, False): "every smooth H = T(p) + V(q)",
     (False, True): "every smooth H(p, q, t)",
     (True, True): "every smooth H = T(p, t) + V(q, t)",
 }
 _DEFECT = "S = JᵀΩJ − Ω"
-_WORDS = {  # by whether a 2-form is its one entry: that the defect is 0, what it is else
+_DEFECT_TEXTS = {  # the defect is 0, the defect; by `CoordinateLayout.single`
     True: ("det J = 1", "det J − 1"),
     False: (f"{_DEFECT} = 0", _DEFECT),
 }
-_TELESCOPES = {  # by that, and whether H depends on t
+_TELESCOPING_TEXTS = {  # by `CoordinateLayout.single` and whether H depends on t
     (True, False): ", and L = X·G",
     (True, True): ", and L = D·G, D = ∂/∂t + X",
     (False, False): ", and L is the Lie derivative of G",
@@ -40,12 +40,15 @@ _TELESCOPES = {  # by that, and whether H depends on t
 class EstablishedStatement:
     """A statement that holds: for which H, about which map, and where.
 
-    `hamiltonian`: the one H, or the class of H. `order`: of ΔJ = det J − 1, with the leading
-    coefficient `leading`; None, with `area_preserving`: det J = 1. `convergence_order`: the map
-    agrees with the flow up to this power of h; None if nothing is stated. `scheme`: its name,
-    where the entries are those of a scheme. In n `degrees` of freedom `order` and `leading` are
-    those of S, `symplectic` says whether S is 0, and the map is a formula for each coordinate.
-    `numbers`: the definition of each named number.
+    - `hamiltonian`: the one H, or the class of H.
+    - `order`, `leading`: the order and the leading coefficient of ΔJ = det J − 1, in n `degrees` of
+      freedom those of S; None if the defect is 0.
+    - `area_preserving`: True if det J = 1; `symplectic`: True if S = 0.
+    - `convergence_order`: the map agrees with the flow up to this power of h; None if the statement
+      is not about that.
+    - `scheme`: a description of the map, if it is that of a scheme.
+    - `p_next`, `q_next`: a formula, in n degrees of freedom one for each coordinate.
+    - `numbers`: the definition of each named number.
     """
 
     statement: str
@@ -65,7 +68,7 @@ class EstablishedStatement:
 
 
 def check_certificate(data: object) -> EstablishedStatement | str:
-    """Check a certificate: return what it establishes, or the reason why it is refused."""
+    """Check a certificate: return the statement it establishes, or why it is refused."""
     try:
         return state_theorem(check(data))
     except ValueError as reason:
@@ -79,7 +82,7 @@ def state_theorem(
 ) -> EstablishedStatement:
     """State the theorem of `verify.proof.certificates.checker` for these entries.
 
-    `nonzero`: whether the statement includes that L is not 0.
+    `nonzero`: True if the statement includes that L is not 0.
 
     Raises ValueError if a formula is too long to be written out.
     """
@@ -98,10 +101,10 @@ def _of_stages(entries: Stages) -> EstablishedStatement:
         point = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
         p_next.append(f"{p_new} = {p}" + (f" - h*({_poly(kick)})*H_q{point}" if kick else ""))
         q_next.append(f"{q_new} = {q}" + (f" + h*({_poly(drift)})*H_p{point}" if drift else ""))
-        # The stage is implicit where H_q depends on p', or H_p on q', which it does for a general
-        # H; for H = T + V only where both parts are moved and both taken on the way.
+        # A stage is implicit if H_q depends on p', or H_p on q', as for a general H; for H = T + V
+        # only if both p and q move and both shares are not 0.
         mixed = not entries.separable and ((kick and at_p) or (drift and at_q))
-        implicit |= bool(mixed or (kick and drift and at_p and at_q))  # else det A is 1
+        implicit |= bool(mixed or (kick and drift and at_p and at_q))  # otherwise det A is 1
         p, q = p_new, q_new
     end = f"(p, q) ↦ ({p}, {q})"
     return _symplectic(entries, "the scheme of these stages", (p_next, q_next), end, implicit)
@@ -129,7 +132,7 @@ def _symplectic(
     hamiltonians = _quantify(entries, entries.times is not None)
     p_next, q_next = map("; ".join, formulas)
     return EstablishedStatement(
-        statement=f"{_WORDS[entries.layout.single][0]} for {hamiltonians} and {scheme}",
+        statement=f"{_DEFECT_TEXTS[entries.layout.single][0]} for {hamiltonians} and {scheme}",
         scheme=end,
         hamiltonian=hamiltonians,
         p_next=p_next,
@@ -184,13 +187,13 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> EstablishedStatement:
         entries.layout.degrees,
     )
     of_one, agreed = entries.hamiltonian is not None, entries.convergence_order
-    # The statement is put together from the entries alone, so it claims no more than was checked.
-    area, defect = _WORDS[single]
+    # The statement is built from the checked entries alone, and claims no more than was checked.
+    area, defect = _DEFECT_TEXTS[single]
     if order is not None:
         area = f"{defect} = L h^{order} + O(h^{order + 1})"
         if nonzero:
             area += f", L not zero{'' if of_one else ' for some H'}"
-    telescoping = "" if entries.potential is None else _TELESCOPES[single, entries.timed]
+    telescoping = "" if entries.potential is None else _TELESCOPING_TEXTS[single, entries.timed]
     flow = f"which agrees with the flow up to h^{agreed}{telescoping}"
     formulas = tuple(writer.series(x, entries.last) for x in entries.after)
 
@@ -212,8 +215,8 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> EstablishedStatement:
         convergence_order=agreed,
         domain=(
             *(f"{writer.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
-            # L is not zero as a polynomial in the parameters, too; for some of them it may be.
-            *([_ALMOST] if order is not None and entries.parameters else []),
+            # L is not 0 as a function of p, q and the parameters; for some parameters it may be 0.
+            *([_ALMOST_EVERYWHERE] if order is not None and entries.parameters else []),
         ),
         degrees=degrees,
         symplectic=order is None,
@@ -223,8 +226,8 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> EstablishedStatement:
 def _taylor_series(entries: Expansion) -> str | None:
     """Name the flow's Taylor series, if the map is just that; else None."""
     agreed = entries.convergence_order
-    # Up to h^c the coefficients are those of the flow; the map is its series if there are no
-    # others, and if the remainder does not already begin below.
+    # Up to h^c the coefficients are those of the flow. The map is its truncated series if there are
+    # no others, and a remainder begins later than with h^(c+1).
     later_coefficients = [c for series in entries.after for c in series[agreed + 1 :] if c]
     if later_coefficients or (entries.last is not None and entries.last <= agreed):
         return None
@@ -237,7 +240,7 @@ class _FormulaWriter:
 
     def __init__(self, functions: Sequence[NamedFunction] = ()) -> None:
         self.functions: dict[str, str] = {}
-        self.below: dict[str, str] = {}  # the divisors of inverses, by their names
+        self.below: dict[str, str] = {}  # the divisor of each inverse, by its name
         for function in functions:
             inner = self.poly(function.argument)
             self.functions[function.name] = f"{function.kind}({inner})"
@@ -250,9 +253,8 @@ class _FormulaWriter:
         for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
             terms.append(f"{'-' if c < 0 else '+'} {self._term(names, abs(c))}")
             length += len(terms[-1])
-            # Functions are written out in their places, so nesting may make a short certificate
-            # enormous.
-            need(length <= _LONGEST, "a formula is too long to be written out")
+            # Nested functions that are written out may make a short certificate enormous.
+            need(length <= _LONGEST_FORMULA, "a formula is too long to be written out")
         text = " ".join(terms) or "0"
         return text.removeprefix("+ ") if text[0] != "-" else f"-{text[2:]}"
 
@@ -267,7 +269,7 @@ class _FormulaWriter:
             n = names.count(name)
             base = self.below.get(name) or self.functions.get(name, name)
             (below if name in self.below else above).append(base if n == 1 else f"{base}**{n}")
-        # A term is (numerator·factors)/(denominator·what an inverse divides by).
+        # A term is (numerator·factors)/(denominator·divisors of inverses).
         if c.numerator != 1 or not above:
             above.insert(0, str(c.numerator))
         if c.denominator != 1:
@@ -275,7 +277,7 @@ class _FormulaWriter:
         return "/".join(["*".join(above), *below])
 
     def series(self, coefficients: Sequence[Poly], last: int | None) -> str:
-        """Format Σ c_n hⁿ, with a remainder O(…) where there is a last power."""
+        """Format Σ c_n hⁿ, with a remainder O(…) unless `last` is None."""
         parts = []
         for n, c in enumerate(coefficients):
             power = "h*" if n == 1 else f"h**{n}*"

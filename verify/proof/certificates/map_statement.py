@@ -1,7 +1,7 @@
 """The statement of a certificate about a map, in its JSON, with the cofactors that prove it.
 
-The format is described in `certification`. The polynomials that must be zero come from the
-checker's own identities, for the certificate as it is read: they are not reduced there, and the
+The format is described in `certification`. The residuals, which must be zero, come from the
+checker's own identities for the certificate as it is read. The checker does not reduce them; the
 cofactors that reduce them to 0 are written into the certificate.
 """
 
@@ -22,13 +22,13 @@ from verify.proof.certificates.readers import PLANE, CoordinateLayout, layout_in
 from verify.proof.certificates.readers import Poly as Read
 from verify.schemes.steps.two_form import TwoForm
 
-_MOST_TRIED = 20  # points
+_MOST_WITNESSES = 20  # limit of the points that are tried
 Form = Mapping[tuple[str, str], Poly]  # entries above the diagonal
 Names = Mapping[int, str]
 
 
 def entries_of(form: TwoForm | None) -> Form:
-    """Return the form's entries by the names of their coordinates; none for None, which is 0."""
+    """Return the form's entries by the names of two coordinates; none for None."""
     if form is None:
         return {}
     return {(form.names[a], form.names[b]): x for (a, b), x in form.entries.items()}
@@ -40,7 +40,7 @@ def layout_of(coordinates: tuple[str, ...]) -> CoordinateLayout:
 
 
 def degrees_of(layout: CoordinateLayout) -> dict[str, int]:
-    """Return the entry `degrees`; none in the plane."""
+    """Return the certificate's entry `degrees`; none in the plane."""
     return {} if layout.single else {"degrees": layout.degrees}
 
 
@@ -48,9 +48,9 @@ def degrees_of(layout: CoordinateLayout) -> dict[str, int]:
 class Statement:
     """The statement about a map.
 
-    `rows`: the coefficients of h⁰, h¹, … in each coordinate's new value, as far as they are
-    needed. `order`, `leading`: of S, or in the plane of det J − 1, None and no entry where it is
-    0; `potential`: None if there is none.
+    `rows`: the coefficients of h⁰, h¹, … in each coordinate's new value, as far as they are needed.
+    `order`, `leading`: those of S, in the plane of det J − 1; None and no entries if it is 0.
+    `potential`: the potential of `leading`; None if there is none.
     """
 
     layout: CoordinateLayout
@@ -61,7 +61,7 @@ class Statement:
     potential: Form | None = None
 
     def entries(self, names: Names) -> Certificate:
-        """Return the certificate's entries; `names`: of the variables by their index."""
+        """Return the certificate's entries; `names[k]` is the name of variable k."""
         after = [[terms(x, names) for x in row] for row in self.rows]
         new = dict(zip(self.layout.coordinates, after, strict=True))
         return {
@@ -85,7 +85,7 @@ class Statement:
 def certificate_for_one_h(
     statement: Statement, field: CanonicalField, point: Mapping[str, Fraction]
 ) -> Certificate:
-    """Write the certificate of the statement for the H of this field; `point`: the proof's."""
+    """Return the certificate of a statement for the H of a field; `point`: the proof's witness."""
     ring = field.ring
     functions = [g for g in ring.generators if g.kind != "variable"]
     names = {g.index: g.name or f"#{g.index}" for g in ring.generators}
@@ -101,8 +101,8 @@ def certificate_for_one_h(
         "cofactors": {},
     }
     points = (*field.names, *("t",) * field.timed, *parameters)
-    # The checker itself runs on the data, once to find a witness and once to list the residuals:
-    # so the certificate is written for exactly the polynomials that the checker will form.
+    # The checker's own code runs on the data, first to find a witness and then to list residuals:
+    # so the cofactors are for exactly the polynomials that the checker will form.
     data["witness"] = _witness(data, points, point)
     places = {name: index for index, name in names.items()}
     residuals = (
@@ -137,8 +137,8 @@ def _witness(
     data: Certificate, names: Sequence[str], point: Mapping[str, Fraction]
 ) -> dict[str, str]:
     """Find a point at which the checker sees that L is not 0: the proof's own, or another."""
-    for k in range(_MOST_TRIED):
-        # Fractions without a pattern that the zeros of a formula could share.
+    for k in range(_MOST_WITNESSES):
+        # Fractions in an irregular sequence, at which formulas are unlikely to vanish.
         candidate = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
         point_as_text = {name: str(point.get(name, value)) for name, value in candidate.items()}
         for witness in ({}, point_as_text):
@@ -153,7 +153,7 @@ def _witness(
 
 
 def _residuals(data: Certificate) -> Iterator[tuple[str, Read]]:
-    """Yield the polynomials that must be 0, until the checker finds the certificate too large."""
+    """Yield the residuals, until the checker refuses the certificate."""
     try:
         yield from _identities(data).residuals()
     except ValueError:
@@ -169,7 +169,7 @@ def _identities(data: Certificate) -> Identities:
 def _cofactors(ring: Ring, x: Poly, names: Names) -> dict[str, list[list[str]]]:
     """Find the cofactors with x = Σ cofactor·relation; InputError if x is not reduced to 0."""
     cofactors: dict[int, Poly] = {}
-    # Relations of newer generators bring in older ones and not the other way round, so one pass
+    # Relations of newer generators contain older generators and not the other way round: one pass
     # from the newest to the oldest reduces x completely.
     for index, power, relation in reversed(ring.relations):
         if x.degrees()[index] >= power:

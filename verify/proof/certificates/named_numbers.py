@@ -1,10 +1,10 @@
-"""Algebraic numbers of a certificate: each a name for one root of a polynomial, as is checked.
+"""Algebraic numbers of a certificate: each name is checked to stand for one root of a polynomial.
 
-`numbers` is a list of [name, polynomial, low, high]. The polynomial is its coefficients c₀, c₁, …,
-whole numbers; at the ends of the interval it has values of two signs, and so a root between them.
-Its derivative has one sign between them, and so there is no second one: of the polynomial
-(1 + x)ⁿ f((low + high·x)/(1 + x)) of the derivative f all coefficients have one sign (or are 0),
-and between the ends x > 0.
+`numbers` is a list of [name, polynomial, low, high]. The polynomial is the list of its coefficients
+c₀, c₁, …, whole numbers. Its values at the ends of the interval have different signs, so that it
+has a root between them. Its derivative f has one sign between them, so that there is no second
+root: all coefficients of the polynomial (1 + x)ⁿ f((low + high·x)/(1 + x)) have one sign or are 0,
+and x > 0 between the ends.
 
 A multiple of a number's polynomial has the value 0: `QuotientRing` reduces by such multiples.
 """
@@ -30,10 +30,10 @@ from verify.proof.certificates.readers import (
 
 MOST_NUMBERS = 8
 MOST_DEGREE = 32
-_MOST_DIGITS = 200  # of a coefficient, and of an end, above or below
-_MOST_BITS = 1 << 14  # of a coefficient in a reduced polynomial
-_MOST_WORK = 100_000  # terms computed, long ones counting more: some seconds
-# p1, q2, P1, … are a scheme's points, where its formulas are printed, and H, T, V functions.
+_MOST_DIGITS = 200  # limit for numerators and denominators of coefficients and ends
+_MOST_BITS = 1 << 14  # limit for a coefficient in a reduced polynomial
+_MOST_WORK = 100_000  # limit in terms, long ones counting more; it takes some seconds
+# Printed formulas use p1, q2, P1, … for the points of a scheme, and H, T, V for functions.
 _NAME = re.compile(r"(?![pq][0-9]*$)[a-z][a-z0-9_]{0,31}")
 
 
@@ -48,12 +48,12 @@ class AlgebraicNumber:
 
     @property
     def ends(self) -> str:
-        """The interval."""
+        """The interval as text."""
         return f"[{self.low}, {self.high}]"
 
 
 def read_numbers(data: object) -> tuple[AlgebraicNumber, ...]:
-    """Read the numbers, each with a new name; ValueError unless each of them is a single root."""
+    """Read the numbers; ValueError unless each has a new name and is a single root."""
     listed = array_of(data, "numbers")
     need(len(listed) <= MOST_NUMBERS, f"numbers: there are more than {MOST_NUMBERS}")
     numbers: dict[str, AlgebraicNumber] = {}
@@ -89,7 +89,7 @@ def check_root(number: AlgebraicNumber) -> None:
     problem = f"the polynomial of {name} has no two signs at the ends of {number.ends}"
     need(first * last < 0, f"numbers: {problem}")
     slope = [k * c for k, c in enumerate(number.polynomial)][1:]
-    # Where all coefficients have one sign, f' has it for all x > 0, that is, in the open interval.
+    # If all coefficients have one sign, f has this sign for all x > 0, that is, in the interval.
     signs = {c > 0 for c in _between(slope, low, high) if c}
     problem = f"the polynomial of {name} is not seen to have one root alone in {number.ends}"
     need(len(signs) == 1, f"numbers: {problem}")
@@ -103,7 +103,7 @@ def _value(polynomial: Sequence[int], x: Fraction) -> Fraction:
 
 
 def _between(polynomial: Sequence[int], low: Fraction, high: Fraction) -> list[int]:
-    """Return the coefficients of dⁿ (1 + x)ⁿ f((low + high·x)/(1 + x)), d the ends' denominator."""
+    """Return the coefficients of (d + d·x)ⁿ f((low + high·x)/(1 + x)), d the lcm below."""
     d = lcm(low.denominator, high.denominator)
     a, b = int(low * d), int(high * d)
     total, unit = [polynomial[-1]], [1]

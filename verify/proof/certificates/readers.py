@@ -1,24 +1,24 @@
-"""Readers of a certificate's JSON: each returns a value of a kind, or raises ValueError."""
+"""Readers of a certificate's JSON: each returns a value of one kind, or raises ValueError."""
 
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
-Monomial = tuple[str, ...]  # names in order, a name once for each power
+Monomial = tuple[str, ...]  # sorted names; a name stands once for each power
 Poly = dict[Monomial, Fraction]
 
 PLANE = ("p", "q")
 MOST_ORDERS = 128
 MOST_DEGREES = 16
-MOST_FACTORS = 256  # in a term
-_MOST_BITS = 1 << 15  # of a coefficient that several terms add up to
+MOST_FACTORS = 256  # limit for a term
+_MOST_BITS = 1 << 15  # limit for a coefficient that is a sum of several terms
 RESERVED = {"p", "q", "h", "t", "sin", "cos", "exp", "log", "sqrt", "pi", "e", "i", "E", "I"}
 _NUMBER = re.compile(r"(-?[0-9]{1,2000})(?:/([1-9][0-9]{0,1999}))?")
 
 
 def need(holds: object, what: str) -> None:
-    """Raise ValueError with these words unless the condition holds."""
+    """Raise ValueError with the message `what` unless the condition holds."""
     if not holds:
         raise ValueError(what)
 
@@ -27,8 +27,8 @@ def need(holds: object, what: str) -> None:
 class CoordinateLayout:
     """The names in a certificate for p and q, or with `degrees` for p1 … pn, q1 … qn.
 
-    `single`: a 2-form is its one entry, and else a list. `maps`: the entries of the map; `defect`,
-    `potential`: patterns of the names of the identities.
+    `single`: True for p and q; a 2-form is then written as its one entry, otherwise as a list.
+    `maps`: the names of the map's entries. `defect`, `potential`: patterns of identities' names.
     """
 
     degrees: int
@@ -40,7 +40,7 @@ class CoordinateLayout:
 
 
 def layout_in(degrees: int | None) -> CoordinateLayout:
-    """Return the layout for so many degrees of freedom; None: for p and q."""
+    """Return the layout for n degrees of freedom; None for p and q."""
     if degrees is None:
         return CoordinateLayout(1, PLANE, True, "p_next, q_next", "det {}", "potential")
     names = tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
@@ -48,9 +48,9 @@ def layout_in(degrees: int | None) -> CoordinateLayout:
 
 
 class UnreadEntries:
-    """The entries that have not been read yet, and those that every certificate may have.
+    """The entries that are still unread, and those that every certificate may have.
 
-    `timed`: H depends on t; `layout`: of the plane, or of several degrees of freedom.
+    `timed`: True if H depends on t. `layout`: the names of the coordinates.
     """
 
     def __init__(self, data: object) -> None:
@@ -90,7 +90,7 @@ def poly_of(data: object, what: str, is_name: Callable[[str], bool]) -> Poly:
             need(is_name(text_of(name, what)), f"{what}: {short(name)} stands for nothing")
         key = tuple(sorted(map(str, names)))
         total[key] = total.get(key, Fraction(0)) + number_of(number, what)
-        # With many different denominators the sum would grow, and each addition be slower.
+        # Without the limit, many different denominators would make each addition slower.
         need(bits_of(total[key]) <= _MOST_BITS, f"{what}: a coefficient grows too long")
     return {names: c for names, c in total.items() if c}
 
@@ -101,7 +101,7 @@ def bits_of(x: Fraction) -> int:
 
 
 def collect_terms(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
-    """Sum the terms, with names in order and without terms that cancel."""
+    """Sum the terms: sort the names, and drop the terms that cancel."""
     total: Poly = {}
     for names, c in terms:
         key = tuple(sorted(names))

@@ -1,8 +1,9 @@
 """Marks of who checked a proof about a scheme: the small checker, Rocq, or only its readers.
 
-The small checker's mark is a certificate of the proof, made and accepted in this run; those of Rocq
-are in `verify.proof.checked.theory_marks`. An argument on paper that accompanies a proof is shown
-in steps, each with the machines that checked it; only readers check the others.
+The small checker's mark means that it accepted a certificate of the proof in this run; the marks of
+Rocq are in `verify.proof.checked.theory_marks`. An argument on paper that accompanies a proof is
+shown in steps, each with the machines that checked it; steps without a mark are checked by readers
+only.
 """
 
 import re
@@ -21,11 +22,11 @@ from verify.prose import Formula, Prose, prose, read_prose
 
 _POWER = re.compile(r"h\^[0-9]+")
 _CERTIFIED = {"defect", "map", "telescopes"}
-_SHORT = 60  # characters of a leading coefficient that is quoted
+_LONGEST_QUOTE = 60  # characters; a longer leading coefficient is left out
 
 
 def marks(proved: ProvedStatement) -> tuple[Prose, ...]:
-    """Return a text for each checker, in this run or once for all; none if nobody checked."""
+    """Return a text for each checker of the proof, the small checker first; empty if none."""
     return (*small_checker_marks(proved), *theory_marks(proved))
 
 
@@ -33,14 +34,14 @@ def marks(proved: ProvedStatement) -> tuple[Prose, ...]:
 
 
 def small_checker_marks(proved: ProvedStatement) -> Iterator[Prose]:
-    """Yield the statement of the first certificate that can be made, if the checker accepts it."""
+    """Yield the statement of the first certificate that exists, if the checker accepts it."""
     if not (_CERTIFIED & proved.about) and not ("volume" in proved.about and proved.preserves):
         return
     for make in proved.certificates:
         try:
             with limit_effort("proof", proved.scheme.name, "to certify it"):
                 result = check_certificate(make())
-        except InputError:  # of this proof there is none
+        except InputError:  # this certificate does not exist
             continue
         if isinstance(result, EstablishedStatement):
             yield prose("small checker: ", read_prose(_statement(result)), _leading(result))
@@ -53,8 +54,8 @@ def _statement(result: EstablishedStatement) -> str:
 
 
 def _leading(result: EstablishedStatement) -> Prose:
-    """Quote L where it is short; else nothing."""
-    if result.leading is None or len(result.leading) > _SHORT:
+    """Quote L if it is short; return nothing otherwise."""
+    if result.leading is None or len(result.leading) > _LONGEST_QUOTE:
         return Prose()
     return prose("; L = ", Formula(result.leading))
 

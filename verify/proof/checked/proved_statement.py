@@ -19,18 +19,22 @@ DEFECT: frozenset[About] = frozenset({"defect"})
 MAP: frozenset[About] = frozenset({"map"})
 ALL: frozenset[About] = frozenset({"defect", "map", "telescopes"})
 _NOT_LOOKED_FOR = Potential(None, "is not looked for")
-_LONGEST = 25_000  # characters of a leading coefficient whose certificate takes under half a second
+_LONGEST_LEADING = 25_000  # characters; a certificate up to it takes under half a second
 
 
 @dataclass(frozen=True)
 class ProvedStatement:
     """A proof about a scheme, and the parts of it whose checkers are sought.
 
-    `about`: the order of ΔJ (of S in n degrees of freedom) or that it is 0, `defect`; in n degrees
-    of freedom that of det J − 1, `volume`; the order of the `map`; whether the leading coefficient
-    `telescopes`; the bound of Λ by small ΔJ, `product`. `preserves`: whether ΔJ ≡ 0, or S ≡ 0.
-    `for_every_h`: else for one. `timed`: H depends on time. `certificates`: functions that
-    make a certificate of it, tried in turn; none if it would take long.
+    - `about`: the parts. `defect`: the order of ΔJ, in n degrees of freedom of S, or that it is 0.
+      `volume`: the order of det J − 1 in n degrees of freedom. `map`: the order of the map.
+      `telescopes`: whether the leading coefficient telescopes. `product`: the bound of Λ by small
+      ΔJ.
+    - `preserves`: True if ΔJ ≡ 0, or S ≡ 0; None if undecided.
+    - `for_every_h`: True if the proof is for every H, False if for one.
+    - `timed`: True if H depends on time.
+    - `certificates`: functions that write a certificate of the proof, tried in turn; empty if that
+      would take long.
     """
 
     scheme: Scheme
@@ -50,8 +54,8 @@ class ProvedStatement:
 def statement_for_every_h(
     proof: ProofForEveryH, scheme: Scheme, about: frozenset[About]
 ) -> ProvedStatement:
-    """Return what a proof for every H proves of the scheme."""
-    short = len(proof.leading) <= _LONGEST
+    """Return the content of a proof for every H, with the parts it is `about`."""
+    short = len(proof.leading) <= _LONGEST_LEADING
     return ProvedStatement(
         scheme, _parts_in_plane(about, proof.degrees), proof.symplectic, for_every_h=True,
         timed=proof.timed, degrees=proof.degrees,
@@ -65,9 +69,9 @@ def statement_for_one_h(
     scheme: Scheme,
     about: frozenset[About],
 ) -> ProvedStatement:
-    """Return what a proof for this H proves of the scheme.
+    """Return the content of a proof for one H, with the parts it is `about`.
 
-    Where its own map has no certificate, that for every H serves if the map is symplectic.
+    If there is no certificate for this map, that for every H serves if the map is symplectic.
     """
     timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
 
@@ -79,7 +83,7 @@ def statement_for_one_h(
 
     # For a symplectic map the statement is S = 0, which the certificate for every H implies.
     fallback = proof.symplectic and scheme.every_h is not None
-    short = proof.symplectic or len(proof.leading_text) <= _LONGEST
+    short = proof.symplectic or len(proof.leading_text) <= _LONGEST_LEADING
     return ProvedStatement(
         scheme, _parts_in_plane(about, degrees), proof.symplectic, for_every_h=False,
         timed=timed, degrees=degrees,
@@ -90,5 +94,5 @@ def statement_for_one_h(
 
 
 def _parts_in_plane(about: frozenset[About], degrees: int) -> frozenset[About]:
-    """Ask for the defect in place of the volume in the plane, where S is ΔJ dp∧dq."""
+    """Return `about`, in the plane with `defect` in place of `volume`, as S is ΔJ dp∧dq there."""
     return (about - {"volume"}) | DEFECT if degrees == 1 and "volume" in about else about

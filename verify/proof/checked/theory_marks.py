@@ -1,8 +1,8 @@
-"""The marks of Rocq: the theorems of the shipped theory that state what is proved of a scheme.
+"""The marks of Rocq: theorems of the shipped theory that state what is proved about a scheme.
 
-Each is a file in `statements/` with an `APPLIES`, discovered by a catalogue. Rocq is not run for a
-mark: `coqc` and the tests check that the theory is accepted; here it is checked that it states the
-theorems named.
+A file in `statements/` has an `APPLIES`, which says to which schemes some theorems apply. Rocq does
+not run for a mark: the tests check that `coqc` accepts the theory. Here it is only checked that the
+theory states theorems of these names.
 """
 
 from collections.abc import Callable, Iterator
@@ -25,11 +25,12 @@ _FILES = Catalogue(f"{__package__}.statements", [f"{Path(__file__).parent}/state
 class Applies:
     """Some theorems of the theory, and the schemes to which they apply.
 
-    `about`: the part of a proof that they confirm; `applies`: whether they apply to a scheme and H;
-    `theorems`: their names, as FILE.NAME; `says`: their statement, as `read_prose` takes it.
-
-    In the plane `in_plane` takes the place of `theorems`, if there are any. A `symplectic` map
-    preserves area there, by one more theorem, and `so` is added to the statement.
+    - `about`: the part of a proof that they confirm.
+    - `applies`: True for the schemes and H to which they apply.
+    - `theorems`: their names, as FILE.NAME; `in_plane`: the names in the plane, if others.
+    - `says`: their statement about a scheme, as `read_prose` takes it.
+    - `symplectic`: True if they state S = 0. In the plane one more theorem then says that area is
+      preserved, and `so` is appended to the statement.
     """
 
     about: About
@@ -44,8 +45,8 @@ class Applies:
         """Return the names of the theorems that apply to the proof's structure."""
         plane_theorem = ("Theorems.symplectic_is_area_preserving",) * self.symplectic
         in_plane = (*(self.in_plane or self.theorems), *plane_theorem)
-        # A map of the plane may be covered by a theorem of its own, or by the general one together
-        # with the theorem that a symplectic map preserves area there.
+        # In the plane the theorems are those of the plane, or the general ones together with the
+        # one that a symplectic map of the plane preserves area.
         return {AREA: in_plane, SYMPLECTIC: self.theorems}[proved.structure]
 
     def sentence(self, proved: ProvedStatement) -> str:
@@ -61,14 +62,14 @@ def all_statements() -> tuple[Applies, ...]:
 
 
 def theory_marks(proved: ProvedStatement) -> Iterator[Prose]:
-    """Yield, for each that applies, the theorems' names and what they say of this scheme."""
+    """Yield, for each statement that applies, the theorems' names and their sentence."""
     for statement in all_statements():
         names = statement.names(proved)
         if names and statement.about in proved.about and statement.applies(proved):
             yield prose(cite_theorems(names), ": ", read_prose(statement.sentence(proved)))
 
 
-# -- what several statements say ------------------------------------------------------------------
+# -- texts of several statements ------------------------------------------------------------------
 
 
 def eta_of(proved: ProvedStatement) -> int | None:
@@ -78,7 +79,7 @@ def eta_of(proved: ProvedStatement) -> int | None:
 
 
 def is_lie(proved: ProvedStatement) -> bool:
-    """Return True if the scheme is lieη and preserves nothing for this H."""
+    """Return True if the scheme is lieη and the defect is not shown to be 0."""
     return eta_of(proved) is not None and proved.preserves is not True
 
 

@@ -2,13 +2,13 @@
 
 Setting. Φ is one step of size h of a scheme of order η ≥ 1 for a smooth H, z_k = Φᵏ(z₀), T = N h,
 log(1 + Λ) = Σ_{k<N} log(1 + ΔJ(z_k)), and log(1 + ΔJ) = h^r c_r + h^(r+1) c_(r+1) + … with r ≥ 2
-(so c_r and c_(r+1) are those of ΔJ itself: ΔJ² is O(h^2r), and 2r ≥ r + 2). K is a compact ring of
-closed orbits of the exact flow φ, with no equilibrium in it (for a rotation, on the cylinder). For
-g on K, ⟨g⟩ is its time average along the orbit and B_g the solution of X B_g = g − ⟨g⟩; both are
-smooth on K, as g is a smooth periodic function of time on each orbit, whose period is smooth and
-positive. [F] means F(z_N) − F(z₀), at the NUMERICAL end point: the phase of z_N differs from the
-exact one by up to O(h^η T (1 + T)), so that [F] along the exact orbit means nothing for long times.
-|Λ| itself is e^S − 1 for the sum S that is predicted: an error R of S is one of (1 + Λ)(e^R − 1).
+(so that c_r and c_(r+1) are also coefficients of ΔJ, as ΔJ² is O(h^2r) and 2r ≥ r + 2). K is a
+compact ring of closed orbits of the exact flow φ, with no equilibrium in it (for a rotation, on the
+cylinder). For g on K, ⟨g⟩ is its time average along the orbit and B_g the solution of X B_g = g −
+⟨g⟩; both are smooth on K, as g is a smooth periodic function of time on each orbit, whose period is
+smooth and positive. [F] means F(z_N) − F(z₀), at the NUMERICAL end point: the phase of z_N differs
+from the exact one by up to O(h^η T (1 + T)), so that [F] along the exact orbit means nothing for
+long times. An error R of the predicted log(1 + Λ) is an error (1 + Λ)(e^R − 1) of Λ.
 
 Theorem. There are h₀ and C, which depend on H, the scheme and K alone, so that for all h ≤ h₀ and
 all N for which z₀ … z_N lie in K:
@@ -25,8 +25,7 @@ all N for which z₀ … z_N lie in K:
     even η:  |R| ≤ C h^(η+2) T (1 + h^η T),    relative to h^(η+1) T ⟨g⟩ ≠ 0:  O(h) + O(h^(η+1) T);
     odd η:   |R| ≤ C h^(η+1) T (1 + h^(η−1) T), relative to h^η T ⟨g⟩ ≠ 0:  O(h) + O(h^η T).
   An orbit with a ring around it stays in the ring while h^(η+1) T (odd: h^η T) is below a constant,
-  so there the bounds hold uniformly. In both the boundary part, what stands in [ ], is bounded
-  whatever T is.
+  so there the bounds hold uniformly. In both laws the boundary part, in [ ], is bounded for all T.
 
 Proof. For smooth F, Φ = φ_h + O(h^(η+1)) gives, uniformly on K,
   (1)  F(Φ z) − F(z) = h X F + ½ h² X² F + O(h³) + O(h^(η+1)).
@@ -62,12 +61,12 @@ from verify.schemes import get
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 
-_FOR_EVERY_H = Potential(True, "by the formula for every H")  # of `lieη` of even η
+_LIE_POTENTIAL = Potential(True, "by the formula for every H")  # G of `lieη`, even η
 Element = tuple[Ring, Poly]
 
 
 class NoLawError(Exception):
-    """There is no growth law; `reason` says why, with formulas, and the message is plain text."""
+    """There is no growth law; `reason` says why, and the message is its plain text."""
 
     def __init__(self, reason: str) -> None:
         self.reason = read_prose(reason)
@@ -78,8 +77,9 @@ class NoLawError(Exception):
 class GrowthLaw:
     """The law log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
 
-    `potential` is G, and `leading` X G, of `lieη` of even η; both are None for other schemes, whose
-    law has no G. `telescoping`: whether the leading coefficient is X·G, which it may be there too.
+    For `lieη` of even η, `potential` is G and `leading` is X G. For other schemes both are None,
+    and the law has no G. `telescoping`: the answer whether the leading coefficient is X·G; it may
+    be for other schemes, too.
     """
 
     power: int
@@ -93,8 +93,8 @@ class GrowthLaw:
 def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
     """Derive the growth law of a scheme for one H without symbols.
 
-    Raises InputError for a parameter without a value, NoLawError where ΔJ ≡ 0 or its leading order
-    in h is not known.
+    Raises InputError for a parameter without a value and in n degrees of freedom, NoLawError if
+    ΔJ ≡ 0 or its order in h is not known or below 2.
     """
     if hamiltonian.symbols:
         raise InputError(
@@ -112,7 +112,7 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
     step = step_map.flat
     ring, potential = step.ring, potential_of_lie(step.field, eta).divergence
     leading, g = (step.form(n).entry(0, 1) for n in (eta + 1, eta + 2))
-    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
+    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _LIE_POTENTIAL)
 
 
 def _plain_law(proof: Proof, scheme: Scheme) -> GrowthLaw:
@@ -122,7 +122,7 @@ def _plain_law(proof: Proof, scheme: Scheme) -> GrowthLaw:
         raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{MOST_ORDERS}`")
     if proof.first.decision.zero is None:
         raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
-    # The theorem needs r ≥ 2: with r = 1 even T ⟨g⟩ has no factor h.
+    # The theorem needs r ≥ 2.
     if n < 2:
         raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
     return GrowthLaw(n - 1, g, None, None, potential_of(proof, scheme))

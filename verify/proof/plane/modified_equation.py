@@ -21,14 +21,19 @@ NOTHING = Prose()
 
 @dataclass(frozen=True)
 class Term:
-    """The term of h^`power` in the modified field f̃: (`p`, `q`) of p' and q', as formulas.
+    """The term of h^`power` in the modified field f̃.
 
-    `vanishes`: whether it is the zero field; `is_hamiltonian`: whether its `divergence` is the zero
-    function. Both are None if that is not decided. `witness` is a point where the divergence is
-    not 0, `enclosure` its value there; `domain` says for which parameters there is one.
-    `hamiltonian`: G with p' = −∂G/∂q, q' = ∂G/∂p; None if the term is not Hamiltonian, or if
-    no G is found in closed form. `energy`: that G in its ring, and `divergence_element` the
-    divergence in its ring; both for one H.
+    - `p`, `q`: its components in p' and q', as formulas.
+    - `vanishes`: True if it is the zero field; `is_hamiltonian`: True if its `divergence` is the
+    zero
+      function. Each is None if undecided.
+    - `witness`: a point where the divergence is not 0, and `enclosure` its value there; `domain`:
+    the
+      parameters for which the divergence is not the zero function.
+    - `hamiltonian`: G with p' = −∂G/∂q, q' = ∂G/∂p; None if the term is not Hamiltonian, or if no G
+    is
+      found in closed form.
+    - `energy`, `divergence_element`: G and the divergence in their rings, for one H.
     """
 
     power: int
@@ -47,12 +52,15 @@ class Term:
 
 @dataclass(frozen=True)
 class ModifiedEquation:
-    """The terms f̃ = f_1 + h f_2 + …, up to h^order, whose exact flow is the scheme's map.
+    """The terms up to h^order of f̃ = f_1 + h f_2 + …, whose exact flow is the scheme's map.
 
-    `hamiltonian`: H as a formula, or for which H it holds. `consistent`: whether the first term is
-    that of H. `area`: whether the first divergence that is not 0 is the leading coefficient of ΔJ,
-    computed independently; None if one of them is not decided. `verdict` is REFUTED if the
-    scheme claims another order, or det J ≡ 1 and a term is not Hamiltonian; `reason` is one line.
+    - `hamiltonian`: H as a formula, or the class of H.
+    - `consistent`: True if the first term is the field of H.
+    - `area`: True if the first divergence that is not 0 is the leading coefficient of ΔJ, which is
+      computed independently; None if one of them is undecided.
+    - `where`: the domain of the map.
+    - `verdict`: REFUTED if the scheme claims a higher order, or claims det J ≡ 1 and a term is not
+      Hamiltonian; `reason` gives it in one line.
     """
 
     scheme: str
@@ -79,7 +87,7 @@ class ModifiedEquation:
 
     @property
     def known(self) -> tuple[Term, ...]:
-        """The terms that H̃ is the sum of: those before the first without a Hamiltonian."""
+        """The terms before the first without a Hamiltonian: H̃ is the sum of their energies."""
         terms = []
         for term in self.terms:
             if term.is_hamiltonian is not True or term.hamiltonian is None:
@@ -89,12 +97,12 @@ class ModifiedEquation:
 
     @property
     def reach(self) -> int:
-        """The highest power of h up to which H̃ is given in closed form; −1 for none."""
+        """The power of h up to which H̃ is known in closed form; −1 for none."""
         return len(self.known) - 1
 
     @property
     def text(self) -> str:
-        """H̃ = H + h H_2 + … as a formula, as far as the terms are Hamiltonian."""
+        """H̃ = H + h H_2 + … as a formula, as far as it is known."""
         parts = [(x.power, x.hamiltonian) for x in self.known if x.hamiltonian != "0"]
         return " + ".join(_times_power(n, str(x)) for n, x in parts) or "0"
 
@@ -111,7 +119,7 @@ class ModifiedEquation:
 
     @property
     def domain(self) -> FormulaDomain:
-        """The domain where it holds: the map is defined, and the first divergence is not 0."""
+        """The domain where the map is defined and the first divergence is not the zero function."""
         first = self.first_not_hamiltonian
         return self.where & first.domain if first else self.where
 
@@ -128,7 +136,7 @@ class ModifiedEquation:
         return html_table(caption, heads, rows, str(self.reason))
 
     def _repr_latex_(self) -> str:
-        """Return H̃ for one H in LaTeX, as far as it is given in closed form."""
+        """Return H̃ for one H in LaTeX, as far as it is known in closed form."""
         if not all(x.energy for x in self.known):
             return ""
         formula = short_latex(sympy.latex(self.expression))
@@ -147,9 +155,9 @@ def _times_power(n: int, text: str) -> str:
 def judge_equation(
     equation: ModifiedEquation, scheme: Scheme | None, near: NearbyOrder | None = None
 ) -> ModifiedEquation:
-    """Return the equation with its verdict, the terms compared with what the scheme claims.
+    """Return the equation with its verdict on the scheme's claims.
 
-    `near`: the order of exact coefficients near those that the scheme prints.
+    `near`: the order of exact coefficients near printed ones, if the scheme has such.
     """
     if near is None or near.order <= equation.agreed:
         verdict, reason = _verdict(equation, scheme, equation.agreed)
@@ -166,8 +174,8 @@ def _verdict(
 ) -> tuple[Verdict, Prose]:
     """Return the verdict and its reason.
 
-    `agreed`: the power of h up to which the map is the exact flow, except for what rounded digits
-    leave.
+    `agreed`: the power of h up to which the map is the exact flow, apart from the rounding of
+    printed digits.
     """
     first, order = equation.first_not_hamiltonian, equation.order
     # Both are computed from the same map by different code: a contradiction is an error of ours,

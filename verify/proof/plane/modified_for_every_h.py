@@ -1,20 +1,22 @@
 """The modified Hamiltonian of a scheme for every H at once, in the derivatives of H.
 
-Schemes with a series over the jets are treated as for one H (`verify.proof.plane.modified_terms`),
-and as the derivatives are free, everything is decided. Two kinds are given by irrational
-coefficients:
-- Runge–Kutta methods: z' = z + Σ_t h^|t| b·Φ(t) F(t)/σ(t), where the weights b·Φ(t) are rational,
-  as those of Gauss methods are: their conjugates are the method with its stages swapped;
-- splittings, whose terms are the logarithm of their product of exponentials.
+Schemes with a series over the jets, the derivatives of H as free variables, are treated as for one
+H (`verify.proof.plane.modified_terms`); as the jets are free, everything is decided. Two kinds of
+schemes have irrational coefficients:
+- Runge–Kutta methods: z' = z + Σ_t h^|t| b·Φ(t) F(t)/σ(t), if the weights b·Φ(t) are rational.
+Those
+  of Gauss methods are, as conjugation of the coefficients only permutes the stages;
+- splittings, whose terms come from the logarithm of the product of exponentials.
 
-A splitting may have any coefficients. Its step is exp(a_1 h X_1) exp(a_2 h X_2) …, letters X_i the
-Lie derivatives K and D of V(q) and T(p), and its logarithm Σ_w c_w w h^|w| is a Lie series. A
-homogeneous Lie polynomial of n letters is 1/n times its words bracketed from the left (Dynkin,
-Specht, Wever; Reutenauer, Free Lie Algebras, 1993, theorem 1.4), so that log = Σ_w c_w/n [[…[w_1,
-w_2], …], w_n] (Baker, Campbell, Hausdorff). The Lie derivative of G is X_G = G_p ∂_q − G_q ∂_p, and
-[X_F, X_G] = X_{F, G} with {F, G} = F_p G_q − F_q G_p: every bracket of letters is that of a
-function, and H̃ is the same sum of Poisson brackets of V and T. No field and no divergence is
-needed: each of these terms is Hamiltonian by construction.
+A splitting may have any coefficients. Its step is exp(a_1 h X_1) exp(a_2 h X_2) …, where the
+letters X_i are the Lie derivatives K and D of V(q) and T(p); its logarithm Σ_w c_w w h^|w| over
+words w is a Lie series. A homogeneous Lie polynomial of n letters does not change if each word is
+replaced by 1/n times its letters bracketed from the left (Dynkin, Specht, Wever; Reutenauer, Free
+Lie Algebras, 1993, theorem 1.4), so that log = Σ_w c_w/n [[…[w_1, w_2], …], w_n] (Baker, Campbell,
+Hausdorff). The Lie derivative of G is X_G = G_p ∂_q − G_q ∂_p, and [X_F, X_G] = X_{F, G} with {F,
+G} = F_p G_q − F_q G_p: every bracket of letters is the Lie derivative of a function, and H̃ is the
+same sum of Poisson brackets of V and T. Each of these terms is Hamiltonian by construction, so that
+no divergence is needed.
 """
 
 from collections.abc import Iterable, Sequence
@@ -43,17 +45,17 @@ from verify.schemes.maps.step_map import solvable
 from verify.schemes.steps.defect import defect_series_of
 from verify.structures import AREA
 
-MOST_ORDER = 8  # the terms multiply with every order
+MOST_ORDER = 8  # the number of terms multiplies with every order
 _EVERY, _SEPARABLE = "every smooth H", "every smooth H = T(p) + V(q)"
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
-Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
+Sum = dict[tuple[int, ...], Poly]  # algebraic numbers, by monomials of the jets
 
 
 def modified_for_every_h(name: str, order: int, separable: bool = False) -> ModifiedEquation:
     """Compute the modified equation up to h^order, 1 … 8, of a scheme for every H that it takes.
 
-    `name`: the scheme's. `separable`: for every H = T(p) + V(q) only. Raises InputError for a
-    scheme that is defined for one H at a time only.
+    `name`: the scheme's name. `separable`: True for H = T(p) + V(q) only. Raises InputError for a
+    scheme that is defined for one H at a time, or by a method with irrational weights.
     """
     scheme = get(name)
     every_h = scheme.every_h
@@ -101,7 +103,7 @@ def _leading(flow: JetField, after: tuple[Series, Series]) -> Leading:
 
 def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:
     if isinstance(every_h, Splitting):
-        # Of printed sizes the first term is H but for their digits: a T + b V, no function of H.
+        # With printed sizes the first term is a T + b V, which is no function of H.
         return every_h.stages if every_h.nearby is None else None
     return every_h if isinstance(every_h, BySeries) else None
 
@@ -155,11 +157,10 @@ class Logarithm:
         return coefficient
 
     def energy(self, jets: Jets, n: int) -> Sum:
-        """Return H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
+        """Return H_n, the coefficient of h^(n−1) in H̃, for n ≥ 2."""
         total: Sum = {}
         for letters in product((_KICK, _DRIFT), repeat=n):
-            # Dynkin, Specht, Wever: a homogeneous Lie polynomial of n letters is 1/n times its
-            # words bracketed.
+            # The theorem of Dynkin, Specht and Wever: see the module's text.
             number = self.coefficient_of("".join(letters)) / n
             if not number.is_zero():
                 _add(self.ring, total, _poisson_bracket(jets, letters), number)
@@ -199,14 +200,14 @@ def _term_of(logarithm: Logarithm, jets: Jets, n: int) -> Term:
 
 
 def _vanishes(ring: Ring, numbers: Iterable[Poly]) -> bool | None:
-    """Return True if there are none, False if one is not 0; shown zeros are already left out."""
+    """Return True if there are no numbers, False if one is not 0; zeros must be left out."""
     answers = {ring.vanishes(x) for x in numbers}
     return False if False in answers else None if answers else True
 
 
 def _poisson_bracket(jets: Jets, word: Sequence[str]) -> JetPoly:
     """Return the Poisson bracket {{…{w_1, w_2}, …}, w_n} of V(q) and T(p), the word's letters."""
-    # Of a function only its derivatives matter; those of the first letter's are given.
+    # Only the derivatives of a function are used, not the function itself.
     by_p, by_q = _gradient(jets, word[0])
     bracket = jets.zero
     for letter in word[1:]:

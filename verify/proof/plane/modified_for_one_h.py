@@ -1,19 +1,19 @@
 """The modified Hamiltonian of a step map, term by term, for one H.
 
-See `verify.proof.plane.modified_terms`. Each term is decided: its divergence is the zero function,
-and then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian exists up
-to there. The first divergence that is not 0 is compared with the leading term of ΔJ, which comes
-from the determinant of the map and shares no code with the terms.
+See `verify.proof.plane.modified_terms`. For each term it is decided whether its divergence is the
+zero function: then the term is Hamiltonian. Otherwise a point shows that it is not, and there is no
+modified Hamiltonian with this term. The first divergence that is not 0 is compared with the leading
+term of ΔJ, which other code computes from the determinant of the map.
 
 A field with divergence 0 is on every disc the Hamiltonian vector field (−∂G/∂q, ∂G/∂p) of some
-function G. It is sought in closed form:
-- in p and q as polynomials: by integrating term by term, which finds it always;
+function G. Three searches for a closed form follow one another:
+- if the field is polynomial in p and q, integration term by term, which always succeeds;
 - among the products of k derivatives of H with k − 1 derivatives by p and by q each: the modified
   Hamiltonians of Runge–Kutta methods and splittings are made of those, whatever H is (Hairer,
-  Lubich, Wanner, IX.9; of splittings they are Poisson brackets of T and V); in time a factor less
-  may be a derivative by t more;
+  Lubich, Wanner, IX.9; for splittings they are Poisson brackets of T and V). With time a product
+  may have fewer factors, and as many derivatives by t in place of them;
 - among the polynomials in the generators of H and the field, for a user's own maps.
-A G that is found is checked against the field in the ring; where none is found nothing is claimed.
+A candidate is compared with the field in the ring; if none is found, nothing is claimed.
 """
 
 import math
@@ -37,7 +37,7 @@ from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 
 MOST_ORDER = 10
-_MOST_PRODUCTS, _MOST_IN_TIME = 400, 2000  # tried in the second way
+_MOST_PRODUCTS, _MOST_IN_TIME = 400, 2000  # limits of the products of derivatives of H
 
 
 def modified_for_one_h(step_map: StepMap, scheme: Scheme | None, order: int) -> ModifiedEquation:
@@ -90,8 +90,8 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
 def hamiltonian_of(field: CanonicalField, vector: Vector, factors: int) -> Poly | None:
     """Find G for one H; None if none is found.
 
-    `factors`: how many derivatives of H are multiplied in each term of the vector field, if the
-    scheme is one for every H.
+    `factors`: the number of derivatives of H in each product of the field, if the scheme is one for
+    every H.
     """
     ring = field.ring
     for way in (_by_integration, _among_products, _among_all):
@@ -104,12 +104,12 @@ def hamiltonian_of(field: CanonicalField, vector: Vector, factors: int) -> Poly 
 def hamiltonian_in_jets(jets: Jets, vector: Vector, factors: int) -> Poly | None:
     """Find G for every H, a polynomial in its derivatives; None if there is none.
 
-    H_11 … are free, so that the highest derivative in G is of one order less than in the field.
+    The derivatives are free, so that those in G are of lower order than the highest in the field.
     """
     degrees = [n for x in vector for n in _orders(jets, x)]
     indices = [index for index in jets.indices if sum(index) < max(degrees, default=1)]
     chosen = multisets(indices, factors, factors - 1, factors - 1)
-    # p itself occurs in no term, and keeps the two parts of a field apart.
+    # p itself occurs in no term, so that it can mark the second component of a field.
     return _find_combination(jets, list(map(jets.product, chosen)), vector, jets.p)
 
 
@@ -120,7 +120,7 @@ def _orders(jets: Jets, x: Poly) -> Iterator[int]:
 
 
 def _combine_parts(mark: Poly, vector: Vector) -> Poly:
-    """Combine both parts in one element, by a variable that does not occur in them."""
+    """Combine both components in one element; `mark` is a variable that occurs in neither."""
     return vector[0] + mark * vector[1]
 
 
@@ -129,11 +129,11 @@ def _is_hamiltonian_of(ring: Ring, candidate: Poly, vector: Vector) -> bool:
     return all(ring.vanishes(y - x) is True for y, x in pairs)
 
 
-# -- for one H: each way gives a G, or None; the caller checks it ---------------------------------
+# -- searches for one H: each returns a candidate G or None ---------------------------------------
 
 
 def _by_integration(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
-    """Return G = ∫ q' dp + ∫ (the rest of −p') dq, where p and q stand in no function."""
+    """Return G = ∫ q' dp + ∫ (the rest of −p') dq; None if p or q stands within a function."""
     ring = field.ring
     gens = ring.context.gens()
     functions = [g.index for g in ring.generators_in(*vector) if g.kind != "variable"]
@@ -163,14 +163,17 @@ def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly
     products = [_product(ring, [partial[k](i, j) for i, j, k in chosen]) for chosen in names]
     numbers = _numbers_in(ring, vector)
     candidates = [ring.multiply(c, m) for c in numbers for m in products if not m.is_zero()]
-    # h is in no coefficient of a series in h.
+    # h occurs in no coefficient of a series in h, so that it can be the mark.
     return _find_combination(ring, candidates, vector, ring.variable("h"))
 
 
 def _products_in_time(
     indices: Sequence[Index], factors: int
 ) -> Iterator[list[tuple[int, int, int]]]:
-    """Yield products of m < `factors` derivatives of H: m − 1 by p and q, `factors` − m by t."""
+    """Yield products of m < `factors` derivatives of H.
+
+    They have m − 1 derivatives by p, m − 1 by q and `factors` − m by t in all.
+    """
     for m in range(1, factors):
         for chosen in multisets([(0, 0), *indices], m, m - 1, m - 1):
             shares = product(range(factors - m + 1), repeat=m)
@@ -192,7 +195,7 @@ def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:
 def _find_combination(
     ring: CoefficientRing, candidates: Sequence[Poly], vector: Vector, mark: Poly
 ) -> Poly | None:
-    """Find a linear combination of the candidates that has this field; `mark` separates parts."""
+    """Find a linear combination of the candidates with this field; see `_combine_parts`."""
     columns = [_combine_parts(mark, field_of(ring, m)) for m in candidates]
     coefficients, _ = solve_combination(columns, _combine_parts(mark, vector))
     if coefficients is None:
@@ -201,7 +204,7 @@ def _find_combination(
 
 
 def _numbers_in(ring: Ring, vector: Vector) -> list[Poly]:
-    """Return 1 and the products of irrational numbers that are factors of terms, such as ∛2."""
+    """Return 1 and the products of irrational numbers, such as ∛2, that occur in terms."""
     gens = ring.context.gens()
     indices = [g.index for g in ring.generators_in(*vector) if g.kind != "variable"]
     numbers = [k for k in indices if not any(ring.depends(gens[k], n) for n in ring.variables)]
@@ -221,5 +224,5 @@ def _among_all(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
         return _combine_parts(mark, field_of(ring, x))
 
     derivatives = [ring.diff(x, name) for x in vector for name in ("p", "q")]
-    elements = (field.energy, *vector, *derivatives)  # sin has cos for its integral
+    elements = (field.energy, *vector, *derivatives)  # derivatives of sin have its integral, cos
     return among_polynomials(ring, elements, derive, _combine_parts(mark, vector))

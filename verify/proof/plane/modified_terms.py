@@ -2,17 +2,17 @@
 
 Backward error analysis (Hairer, Lubich, Wanner, Geometric Numerical Integration, IX.1). With
 F = h f̃ and D_F = F·∇, the time-h flow of f̃ is z' = Σ_n D_Fⁿ z/n!, as a series in h. Let
-y_n = D_Fⁿ z/n!; it begins with hⁿ, and y_n = D_F y_(n−1)/n. The coefficient of hᵏ in y_n for n ≥ 2
-has only f_1 … f_(k−1) in it, so that the map's own coefficient d_k gives
-f_k = d_k − Σ_(n=2)^k [y_n]_k, one after the other.
+y_n = D_Fⁿ z/n!; it begins with hⁿ, and y_n = D_F y_(n−1)/n. For n ≥ 2 the coefficient [y_n]_k of hᵏ
+in y_n contains only f_1 … f_(k−1), so that the map's coefficient d_k of hᵏ gives one term after the
+other: f_k = d_k − Σ_(n=2)^k [y_n]_k.
 
-The series need not converge; every coefficient is exact. Of a map with det J ≡ 1 every term has
-divergence 0. For the flow φ of f̃ satisfies d/dt log det φ_t' = div f̃ along it: where div f_k is the
-first divergence that is not 0, log det J = h · h^(k−1) div f_k + O(h^(k+1)), so that the leading
+The series need not converge; every coefficient is exact. If det J ≡ 1, every term has divergence 0.
+For the flow φ of f̃ satisfies d/dt log det φ_t' = div f̃ along it: if div f_k is the first divergence
+that is not 0, log det J = h · h^(k−1) div f_k + O(h^(k+1)), so that the leading
 term of ΔJ = det J − 1 is h^k div f_k. ∎
 
-Where H depends on time so does f̃, and the map from t to t + h is its flow with t' = 1. Then it is
-D_F = F·∇ + h ∂/∂t, by which y_n has ∂/∂t of [y_(n−1)]_(k−1) as well.
+If H depends on time, so does f̃, and the map from t to t + h is its flow with t' = 1. Then
+D_F = F·∇ + h ∂/∂t, so that n [y_n]_k has the further term ∂/∂t [y_(n−1)]_(k−1).
 """
 
 from collections.abc import Callable, Sequence
@@ -27,7 +27,7 @@ from verify.hamiltonians.canonical_field import VectorField
 from verify.proof.expansion import Leading
 from verify.proof.plane.modified_equation import ModifiedEquation, Term
 
-Vector = tuple[Poly, Poly]  # the parts of p' and of q'
+Vector = tuple[Poly, Poly]  # the components in p' and in q'
 
 
 def modified_field(
@@ -35,11 +35,11 @@ def modified_field(
 ) -> list[Vector]:
     """Return [f_1, f_2, …] for the map with these coefficients of h⁰, h¹, … in p' and q'.
 
-    The coefficients of h⁰ are p and q, and each further one gives a term. `timed`: they depend
-    on t.
+    The coefficients of h⁰ are p and q; each later one gives a term. `timed`: True if they depend on
+    t.
     """
     terms: list[Vector] = []
-    # flows[n][k]: [y_n]_k, with its gradient, which is made once.
+    # flows[n, k] is [y_n]_k, and gradients[n, k] its gradient.
     flows: dict[tuple[int, int], Vector] = {}
     gradients: dict[tuple[int, int], tuple[Vector, Vector]] = {}
 
@@ -53,7 +53,7 @@ def modified_field(
 
     for k in range(1, len(p_next)):
         term = p_next[k], q_next[k]
-        # [y_n]_k = (1/n) Σ_j f_j·∇[y_(n−1)]_(k−j): only f_1 … f_(k−1), all of them computed before.
+        # [y_n]_k = (1/n) Σ_j f_j·∇[y_(n−1)]_(k−j) contains only f_1 … f_(k−1), which are computed.
         for n in range(2, k + 1):
             total = ring.zero, ring.zero
             for j in range(1, k - n + 2):
@@ -79,11 +79,11 @@ def field_of(ring: CoefficientRing, energy: Poly) -> Vector:
     return -ring.diff(energy, "q"), ring.diff(energy, "p")
 
 
-# -- the equation, with its terms decided ---------------------------------------------------------
+# -- the equation and its terms -------------------------------------------------------------------
 
 
 class TermEnergy(NamedTuple):
-    """G of a term that is Hamiltonian: as a formula and, for one H, as an element of a ring."""
+    """The energy G of a Hamiltonian term: its formula and, for one H, its ring and element."""
 
     formula: str
     element: tuple[Ring, Poly] | None
@@ -101,8 +101,8 @@ def build_equation(
 ) -> ModifiedEquation:
     """Build the modified equation from the coefficients of p' and q', `after`.
 
-    `leading`: the leading coefficient of ΔJ; `energy_of`: finds G for a field with divergence 0, in
-    whose terms so many derivatives of H are multiplied. `domain`: that of the map.
+    `leading`: the leading coefficient of ΔJ. `energy_of(field, factors)`: finds G for a field with
+    divergence 0 whose products have `factors` derivatives of H. `domain`: the domain of the map.
     """
     vectors = modified_field(flow.ring, *after, flow.timed)
     terms = [_term(flow.ring, j, vector, domain, energy_of) for j, vector in enumerate(vectors)]
@@ -126,7 +126,7 @@ def _term(
 ) -> Term:
     """Build the term of h^power in the field: decide its divergence and look for its energy."""
     zero_field = ring.zero, ring.zero
-    # A field that is zero by identities is replaced by 0, so that its texts do not hide it.
+    # A field that is zero by identities is replaced by 0, which its texts then show.
     vanishes = _same(ring, vector, zero_field)
     vector = zero_field if vanishes else vector
     div = divergence(ring, vector)

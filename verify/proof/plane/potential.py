@@ -1,10 +1,11 @@
 """The search for a G with X·G = L, the leading coefficient of ΔJ, for one H.
 
-Where H depends on time, D·G = L is solved instead, D = ∂_t + X.
+If H depends on time, D·G = L is solved instead, D = ∂_t + X.
 
-True: there is a G, and X·G − L is decided to be zero. False: at an equilibrium X·G = 0 for every
-smooth G, and L is not zero there. None: neither is shown. G is sought by the formula for even η,
-and else among the polynomials in the generators of H and L (p, q, parameters, sin, cos, …).
+The answer is True if there is a G for which X·G − L is decided to be zero; False if L is not zero
+at an equilibrium, as X·G = 0 there for every smooth G; and None if neither is shown. For `lieη` of
+even η a formula gives G; else G is searched among the polynomials in the generators of H and L (p,
+q, parameters, sin, cos, …).
 """
 
 import math
@@ -30,12 +31,16 @@ from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 
 _MOST_MONOMIALS, _MOST_DEGREE = 300, 20
-_PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
+# Values of p and q at which an equilibrium is searched.
+_VALUES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
 
 
 @dataclass(frozen=True)
 class Potential:
-    """The answer whether L = X·G: `holds`, with G as `element` of a ring and the `reason`."""
+    """The answer whether L = X·G.
+
+    `holds`: None if undecided. `element`: G in its ring; None if there is no G, and if L = 0.
+    """
 
     holds: bool | None
     reason: str
@@ -69,7 +74,7 @@ def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
     if proof.order is None or proof.first.element is None:
         return Potential(None, "the leading coefficient is not known")
     field, leading = _in_one_ring(proof)
-    # D·G need not vanish where the motion rests: there it is ∂G/∂t.
+    # At an equilibrium D·G is ∂G/∂t, which need not vanish.
     equilibrium = None if field.timed else _equilibrium_against(field, leading)
     if equilibrium is not None:
         return Potential(
@@ -100,10 +105,10 @@ def _in_one_ring(proof: Proof) -> tuple[CanonicalField, Poly]:
 
 
 def _equilibrium_against(field: CanonicalField, leading: Poly) -> str | None:
-    """Find an equilibrium at which L does not vanish (for some values of the parameters)."""
+    """Find an equilibrium at which L does not vanish, for some values of the parameters."""
     ring = field.ring
     force = [ring.expression(x) for x in field.slopes]
-    for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
+    for p, q in sorted(product(_VALUES, repeat=2), key=lambda at: _VALUES.index(at[0])):
         values = {P: p, Q: q}
         try:
             if not answer_unless_long(partial(_rests, force, values), otherwise=False):
@@ -147,10 +152,10 @@ def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
 def among_polynomials(
     ring: Ring, elements: Sequence[Poly], derive: Callable[[Poly], Poly], target: Poly
 ) -> Poly | None:
-    """Find a polynomial G of least degree with derive(G) = wanted in normal form.
+    """Find a polynomial G of least degree with derive(G) = target in normal form.
 
-    G is a polynomial in p, q and the generators of the elements `used`; `derive` is linear. None
-    if there is none of moderate degree.
+    G is a polynomial in p, q and the generators of `elements`; `derive` is linear. None if there is
+    none within the limits of degree and monomials.
     """
     indices = [g.index for g in ring.generators_in(*elements, ring.variable("p"))]
     # h is no function of p and q, and G is a coefficient of a series in h.
@@ -161,7 +166,7 @@ def among_polynomials(
         gens.append(ring.variable("q"))
     degrees = list(_by_degree(gens, ring.one))
     images = [[derive(m) for m in monomials] for monomials in degrees]
-    # A test modulo a prime rules out most cases without the cost of rational elimination.
+    # A test modulo a prime excludes most cases without rational elimination.
     if not may_combine(list(chain(*images)), target):
         return None
     for most in range(1, len(degrees) + 1):
@@ -173,7 +178,7 @@ def among_polynomials(
 
 
 def _by_degree(gens: list[Poly], unity: Poly) -> Iterator[list[Poly]]:
-    """Yield the monomials of degree 1, 2, …, until they are too many in all."""
+    """Yield the monomials of degree 1, 2, …, as long as they are not too many in all."""
     for degree in range(1, _MOST_DEGREE):
         if math.comb(len(gens) + degree, degree) > _MOST_MONOMIALS:
             return

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from verify.errors import InputError
 from verify.execution.executors import (
-    ANYWHERE,
+    LOCAL_DEFAULT,
     THIS_PROCESS,
     FunctionCall,
     Placement,
@@ -78,7 +78,7 @@ def check(
     seed: int,
     scenes_folder: Path | None = None,
     most_steps: int | None = None,
-    where: Placement = ANYWHERE,
+    where: Placement = LOCAL_DEFAULT,
     done: Callable[[int, int], None] | None = None,
 ) -> CheckResult:
     """Check all files of the folder, and compute a random share of its data again.
@@ -101,7 +101,7 @@ def check(
     chosen = _select_affordable(_choose(units, share, seed), most_steps, findings)
     calls = [FunctionCall(str(k), recompute_unit, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, DataFindings] = {}
-    serial = where == ANYWHERE and len(calls) < _WORTH_A_POOL
+    serial = where == LOCAL_DEFAULT and len(calls) < _WORTH_A_POOL
     with open_place(THIS_PROCESS if serial else where, [recompute_unit.__module__]) as place:
         for name, part in results_of(place, calls):
             parts[name] = part

@@ -83,7 +83,7 @@ def _check_orbit(
     failed_step: int | None = None
     for row in run.rows:
         place = file.at_row(f"{run.label}, step {row.step}")
-        if failed_step is not None:  # and so it has at all later steps
+        if failed_step is not None:  # the orbit has left its range at all later steps
             place.findings.recomputed += 1
             place.require(
                 row.failed_step == failed_step,
@@ -117,10 +117,10 @@ def _check_orbit(
 
 
 def _check_escape(orbit: BallOrbit, row: OrbitRow, place: DataPlace, final: bool) -> int | None:
-    """Return the step after which the orbit is beyond 2^4000, or undefined; None if it is
-    neither.
+    """Return the last step before which the orbit is undefined, or after which it exceeds 2^4000.
 
-    A ball that is not finite may merely be too wide: it is not taken for an answer before `final`.
+    None if it does neither up to the row's step. A ball that is not finite may merely be too wide:
+    only the `final` attempt takes it for an answer.
     """
     limit = flint.arb(2) ** _ESCAPED
     while orbit.done < (row.failed_step or 0):
@@ -153,9 +153,10 @@ def _compare_cell(
     place: DataPlace,
     places: int = 0,
 ) -> None:
-    """Check that the printed number is the one to which every number of the ball rounds.
+    """Check that every number of the ball is within the radius of the printed number.
 
-    An exact number must be met to some more digits; 0 to twice the digits, or to `places`.
+    If the radius is 0 the ball must be narrow: to `places` digits if that is not 0, else to some
+    more than `digits`, and for the number 0 to twice as many relative to `size`.
     """
     if cell is None:
         place.differs(name, format_ball(ball, digits), "null")
@@ -167,12 +168,10 @@ def _compare_cell(
         return
     if radius == 0:
         ten, exact_zero = flint.arb(10), bool(value == 0)
-        # An exact value has no radius to compare with, so the ball itself must be narrow: it may be
-        # at most `near`·10^−places wide.
         magnitude_of_value = ten ** (magnitude(size) if size else 0) if exact_zero else abs(value)
         places = places or (2 * digits if exact_zero else digits + _SHARP)
-        sharp = magnitude_of_value / ten**places
-        inside = ball.rad() <= sharp
+        greatest_radius = magnitude_of_value / ten**places
+        inside = ball.rad() <= greatest_radius
     else:
         inside = ball >= low and ball <= high
     if not inside:

@@ -1,9 +1,9 @@
-"""A formula as a list of operations, and its derivatives as more of them: for recomputing, and on
-its own.
+"""A formula as a list of operations, and its derivatives as further operations of the list.
 
-Nothing of `verify` is used here: the formula is read from Python's syntax tree, and derivatives are
-taken operation by operation. Operations that are the same are one. sympy would read and
-differentiate in fewer lines, but the data are made with it: what it gets wrong is to be seen here.
+It serves to recompute reference data, and shares no code with the rest of `verify`: the formula is
+read from Python's syntax tree, and derivatives are taken operation by operation. Equal operations
+are one node. sympy would read and differentiate in fewer lines, but the data are made with it: an
+error of sympy is to show here.
 """
 
 import ast
@@ -13,7 +13,7 @@ from typing import Any
 
 Node = tuple[Any, ...]  # (kind, operands …); operands are indices of earlier nodes
 PAIRS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
-# Its own list, as all else here: one of those that made the data may lack what these have.
+# A list of its own, like all else here: it must not depend on the code that made the data.
 _FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan", "asinh")
 
 
@@ -24,9 +24,9 @@ class NotReadError(ValueError):
 class FormulaTape:
     """Operations in p, q and t, or in other `variables`; each node comes after its operands.
 
-    Kinds: const, pi, the variables' names, add, mul, scale (by a Fraction), power (by one), sin,
-    cos, exp, log, sinh, cosh, atan (with 1 + u² as second operand). sin and cos of a node come
-    together, and so do sinh and cosh.
+    Kinds: const, pi, the variables' names, add, mul, scale (by a Fraction), power (to a Fraction),
+    sin, cos, exp, log, sinh, cosh, atan (with 1 + u² as second operand). sin and cos of a node
+    come together, and so do sinh and cosh.
     """
 
     def __init__(
@@ -99,8 +99,10 @@ class FormulaTape:
         return self.node("power", Fraction(exponent), x)
 
     def function(self, name: str, x: int) -> int:
-        """Return a function of formulas, applied to x; tan and tanh are quotients, a root is a
-        power, and asinh x is log(x + √(1 + x²))."""
+        """Return the node of a function of x, by its name in formulas.
+
+        tan and tanh are quotients, a root is a power, and asinh x is log(x + √(1 + x²)).
+        """
         if name in ("tan", "tanh"):
             numerator, denominator = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
             inverse = self.power(self.function(denominator, x), Fraction(-1))
@@ -121,8 +123,10 @@ class FormulaTape:
     # -- reading --------------------------------------------------------------------------------
 
     def read(self, formula: str) -> int:
-        """Return the node of a formula in the variables and the parameters. Raises NotReadError for
-        anything else."""
+        """Return the node of a formula in the variables and the parameters.
+
+        Raises NotReadError for any other text.
+        """
         try:
             return self._read(ast.parse(formula, mode="eval").body, formula)
         except (SyntaxError, RecursionError, ArithmeticError, MemoryError) as error:
@@ -204,15 +208,16 @@ class FormulaTape:
         return self.scale(-1, partner) if kind == "cos" else partner
 
     def nodes_below(self, *roots: int) -> tuple[int, ...]:
-        """Return the nodes that the roots are made of, themselves among them, in order."""
+        """Return the nodes that the roots depend on, with the roots and partners, in order.
+
+        Each of a pair needs the other's coefficients.
+        """
         indices = set(roots)
         # Operands come before the nodes that use them, so one pass from the end reaches them all.
         for x in reversed(range(len(self.nodes))):
             if x in indices:
                 indices.update(a for a in self.nodes[x][1:] if not isinstance(a, Fraction))
-        operations = [
-            self.nodes[x] for x in indices
-        ]  # of a pair each needs the other's coefficients
+        operations = [self.nodes[x] for x in indices]
         partners = {
             self._index_of[PAIRS[kind], *args] for kind, *args in operations if kind in PAIRS
         }

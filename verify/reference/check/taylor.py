@@ -2,8 +2,8 @@
 
 Every rule is the textbook's: with u(t) = Σ u_k t^k, k·v_k of v = f(u) follows from v' = f'(u) u'
 (Moore, Interval Analysis, 1966). The coefficients are flint's balls, or power series of balls in
-another variable. flint's own functions of series want all coefficients of u at once; along a
-solution each is known only when those before it have gone through H's derivatives.
+another variable. flint's own functions of series take all coefficients of u at once; along a
+solution each coefficient follows from the earlier ones, by the field.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ import flint
 from verify.reference.check.tape import PAIRS, FormulaTape
 
 Number = Any  # flint.arb or flint.arb_series
-_VARIABLE = "variable"  # its first operand is its place among them
+_VARIABLE = "variable"  # the kind of all variables; the operand is the variable's index
 Work = tuple[int, str, Any, Any]  # node, kind, and two operands: nodes or a factor
 
 
@@ -25,8 +25,7 @@ def number(x: Fraction) -> Any:
 
 
 class TapeExpansion:
-    """The coefficients of some nodes along the tape's variables, as far as these have been
-    supplied, and along t."""
+    """The Taylor coefficients in t of some nodes, as far as those of the variables are supplied."""
 
     def __init__(self, tape: FormulaTape, roots: Sequence[int]) -> None:
         self._work: list[Work] = []
@@ -41,14 +40,16 @@ class TapeExpansion:
             self._work.append((x, kind, *[*args, None, None][:2]))
 
     def begin(self, point: Sequence[Number]) -> None:
-        """Compute the first coefficients: the nodes' values at a point, its numbers in the order of
-        the tape's variables, in flint's present precision."""
+        """Compute the first coefficients, the nodes' values at a point, in flint's precision.
+
+        `point`: numbers in the order of the tape's variables.
+        """
         self.c = {}
         for x, kind, a, b in self._work:
             self.c[x] = [point[a] if kind == _VARIABLE else _first_coefficient(kind, a, b, self.c)]
 
     def extend(self, point: Sequence[Number]) -> None:
-        """Compute the next coefficient of every node from those of all variables but t."""
+        """Compute the next coefficient of every node; `point` has those of all variables but t."""
         for x, kind, a, b in self._work:
             k = len(self.c[x])
             if kind == _VARIABLE:
@@ -75,7 +76,7 @@ def _first_coefficient(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) ->
         return u + c[b][0]
     if kind == "mul":
         return u * c[b][0]
-    if kind in ("sinh", "cosh") and not hasattr(u, kind):  # flint has it of no series
+    if kind in ("sinh", "cosh") and not hasattr(u, kind):  # flint lacks both for series
         up, down = u.exp(), (-u).exp()
         return (up - down if kind == "sinh" else up + down) / 2
     return getattr(u, kind)()
@@ -83,7 +84,7 @@ def _first_coefficient(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) ->
 
 def _power(u: Number, exponent: flint.fmpq) -> Number:
     if exponent.q == 1:
-        return (1 / u) ** int(-exponent.p)  # a tape's other whole powers are products
+        return (1 / u) ** int(-exponent.p)  # negative: on a tape positive powers are products
     if not isinstance(u, flint.arb):
         return (u.log() * exponent).exp()
     result = u.root(int(exponent.q)) ** abs(int(exponent.p))

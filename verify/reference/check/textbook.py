@@ -1,10 +1,10 @@
 """One step of a scheme with its Jacobian, from the scheme's definition in the textbook.
 
-All is written for numbers of any kind that has + − * /: flint's balls, and power series of balls in
-h. z = (p, q), or (p1 … pn, q1 … qn), z' = f(z, t) = (−∂H/∂q, ∂H/∂p), and A = ∂f/∂z, of which only
-the entries are kept that do not vanish. Sources as in `verify.schemes`; the coefficients stand here
-once more. A step begins at t: its stages are at t + c h, c the sum of their row, and of a splitting
-each part is at t + h times what the parts of the other kind before it add up to.
+The code takes numbers of any type that has + − * /: flint's balls, and power series of balls in h.
+z = (p, q), or (p1 … pn, q1 … qn), z' = f(z, t) = (−∂H/∂q, ∂H/∂p), and A = ∂f/∂z; entries of A that
+vanish identically are left out. The sources are those of `verify.schemes`; the coefficients are
+repeated here. In a step that begins at t a stage's time is t + c h, c the sum of its row; the time
+of a part of a splitting is t + h times the sum of the earlier parts of the other kind.
 """
 
 import re
@@ -19,7 +19,7 @@ from verify.reference.check.taylor import Number, TapeExpansion, number
 
 Vector = list[Number]
 Matrix = list[Number]  # its entries, row by row
-Step = Callable[[Vector, Number, Number], tuple[Vector, Matrix]]  # of z, h and t
+Step = Callable[[Vector, Number, Number], tuple[Vector, Matrix]]  # (z, h, t) ↦ (z', J)
 _F = Fraction
 
 
@@ -28,8 +28,10 @@ class UnknownSchemeError(ValueError):
 
 
 class Rows:
-    """Some rows of f, and the entries of A in them that do not vanish: at a point, or along a
-    solution."""
+    """Some rows of f, and the entries of A in them that do not vanish.
+
+    `expansion` evaluates them at a point or expands them along a solution.
+    """
 
     def __init__(
         self, tape: FormulaTape, f: dict[int, int], a: Iterable[tuple[int, int, int]]
@@ -48,8 +50,8 @@ class TextbookField:
         self.degrees, self.tape = degrees, FormulaTape(parameters, (*self.names, "t"))
         tape = self.tape
         self.h = h = tape.read(formula)
-        momenta, places = self.names[:degrees], self.names[degrees:]
-        slopes = [tape.scale(-1, tape.diff(h, q)) for q in places]
+        momenta, displacements = self.names[:degrees], self.names[degrees:]
+        slopes = [tape.scale(-1, tape.diff(h, q)) for q in displacements]
         slopes += [tape.diff(h, p) for p in momenta]
         f = dict(enumerate(slopes))
         derivatives = [
@@ -76,9 +78,11 @@ def identity(size: int) -> Matrix:
 
 
 def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
-    """Return the entries of JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom
-    det J − 1."""
-    half = 2 * degrees**2  # entries of the rows of all p
+    """Return the entries of JᵀΩJ − Ω above its diagonal, Ω = Σ dp_i∧dq_i.
+
+    In one degree of freedom the only one is det J − 1.
+    """
+    half = 2 * degrees**2  # the number of entries in the rows of p
     # Pairs of rows, of p_i and of q_i: each contributes dp_i∧dq_i to the pulled-back form.
     rows = [(j[k : k + 2 * degrees], j[half + k :]) for k in range(0, half, 2 * degrees)]
     return {
@@ -88,7 +92,7 @@ def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
 
 
 def step_of(name: str, field: TextbookField) -> Step:
-    """Return the scheme's step. UnknownSchemeError names a scheme that is not recomputed."""
+    """Return the scheme's step. Raises UnknownSchemeError for a scheme that is not recomputed."""
     if match := re.fullmatch(r"lie([0-9]+)", name, re.ASCII):
         return lie(field, int(match[1]))
     if name == "euler":
@@ -106,8 +110,10 @@ def step_of(name: str, field: TextbookField) -> Step:
 
 
 def flow_series(rows: Rows, z: Vector, t: Number, order: int) -> list[Vector]:
-    """Return the Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k. `rows`:
-    all rows of f, whose coefficients are known afterwards."""
+    """Return the Taylor coefficients of z at t up to that order, by (k+1) z_(k+1) = f_k.
+
+    `rows`: all rows of f; afterwards its expansion has the coefficients of f and A.
+    """
     zs, expansion = [z], rows.expansion
     expansion.begin([*z, t])
     for k in range(order):
@@ -118,8 +124,7 @@ def flow_series(rows: Rows, z: Vector, t: Number, order: int) -> list[Vector]:
 
 
 def lie(field: TextbookField, eta: int) -> Step:
-    """Return the step z' = Σ h^k z_k, with J the same sum for the variational equation M' = A M,
-    M_0 = 1."""
+    """Return the step z' = Σ h^k z_k, with J = Σ h^k M_k of the variational equation M' = A M."""
     size, rows = len(field.names), field.all_rows
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
@@ -157,8 +162,10 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 
 
 def runge_kutta(field: TextbookField, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
-    """Return the step k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, with J by the variational
-    equation."""
+    """Return the step z' = z + h Σ b_i k_i, k_i = f(z + h Σ a_ij k_j).
+
+    J is by the same method for the variational equation.
+    """
     size = len(field.names)
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
@@ -182,7 +189,7 @@ def runge_kutta(field: TextbookField, rows: _Rows, weights: tuple[Fraction, ...]
 
 
 def _slope(rows: Rows, point: Vector, t: Number, size: int) -> Vector:
-    """Return f, then A M row by row, at z and M given row by row; 0 in rows that are left out."""
+    """Return f, then A M row by row; `point`: z, then M row by row. Rows left out are 0."""
     expansion = rows.expansion
     expansion.begin([*point[:size], t])
     f, product = [0] * size, [0] * size**2
@@ -193,27 +200,28 @@ def _slope(rows: Rows, point: Vector, t: Number, size: int) -> Vector:
 
 
 def _add_scaled(x: Vector, factor: Number, slope: Vector) -> Vector:
-    """Return x + by · slope."""
+    """Return x + factor · slope."""
     return [a + factor * b for a, b in zip(x, slope, strict=True)]
 
 
 def _add_product(
     total: Matrix, entries: Iterable[tuple[int, int, Number]], m: Matrix, size: int
 ) -> None:
-    """Add A m, with A given by its entries that are not 0."""
+    """Add A m to `total`; `entries`: row, column and value of A's entries that are not 0."""
     columns = range(size)
     for row, column, x in entries:
-        into, out = row * size, column * size
+        row_start, factor_start = row * size, column * size
         for k in columns:
-            total[into + k] += x * m[out + k]
+            total[row_start + k] += x * m[factor_start + k]
 
 
 # -- compositions of shears -----------------------------------------------------------------------
 
 
 def _yoshida() -> list[tuple[str, Number]]:
-    """Return three Störmer–Verlet steps: 1/(2 − 2^(1/3)) of h, the remainder of 1, and the first
-    again.
+    """Return the parts of three Störmer–Verlet steps, of sizes γh, (1 − 2γ)h and γh.
+
+    γ = 1/(2 − 2^(1/3)).
 
     H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262.
     """
@@ -236,8 +244,10 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 
 
 def shears(field: TextbookField, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
-    """Return the step p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), with J's rows by A
-    likewise."""
+    """Return the step of kicks p ← p − a h ∂V/∂q(q, s) and drifts q ← q + a h ∂T/∂p(p, s).
+
+    J's rows are changed by A in the same way.
+    """
     size = len(field.names)
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:

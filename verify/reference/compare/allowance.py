@@ -1,12 +1,13 @@
-"""Bounds of what rounding may do to each number of a run, for programs with a given unit roundoff.
+"""Bounds of the effect of rounding on each number of a run, for programs with one unit roundoff.
 
-A few roundings of the state in each step happen in any case. What comes from earlier steps is
-followed if a difference is larger (`verify.reference.compare.scatter`). A program that computes
-ΔJ as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
+A few roundings of the state in each step are unavoidable. If a difference is larger than these
+explain, the effect of rounding in earlier steps is measured (`verify.reference.compare.scatter`). A
+program that computes ΔJ as a d − b c − 1 rounds the products, however small ΔJ is, and so each
+factor of Λ.
 
-Doubles may even overflow on a run on which the reference data do not. They do so if the toolkit's
-own step in doubles does; and another program may if a number of the run, or a product of its
-determinants, is not far from the largest double.
+Doubles may overflow on a run on which the reference data do not. They may if the toolkit's own step
+in doubles does, or if a number of the run, or a product of its Jacobians' entries, is not far from
+the largest double.
 """
 
 import math
@@ -27,15 +28,16 @@ from verify.runs.run_start import Start
 from verify.schemes.maps.parts import parts_of
 from verify.structures import AREA, SYMPLECTIC
 
-USUAL, WORST = 8, 16  # times what the copies show, since operations differ
-_NOT_AT_ALL = Spread(0, 0)
-_FEW = {AREA: 4, SYMPLECTIC: 8}  # roundings of the state in a step
-_PRODUCTS = 8  # roundings of a determinant
+# Factors of the copies' usual and worst spread: a program's operations differ from the copies'.
+USUAL, WORST = 8, 16
+_NO_SPREAD = Spread(0, 0)
+_STATE_ROUNDINGS = {AREA: 4, SYMPLECTIC: 8}  # units of roundoff that a step adds to the state
+_DETERMINANT_ROUNDINGS = 8
 _BITS = 200
-_LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
-_MOST_STEPS = 20_000  # stepped
+_LARGE = Fraction(10) ** 250  # the way to such a number may lead beyond the largest double
+_MAX_STEPS = 20_000  # steps of a run in doubles
 _DOUBLE_DIGITS = 17
-_UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
+_UNDERFLOWS = (  # a format's unit roundoff, and its least normal number
     (SINGLE, Fraction(1, 2**126)),
     (DOUBLE, Fraction(1, 2**1022)),
 )
@@ -46,7 +48,7 @@ class Allowance:
 
     def __init__(self, orbit: Start, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
-        self._few = _FEW[orbit.hamiltonian.structure]
+        self._few = _STATE_ROUNDINGS[orbit.hamiltonian.structure]
         self._of_matrices = not orbit.hamiltonian.planar  # S and W, entries that are carried
         self._entries: dict[int, Fraction] = {}
         self._smallest = next(
@@ -54,11 +56,11 @@ class Allowance:
         )
 
     def unavoidable_rounding(self, name: str, step: int, bounded: dict[str, Bounded]) -> Fraction:
-        """Return the rounding that may occur in any case.
+        """Return a bound of the rounding that no program avoids.
 
         `bounded`: the run's numbers after the step, the state among them if `name` is a
-        coordinate. Products of a Jacobian's entries in n degrees of freedom are followed with the
-        errors that are carried.
+        coordinate. In n degrees of freedom the rounding of products of a Jacobian's entries is no
+        part of it, but of the spread.
         """
         # Independent roundings of N steps add up like a random walk, by √N.
         many, coordinates = Fraction(1 + math.isqrt(step)), self.orbit.hamiltonian.coordinates
@@ -78,13 +80,15 @@ class Allowance:
     def accumulated_rounding(
         self, name: str, step: int, bounded: dict[str, Bounded]
     ) -> Spread | None:
-        """Return the rounding that may have accumulated over the steps; None if that may be
-        everything."""
+        """Return the rounding that may have accumulated over the steps.
+
+        None if that may be every digit.
+        """
         least = self.unavoidable_rounding(name, step, bounded)
         spreads = self._scatters.spreads_at(self.orbit, step)
         if spreads is None:
             return None
-        spread = spreads.get(name, _NOT_AT_ALL)
+        spread = spreads.get(name, _NO_SPREAD)
         adds_up = name == "lambda" or self._of_matrices
         # Λ and the entries of matrices keep the rounding of every step; the state keeps it only as
         # far as the flow carries it, which the spread contains.
@@ -99,7 +103,7 @@ class Allowance:
         if step not in self._entries and "p" in bounded and "q" in bounded:
             self._entries[step] = products(self.orbit, step, bounded)
         most = max((x for n, x in self._entries.items() if n <= step), default=Fraction(1))
-        return _PRODUCTS * self.unit * most
+        return _DETERMINANT_ROUNDINGS * self.unit * most
 
 
 def products(orbit: Start, done: int, bounded: dict[str, Bounded]) -> Fraction:
@@ -117,7 +121,7 @@ def products(orbit: Start, done: int, bounded: dict[str, Bounded]) -> Fraction:
         box |= {"h": rational_ball(orbit.step_size)}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + done * orbit.step_size)
-        whole = flint.arb_mat(2, 2, [1, 0, 0, 1])  # the entries' sizes, of all substeps so far
+        sizes = flint.arb_mat(2, 2, [1, 0, 0, 1])  # bounds of the entries, over all substeps so far
         for step in parts:
             rows = (*step.jacobian, step.elements) if step else ()
             values = enclose_all(step.ring, [x for row in rows for x in row], box) if step else None
@@ -126,8 +130,8 @@ def products(orbit: Start, done: int, bounded: dict[str, Bounded]) -> Fraction:
             *entries, box["p"], box["q"] = values
             # Products of absolute values bound the sizes that occur when a program multiplies the
             # substeps' Jacobians.
-            whole = flint.arb_mat(2, 2, [abs(x) for x in entries]) * whole
-        a, b, c, d = whole.entries()
+            sizes = flint.arb_mat(2, 2, [abs(x) for x in entries]) * sizes
+        a, b, c, d = sizes.entries()
         total = a * d + b * c
         if not is_representable(total):
             return Fraction(1)
@@ -148,8 +152,7 @@ def may_overflow(orbit: Start, step: int, bounded: dict[str, Bounded]) -> bool:
     `bounded`: the run's numbers then, the state among them unless it has left the range of the
     reference data, too.
     """
-    # The reference data have no state there: whether doubles overflow is decided by a run of the
-    # toolkit's own.
+    # Without a state in the reference data a run in doubles alone decides.
     if any(name not in bounded for name in orbit.hamiltonian.coordinates):
         return _overflows(orbit, step)
     if any(abs(value) > _LARGE for value, _ in bounded.values()):
@@ -159,8 +162,8 @@ def may_overflow(orbit: Start, step: int, bounded: dict[str, Bounded]) -> bool:
 
 @lru_cache(maxsize=4096)
 def _overflows(orbit: Start, step: int) -> bool:
-    run = run_of(orbit, min(step, _MOST_STEPS) + 1)
+    run = run_of(orbit, min(step, _MAX_STEPS) + 1)
     try:
         return not run.implicit and run.run(float64.make(_DOUBLE_DIGITS)).done < run.steps
-    except OverflowError:  # what is given is no double
+    except OverflowError:  # an input is beyond the largest double
         return True

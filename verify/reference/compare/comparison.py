@@ -26,15 +26,18 @@ from verify.scenes.results.separation import SeparationResult
 from verify.structures import AREA, SYMPLECTIC
 from verify.studies.separation.truncation_and_rounding import separate
 
-_MOST_SEARCHES = 3  # in vain: a mistake that they all had would have been found
-_MOST_SEPARATED = {AREA: 100_000, SYMPLECTIC: 0}  # steps: with S it takes long
+_MAX_VAIN_SEARCHES = 3  # a mistake that all runs have would have been found by then
+_MAX_SEPARATED_STEPS = {AREA: 100_000, SYMPLECTIC: 0}  # a separation of W takes too long
 _SEPARATED_DIGITS = 3
 
 
 @dataclass(frozen=True)
 class Column(ColumnFindings):
-    """One column of all runs together: the fewest digits agree at `step` of `run`, and
-    `parts_run` is the first to differ by more than rounding."""
+    """One column of all runs together.
+
+    The fewest digits agree at `step` of `run`; `parts_run`: the run that differs first by more than
+    rounding.
+    """
 
     name: str
     run: str
@@ -43,8 +46,7 @@ class Column(ColumnFindings):
 
 @dataclass(frozen=True)
 class Explanation:
-    """The explanation of so many runs: one mistake, or several that the table does not tell
-    apart."""
+    """The explanation of `runs` runs: one mistake, or several that the table cannot distinguish."""
 
     mistakes: tuple[NamedMistake, ...]
     runs: int
@@ -52,7 +54,7 @@ class Explanation:
 
 @dataclass(frozen=True)
 class WorstSeparation:
-    """The Λ that is off most within what rounding may do, and that run's separation in float64."""
+    """The Λ that differs most of those that rounding explains, and its separation in float64."""
 
     run: str
     step: int
@@ -62,10 +64,12 @@ class WorstSeparation:
 
 @dataclass(frozen=True)
 class TableComparison:
-    """The result: `runs` were compared in so many `rows`. `unexplained`: runs that differ by
-    more than rounding and no mistake fits. `lost`: steps from which rounding may have taken
-    every digit, by run; `overflows`: the first ones with a number that is not finite where
-    doubles may overflow."""
+    """The result of a comparison of `runs` runs in `rows` rows.
+
+    `unexplained`: the runs that differ by more than rounding and that no mistake fits. By a run's
+    label, `lost`: the step from which rounding may have taken every digit, and `overflows`: the
+    first step with a number that is not finite, at which doubles may overflow.
+    """
 
     rows: int
     runs: int
@@ -85,12 +89,11 @@ class TableComparison:
 def compare(
     published: Published, table: SubmittedTable, done: Callable[[int, int], None] = lambda *_: None
 ) -> TableComparison:
-    """Compare all numbers of the table that the reference data have, too; `done` is called with the
-    finished runs and the number of all.
+    """Compare all numbers of the table that the reference data have, too.
 
-    Verdicts are of columns, over all runs together; mistakes are looked for if one differs by
-    more than rounding. Raises InputError if the table has no row, or no cell, that the data
-    have.
+    A verdict is on a column, over all runs together; mistakes are looked for if one differs by more
+    than rounding. `done` is called with the number of finished runs and that of all. Raises
+    InputError if the table has no row, or no cell, that the data have.
     """
     submitted_rows = table.all_rows()
     printings = {
@@ -132,7 +135,7 @@ def compare(
 
 
 class _RoundedLambda(NamedTuple):
-    """A Λ that is off by no more than rounding may do, in a run that is never lost or is."""
+    """A Λ whose difference rounding explains; `never_lost`: no step of its run is lost."""
 
     never_lost: bool
     distance: Fraction
@@ -146,7 +149,7 @@ def _off_by_rounding(judge: Judge, findings: RunFindings) -> Iterator[_RoundedLa
     if lam is None or lam.verdict not in (ColumnVerdict.ROUNDING, ColumnVerdict.PERHAPS):
         return
     orbit = judge.published_run.orbit
-    step_limit = _MOST_SEPARATED[orbit.hamiltonian.structure]
+    step_limit = _MAX_SEPARATED_STEPS[orbit.hamiltonian.structure]
     last_step = (
         step_limit if findings.lost_from is None else min(step_limit, findings.lost_from - 1)
     )
@@ -159,8 +162,10 @@ def _off_by_rounding(judge: Judge, findings: RunFindings) -> Iterator[_RoundedLa
 
 
 def _separate_worst(off_by_rounding: list[_RoundedLambda]) -> WorstSeparation | None:
-    """Separate the worst run; of runs that are lost only if there is no other, since they
-    take long."""
+    """Separate the run with the greatest difference.
+
+    A run that is lost at some step is taken only if there is no other, since it takes long.
+    """
     if not off_by_rounding:
         return None
     _, distance, step, label, orbit = max(off_by_rounding, key=lambda x: (x.never_lost, x.distance))
@@ -170,8 +175,10 @@ def _separate_worst(off_by_rounding: list[_RoundedLambda]) -> WorstSeparation | 
 
 
 class _MistakeSearch:
-    """A search for mistakes: in the first runs among all, in the others among those found
-    before, and single precision, which costs nothing to see."""
+    """A search for mistakes: all in the first runs, and later those that fitted in earlier runs.
+
+    Single precision is looked for in every run, since that costs nothing.
+    """
 
     def __init__(self) -> None:
         self.names: set[str] = set()
@@ -180,7 +187,7 @@ class _MistakeSearch:
     def explain(self, judge: Judge, findings: RunFindings) -> bool:
         """Look for mistakes in a run; return True if a new one was found."""
         findings.mistakes = Diagnosis(judge, findings, frozenset(self.names)).mistakes()
-        if not findings.mistakes and self.in_vain < _MOST_SEARCHES:
+        if not findings.mistakes and self.in_vain < _MAX_VAIN_SEARCHES:
             findings.mistakes = Diagnosis(judge, findings).mistakes()
             self.in_vain += findings.verdict is ColumnVerdict.MORE and not findings.mistakes
         before = len(self.names)
@@ -211,15 +218,16 @@ def _summarize_column(name: str, findings: Iterable[RunFindings]) -> Column:
 
 
 def _diagnoses(findings: Iterable[RunFindings]) -> list[Explanation]:
-    """Return which mistakes fit in how many runs.
+    """Return the groups of mistakes that fit, each with its number of runs.
 
-    If several fit in one run, and some of these in all of another, the other rules out the rest.
+    If a group of mistakes fits in one run and only some of them in another, the other run rules out
+    the rest.
     """
     counts = Counter(
         tuple(fitting) for run_findings in findings for fitting in run_findings.mistakes
     )
     for group in sorted(counts, key=len, reverse=True):
-        # Only an unambiguous reduction is made: with two candidates both explanations stay.
+        # With two smaller groups it would be ambiguous, and the larger group stays.
         smaller = [x for x in counts if set(x) < set(group)]
         if len(smaller) == 1:
             counts[smaller[0]] += counts.pop(group)

@@ -1,8 +1,8 @@
 """A diagnosis: which mistakes fit a submitted run that rounding does not explain.
 
-One is named if it fits and the right setting is off by many times more; if several fit,
-nothing tells them apart. A mistake of the state is looked for in its columns, where the table has
-them; then what is wrong with the others, such as Λ, in the one setting that fits the state.
+A mistake is named if it fits and the right setting's numbers differ by many times more. If several
+fit, all are named. Mistakes of the state are looked for in the state's columns, if the table has
+them; then mistakes of the other columns, such as Λ, in the one setting that fits the state.
 """
 
 import math
@@ -30,8 +30,8 @@ from verify.reference.compare.table_agreement import (
     is_single,
 )
 
-_FARTHER = 30  # times: the right setting is off by so much more than a mistake that fits
-_BY_CHANCE = 1e-3  # that all numbers are of single precision
+_DISTANCE_RATIO = 30  # the right setting differs at least this many times more than a mistake's
+_LARGEST_CHANCE = 1e-3  # the probability that all numbers are of single precision by chance
 
 
 class Diagnosis:
@@ -65,12 +65,15 @@ class Diagnosis:
         return any(self.findings.columns[n].verdict >= ColumnVerdict.PERHAPS for n in names)
 
     def _is_finer_than_doubles(self) -> bool:
-        """Return True if doubles explain numbers that are printed in a finer precision."""
+        """Return True if numbers are printed in a finer precision that does not explain them.
+
+        The findings' unit roundoff is then that of doubles.
+        """
         units = self.judge.units()
         return len(units) > 1 and self.findings.unit == units[-1]
 
     def _is_single(self, names: Sequence[str]) -> bool:
-        """Return True if they worked with single precision."""
+        """Return True if the numbers show that the program worked in single precision."""
         judge = self.judge
         cells = [cell for (_, n), cell in judge.cells.items() if n in judge.state and cell.differs]
         printed = [(x.submitted, x.unit) for x in cells if x.submitted is not None]
@@ -80,15 +83,17 @@ class Diagnosis:
         by_chance = math.prod(chance_of_single(*x) for x in printed)
         return (
             single
-            and by_chance <= _BY_CHANCE
+            and by_chance <= _LARGEST_CHANCE
             and judge.fit(judge.right_setting, names, SINGLE, wholly=False).fits
         )
 
     # -- of the state -------------------------------------------------------------------------
 
     def _fitting_mistakes(self, names: Sequence[str]) -> Iterator[Mistake]:
-        """Yield the mistakes in the finest unit roundoff in which one fits, unless the right
-        setting does."""
+        """Yield the mistakes that fit in the finest unit roundoff in which one does.
+
+        None is yielded if the right setting fits in that or a finer one.
+        """
         judge = self.judge
         for unit in judge.units():
             right_fit = judge.fit(judge.right_setting, names, unit)
@@ -116,18 +121,16 @@ class Diagnosis:
         return fit.fits and self._is_conclusive(fit) and self._is_nearer(fit, right_fit, unit)
 
     def _is_conclusive(self, fit: Fit) -> bool:
-        """Return True if the setting's run is never lost, or more than one step can be compared
-        before that.
+        """Return True if the setting's run is never lost, or two steps are compared before that.
 
-        One step says nothing: many a mistake has one point of another's orbit.
+        One step says nothing: the orbits of many mistakes have one point in common.
         """
         if fit.lost_from is None:
             return True
         return len({step for step, _ in self.judge.cells if 0 < step < fit.lost_from}) > 1
 
     def _may_be_nearer(self, setting: Setting, right_fit: Fit, unit: Fraction) -> bool:
-        """Return False if `_is_nearer` must fail, which is seen without the scatter that
-        takes long."""
+        """Return False if `_is_nearer` must fail; this needs no scatter, which takes long."""
         place = right_fit.place
         if place is None or place not in right_fit.distances:
             return True
@@ -137,24 +140,26 @@ class Diagnosis:
             return True
         value, radius = bounded[name]
         distance = replace(self.judge.cells[place], published=value, radius=radius).distance
-        return right_fit.distances[place] >= _FARTHER * distance
+        return right_fit.distances[place] >= _DISTANCE_RATIO * distance
 
     def _is_nearer(self, fit: Fit, right_fit: Fit, unit: Fraction) -> bool:
-        """Return True if the right setting is off by many times more at the place where it is
-        off first."""
+        """Return True if the right setting differs many times more in its first wrong cell.
+
+        `place` is the step and the column of that cell.
+        """
         place = right_fit.place
         if place is None or (fit.lost_from is not None and fit.lost_from <= place[0]):
             return False
-        if place not in right_fit.distances:  # nothing is known there of the right one
+        if place not in right_fit.distances:  # the right setting has no number there
             return True
         least = unit * abs(self.judge.cells[place].submitted or Fraction(0))
         distance = max(fit.distances.get(place, Fraction(0)), least)
-        return right_fit.distances[place] >= _FARTHER * distance
+        return right_fit.distances[place] >= _DISTANCE_RATIO * distance
 
     # -- of the other columns -----------------------------------------------------------------
 
     def _explain_column(self, setting: Setting, name: str) -> list[NamedMistake]:
-        """Return other readings of a column that fit, in a setting that does not foretell it."""
+        """Return the other readings of a column that fit, if the setting's own number does not."""
         judge, unit = self.judge, self.findings.unit
         if not self._are_off([name]):
             return []

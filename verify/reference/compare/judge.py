@@ -1,8 +1,10 @@
 """A submitted run compared with the published one: differences that rounding explains, and others.
 
-A setting fits if all numbers of the run are within what rounding may do of those that it
-foretells. The right one is tried in the precision that their numbers are printed with, and in
-doubles. `verify.reference.compare.diagnosis` tries others if it does not fit.
+A setting is a run's inputs and scheme with the reading of its columns, right or mistaken. It fits
+if each number of the submitted run differs from the predicted one by no more than rounding
+explains. The right setting is tried with the unit roundoff of the printed digits, if these are more
+than a double's, and with that of doubles. If it does not fit, `verify.reference.compare.diagnosis`
+tries others.
 """
 
 import math
@@ -27,8 +29,8 @@ from verify.reference.compare.table_agreement import (
 )
 from verify.reference.make.orbit_computation import Bounded
 
-_DOUBLE_DIGITS = 17  # more than these may be of a more precise number
-_MORE_DIGITS, _LEAST_DIGITS = 8, 25
+_DOUBLE_DIGITS = 17  # a number printed with more digits may come from a finer arithmetic
+_EXTRA_DIGITS, _LEAST_DIGITS = 8, 25
 
 
 class Judge:
@@ -63,9 +65,12 @@ class Judge:
     # -- the right setting --------------------------------------------------------------------
 
     def judge(self) -> RunFindings:
-        """Judge the run in the unit roundoff that explains most; mistakes are not tried."""
+        """Judge the run by the right setting, with the finest unit roundoff that fits, or doubles'.
+
+        Mistakes are not tried.
+        """
         fits = [(unit, self.fit(self.right_setting, self.names, unit)) for unit in self.units()]
-        # Units are tried from the finest: who fits in high precision did not work with doubles.
+        # Units are tried from the finest: a run that fits in high precision is none of doubles.
         unit, best = next(((u, f) for u, f in fits if f.fits), fits[-1])
         columns = {name: self._describe_column(name, best) for name in self.names}
         return RunFindings(
@@ -73,8 +78,10 @@ class Judge:
         )
 
     def _describe_column(self, name: str, fit: Fit) -> ColumnFindings:
-        """Describe one column; if the run is lost, its digits say nothing and are not
-        compared."""
+        """Describe one column up to the step from which the run is lost.
+
+        Later digits say nothing, and are not compared unless all of them agree.
+        """
         column = {step: cell for (step, n), cell in self.cells.items() if n == name}
         cells = {n: x for n, x in column.items() if fit.lost_from is None or n < fit.lost_from}
         verdict = fit.verdicts[name] if cells else ColumnVerdict.LOST
@@ -82,13 +89,13 @@ class Judge:
             verdict, cells = ColumnVerdict.AGREES, column
         if not cells:
             return ColumnFindings(verdict, 0, math.inf, min(column), None)
-        # The place of the fewest digits that agree is the one that a report shows.
+        # A report shows the step at which the fewest digits agree.
         step = min(cells, key=lambda n: cells[n].digits)
         parts_at = fit.parts.get(name) if verdict is ColumnVerdict.MORE else None
         return ColumnFindings(verdict, len(cells), cells[step].digits, step, parts_at)
 
     def units(self) -> list[Fraction]:
-        """Return the unit roundoffs that they may have worked with, the finest first."""
+        """Return the unit roundoffs that the program may have had, the finest first."""
         digits = max((self.printings[n].digits or 0 for n in self.names), default=0)
         fine = [Fraction(10) ** (1 - digits)] if digits > _DOUBLE_DIGITS else []
         return [*fine, DOUBLE]
@@ -104,9 +111,9 @@ class Judge:
         *,
         wholly: bool = True,
     ) -> Fit:
-        """Judge how well a setting foretells the columns; unless `wholly`, stop if it fails.
+        """Judge if a setting's numbers fit the columns; unless `wholly`, stop at the first misfit.
 
-        `predict` returns what a column is foretold to hold, if that is not the setting's number.
+        `predict`: the number predicted at a step, if that is not the setting's own number.
         """
         allowance = Allowance(setting.orbit, unit, self._scatters)
         names = tuple(names)
@@ -123,7 +130,7 @@ class Judge:
                 )
                 result.verdicts[name] = max(result.verdicts[name], ColumnVerdict.ROUNDING)
                 continue
-            foretold = (
+            prediction = (
                 predict(step)
                 if predict
                 else Prediction(*bounded[name])
@@ -131,7 +138,7 @@ class Judge:
                 else None
             )
             verdict: ColumnVerdict | None = ColumnVerdict.MORE
-            if foretold is not None and name in bounded:
+            if prediction is not None and name in bounded:
                 if cell.submitted is None:
                     verdict = (
                         verdict
@@ -140,14 +147,13 @@ class Judge:
                     )
                 else:
                     distance = replace(
-                        cell, published=foretold.value, radius=foretold.radius
+                        cell, published=prediction.value, radius=prediction.radius
                     ).distance
                     result.distances[step, name] = distance
                     verdict = _decide(
-                        allowance, inner, after, inner_values, distance / foretold.factor
+                        allowance, inner, after, inner_values, distance / prediction.factor
                     )
-            # Rounding may have taken every digit: nothing can be said of this step or of later
-            # ones.
+            # None: rounding may have taken every digit of this step and of later ones.
             if verdict is None:
                 result.lost_from = step
                 return result
@@ -166,7 +172,7 @@ class Judge:
 
     def digits(self, unit: Fraction) -> int:
         """Return the digits that numbers need in order to be judged with this unit roundoff."""
-        return max(_LEAST_DIGITS, len(str(unit.denominator)) + _MORE_DIGITS)
+        return max(_LEAST_DIGITS, len(str(unit.denominator)) + _EXTRA_DIGITS)
 
 
 def _decide(

@@ -1,5 +1,4 @@
-"""The reference data that others' numbers are compared with: each run by its scene and its
-inputs."""
+"""The reference data with which others' numbers are compared, found by scene and inputs."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,7 +35,7 @@ from verify.runs.run_start import Start
 from verify.scenes.results.reference import OrbitRow, Rounded
 
 _EXPONENT_DIGITS = 6
-_NONE = {
+_NO_DATA_TEXTS = {
     DATA_FORMAT: "has no reference data; give a folder that `verify reference make` wrote",
     DATA_IN_DEGREES_FORMAT: "has no reference data of p1 … pn, q1 … qn, as the table's columns are",
 }
@@ -53,8 +52,10 @@ class PublishedRun:
 
     @cached_property
     def texts(self) -> dict[str, str]:
-        """The texts that identify a run of a scene, by a table's columns: scheme, step_size, and
-        q0 and p0, or q0_1 … p0_n."""
+        """The texts that identify a run of a scene, by a table's columns.
+
+        They are scheme, step_size, and q0 and p0, or q0_1 … p0_n.
+        """
         return {"scheme": self.run.scheme, "step_size": self.run.step_size, **self.run.texts}
 
     @cached_property
@@ -109,7 +110,7 @@ class Published:
             self.by_scene[run.scene].append(run)
         widest = max(runs, key=lambda run: run.hamiltonian.degrees)
         self.structure = widest.hamiltonian.structure
-        self.keys = tuple(widest.texts)  # what a run of a scene is told by
+        self.keys = tuple(widest.texts)  # the columns that identify a run of a scene
         self.columns = widest.columns
 
     def scene(self, name: str) -> list[PublishedRun]:
@@ -132,8 +133,9 @@ class Published:
 
 
 def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
-    """Load the runs of a folder's scenes, or of one if there is a file of that name: of those in
-    the plane, or of those in n degrees of freedom.
+    """Load the runs of a folder's scenes in the plane, or of those in n degrees of freedom.
+
+    If the folder has a file of the name `scene`, only that one is read.
 
     Raises InputError for a folder that does not exist or has no such reference data, and for a file
     of another format, or not as it must be.
@@ -153,7 +155,7 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
     names = {name for name in names if format_at(folder / name) == form}
     runs = [run for name in sorted(names) for run in _read_runs(folder / name, form)]
     if not runs:
-        raise InputError("--data", str(folder), _NONE[form])
+        raise InputError("--data", str(folder), _NO_DATA_TEXTS[form])
     return Published(runs)
 
 

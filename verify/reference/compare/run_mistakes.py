@@ -1,4 +1,4 @@
-"""Mistakes that somebody's run may contain: each makes another setting of the right one.
+"""Mistakes that somebody's run may contain: each changes the right setting into another.
 
 Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
 Mistakes in a column other than the state are in `verify.reference.compare.setting`.
@@ -24,18 +24,19 @@ from verify.runs.run_start import Start
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
 from verify.structures import AREA, SYMPLECTIC, Structure
 
-_MOST_INEXACT = 4  # inputs of which all subsets are tried
-_OF_SCHEME = "scheme "
-_OTHER = "your scheme is "
+_MAX_SUBSET_INPUTS = 4  # all subsets are tried of at most so many inexact inputs
+_SCHEME_PREFIX = "scheme "  # of names of mistakes
+_OTHER_SCHEME_TEXT = "your scheme is "
 _OTHER_EULER = "symplectic Euler of the other kind"
 _CLOCKS = {
     "frozen": "your force is read at the step's beginning, in every stage",
     "at the end": "your force is read at the step's end, in every stage",
     "exchanged": "your kicks and drifts read each other's clock",
 }
-_ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
-_SHARP = 40  # digits
-_ENDS_AND_MIDDLE = 3
+# q, p and h that no symmetry of H is expected to distinguish.
+_TEST_POINT = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)
+_TEST_DIGITS = 40
+_LEAPFROG_PARTS = 3  # a/2; b; a/2
 
 
 @dataclass(frozen=True)
@@ -48,12 +49,11 @@ class Mistake:
 
 
 Change = tuple[str, str, dict[str, Any]]  # a mistake's name, what it says, and what it changes
-Changes = Callable[[Setting], Iterable[Change]]  # of the right setting
+Changes = Callable[[Setting], Iterable[Change]]  # the argument is the right setting
 
 
 def input_mistakes(right_setting: Setting) -> Iterator[Mistake]:
-    """Yield inputs rounded to doubles; programs that work with doubles cannot be told apart by
-    them."""
+    """Yield mistakes of inputs rounded to doubles; programs that use doubles make them all."""
     return _mistakes(
         right_setting, _OF_INPUTS[right_setting.orbit.hamiltonian.structure](right_setting)
     )
@@ -89,7 +89,7 @@ def _doubles_for_inputs(right_setting: Setting) -> Iterator[Change]:
     # combinations are tried while they are few.
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
     ones = [(name,) for name in inexact]
-    for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *ones]:
+    for names in subsets if len(inexact) <= _MAX_SUBSET_INPUTS else [tuple(inexact), *ones]:
         rounded = {n: Fraction(doubles[n]) for n in names}
         names_in_words = " and ".join(
             f"{n} is the double nearest to {short(exact[n])}" for n in names
@@ -99,8 +99,10 @@ def _doubles_for_inputs(right_setting: Setting) -> Iterator[Change]:
 
 
 def _changes_in_degrees(right_setting: Setting) -> Iterator[Change]:
-    """Yield changes in n degrees of freedom; of other schemes those that the reference data
-    have, which need not be run."""
+    """Yield changes in n degrees of freedom.
+
+    Other schemes are those that the reference data have, which need not be run.
+    """
     degrees = range(1, right_setting.orbit.hamiltonian.degrees + 1)
     pairs = tuple((f"p{k}", f"q{k}") for k in degrees)
     yield "swapped", "your columns of p and q are in each other's place", {"swaps": pairs}
@@ -144,9 +146,9 @@ def _clock_changes(orbit: Start) -> Iterator[Change]:
         return
     for clock, says in _CLOCKS.items():
         name = f"{orbit.scheme}, clock {clock}"
-        with suppress(InputError):  # a scheme of which there is no such clock
+        with suppress(InputError):  # the scheme has no variant with such a clock
             wrong = replace(orbit, scheme=schemes.get(name).name)
-            yield f"{_OF_SCHEME}{name}", says, {"orbit": wrong}
+            yield f"{_SCHEME_PREFIX}{name}", says, {"orbit": wrong}
     t0, h = orbit.t0, orbit.step_size
     zero = f"your time begins at 0, and not at {short(t0)}"
     begins = [("zero-t0", zero, Fraction(0))] if t0 else []
@@ -181,26 +183,25 @@ def _scheme_changes(orbit: Start) -> Iterator[Change]:
     description_by_name = dict(_relatives(orbit.scheme))
     names = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
     for name in names:
-        description_by_name.setdefault(name, f"{_OTHER}{name}")
+        description_by_name.setdefault(name, f"{_OTHER_SCHEME_TEXT}{name}")
     description_by_name.pop(orbit.scheme, None)
     for name, says in description_by_name.items():
-        yield f"{_OF_SCHEME}{name}", says, {"orbit": replace(orbit, scheme=name)}
+        yield f"{_SCHEME_PREFIX}{name}", says, {"orbit": replace(orbit, scheme=name)}
 
 
 def _staggered_starts(right_setting: Setting, orbit: Start) -> Iterator[Change]:
-    """Yield a leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
+    """Yield the staggered variants of a splitting a/2; b; a/2: p between its q's, or q between p's.
 
-    That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
+    They are the splitting b; a from a start after half an a, or a; b from a start before it.
     """
     generic = schemes.get(orbit.scheme).every_h
     parts = generic.parts if isinstance(generic, Splitting) else ()
-    if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
+    if len(parts) != _LEAPFROG_PARTS or parts[0] != parts[-1]:
         return
-    (first, half), (second, whole), _ = parts
+    (first, half), (second, full), _ = parts
     name = "p" if first == "kick" else "q"
-    # Two half parts of adjacent steps make one whole part: the staggered variable is that of the
-    # splitting that begins there.
-    parts_of_step = ((first, 2 * half), (second, whole))
+    # Two half parts of adjacent steps make one full part.
+    parts_of_step = ((first, 2 * half), (second, full))
     for sign, order, when in ((1, parts_of_step[::-1], "ahead"), (-1, parts_of_step, "behind")):
         start = _start_after_half_part(right_setting, name, _name_of_parts(parts_of_step), sign)
         if start is not None:
@@ -215,7 +216,7 @@ def _start_after_half_part(
     """Return the initial `name` after half of the scheme's first part, which changes it alone."""
     start = right_setting.orbit.point[name]
     after = replace(right_setting, orbit=replace(right_setting.orbit, scheme=scheme)).numbers(
-        1, _SHARP
+        1, _TEST_DIGITS
     )
     return start + sign * (after[name][0] - start) / 2 if name in after else None
 
@@ -224,17 +225,17 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
     """Return the mistakes without those whose scheme is, for this H, that of an earlier one."""
     first_by_state: dict[object, Mistake] = {}
     for mistake in mistakes:
-        setting, (q, p, h) = mistake.setting, _ELSEWHERE
+        setting, (q, p, h) = mistake.setting, _TEST_POINT
         state = None
-        if mistake.name.startswith(_OF_SCHEME):
+        if mistake.name.startswith(_SCHEME_PREFIX):
             # Two schemes are taken for one if a step from a point like no other gives the same
             # 40 digits.
             elsewhere = _with_numbers(setting.orbit, {"q0": q, "p0": p, "h": h})
-            bounded = replace(setting, orbit=elsewhere).numbers(1, _SHARP)
+            bounded = replace(setting, orbit=elsewhere).numbers(1, _TEST_DIGITS)
             state = (bounded["p"][0], bounded["q"][0]) if "p" in bounded else None
         first = first_by_state.setdefault(state or mistake.name, mistake)
-        if first is not mistake and first.says.startswith(_OTHER):
-            synonym = mistake.name.removeprefix(_OF_SCHEME)
+        if first is not mistake and first.says.startswith(_OTHER_SCHEME_TEXT):
+            synonym = mistake.name.removeprefix(_SCHEME_PREFIX)
             first_by_state[state] = replace(
                 first, says=f"{first.says}, which {synonym} is for this H, too"
             )
@@ -258,7 +259,7 @@ def _relatives(name: str) -> Iterator[tuple[str, str]]:
         for says, parts_of_relative in changes.items():
             if parts_of_relative != parts:
                 description = _OTHER_EULER if name == "symplectic-euler" else f"{name} with {says}"
-                yield _name_of_parts(parts_of_relative), f"{_OTHER}{description}"
+                yield _name_of_parts(parts_of_relative), f"{_OTHER_SCHEME_TEXT}{description}"
 
 
 def _name_of_parts(parts: tuple[Part, ...]) -> str:

@@ -1,19 +1,18 @@
 """The scatter of runs by rounding: how far copies of them part that are pushed a little.
 
-In the plane each copy starts with h, the parameters and the initial value off by a relative ξ·ε,
-and after every step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1, and so is what a clock counts, as
-a program's own adds up t ← t + h. What becomes of that, divided by ε, is what an arithmetic's unit
-roundoff is multiplied with: as long as errors are small they add up, and so ε is small: an angle of
-10⁸ is pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as roundings behave; in
-the others it stays what it was at first, the worst that roundings do if they always fall to the
-same side. A program's operations are others than ours, but their results are of the size of p and q
-or smaller.
+In the plane each copy starts with h, the parameters and the initial value multiplied by 1 + ξ·ε,
+|ξ| ≤ 1. After every step p and q are multiplied by 1 + ξ·ε, and so is the count of a clock, since a
+program's own clock adds up t ← t + h. The distance of the copies, divided by ε, is the factor of an
+arithmetic's unit roundoff. ε is small, since only small errors add up: an angle of 10⁸ is pushed by
+10⁸·ε. In half of the copies ξ is drawn anew for each step, as roundings behave; in the others it
+stays the same, the worst case of roundings that always fall to one side. A program's operations
+differ from ours, but their results are of the size of p and q or smaller.
 
-In n degrees of freedom less is run: a run is repeated in float64 from points that are off by a
-little in one coordinate each. What that becomes is how far a rounding at the start is carried;
-those on the way are carried no farther than the farthest so far, in any row up to here. A program
-that finds S, W or Λ from the entries of a Jacobian rounds their products, however small they are:
-the columns of these runs are its entries.
+In n degrees of freedom fewer runs are made: a run is repeated in float64 from points that differ a
+little in one coordinate each. Their distance tells how far a rounding at the start is carried; a
+later one is taken to be carried no farther than the farthest so far, in any row up to the present
+one. A program that computes S, W or Λ from the entries of a Jacobian rounds their products, however
+small S, W or Λ is: the columns of these runs are its entries.
 """
 
 import math
@@ -35,40 +34,46 @@ from verify.reference.compare.table_agreement import DOUBLE
 from verify.runs.run_start import Start
 from verify.structures import AREA, SYMPLECTIC
 
-_PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
-_COPIES = 16  # of each kind
-_ALL = 2 * _COPIES + 1  # and one in the middle that is not pushed
-_MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go on growing
-_LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
+_PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # ε; numbers have at least 20 bits below it
+_COPIES = 16  # copies of each kind
+_ALL_COPIES = 2 * _COPIES + 1  # the one in the middle is not pushed
+_MAX_STEPS = 20_000  # steps that are followed; beyond them growth is extrapolated
+_LARGE = 1e-3  # relative to a value: larger errors do not just add up, and give no spread
 _BLOCK = 64  # steps whose random numbers are drawn at once
-_TOGETHER = 64  # orbits
+_ORBITS_AT_ONCE = 64
 _SUMS = {AREA: frozenset({"mse", "lambda"}), SYMPLECTIC: frozenset({"lambda"})}
-_COUNT = "step"  # what a kernel's clock counts by
+_COUNT = "step"  # the name of the count of a kernel's clock
 
 
 @dataclass(frozen=True)
 class Spread:
-    """The distance by which rounding moves a number, in units of roundoff or not: usually, and
-    at worst."""
+    """The distance by which rounding moves a number, usually and at worst.
+
+    From a scatter it is in units of roundoff, from an allowance absolute.
+    """
 
     usual: float | Fraction
     worst: float | Fraction
 
 
-Spreads = Mapping[str, Spread]  # by the number's column
+Spreads = Mapping[str, Spread]  # the key is the number's column
 
 
 def run_of(orbit: Start, steps: int = 1, observed: Iterable[str] = ()) -> KernelRun:
-    """Return a run of so many steps of the orbit; without `observed`, with Λ and, in the plane,
-    MSE."""
+    """Return a run of `steps` steps of the orbit, with the observables `observed`.
+
+    Without these it has Λ and, in the plane, the MSE.
+    """
     hamiltonian = orbit.hamiltonian
     observables = frozenset(observed) or _SUMS[hamiltonian.structure]
     return KernelRun(hamiltonian, orbit.scheme, orbit.inputs, steps, observables, 0)
 
 
 class Scatter:
-    """The copies of some orbits of one scheme and one H (whose parameters may differ), which
-    step together on request; the spreads at `marks` on the way are kept."""
+    """The copies of some orbits of one scheme and one H, whose parameters may differ.
+
+    They step together on request; the spreads at the steps `marks` are stored on the way.
+    """
 
     def __init__(self, orbits: Sequence[Start], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
@@ -83,7 +88,7 @@ class Scatter:
         )
         self._names, self._function = kernel.state_names, kernel.function
         self._pushed = ("p", "q", *([_COUNT] if kernel.timed else []))
-        self._shape = len(orbits), _ALL
+        self._shape = len(orbits), _ALL_COPIES
         clocks = clock_inputs if kernel.timed else lambda *_: {}
         inputs = [run.inputs(kernel, 0) | clocks(arithmetic, run.start) for run in runs]
         columns = zip(*(run.values() for run in inputs), strict=True)
@@ -99,17 +104,20 @@ class Scatter:
         self._spreads_by_step: dict[int, list[Spreads | None]] = {}
 
     def spreads_at(self, orbit: int, step: int) -> Spreads | None:
-        """Return the spreads of an orbit after so many steps; None if its copies leave every
-        range, or are far apart by then. Raises ValueError for an earlier step that is no mark."""
+        """Return the spreads of an orbit after `step` steps.
+
+        None if its copies have left every range, or are far apart by then. Raises ValueError for an
+        earlier step that is no mark.
+        """
         if step not in self._spreads_by_step:
-            if self._done > min(step, _MOST_STEPS):
+            if self._done > min(step, _MAX_STEPS):
                 raise ValueError(step)
             with np.errstate(all="ignore"):
                 self._go_to(step)
         return self._spreads_by_step[step][orbit]
 
     def _go_to(self, step: int) -> None:
-        while self._done < min(step, _MOST_STEPS):
+        while self._done < min(step, _MAX_STEPS):
             if self._done in self._marks and self._done not in self._spreads_by_step:
                 self._spreads_by_step[self._done] = self._spreads(self._done)
             self._advance()
@@ -119,8 +127,7 @@ class Scatter:
         if not self._ahead:
             self._ahead = list(self._draw((_BLOCK,)))
         push = self._ahead.pop()
-        # The second half of the copies is pushed by the same factors in every step, the worst case
-        # of roundings to one side.
+        # The second half of the copies has the same factors in every step.
         push[..., _COPIES:] = self._biased[..., _COPIES:]
         self._state = self._step(self._state)
         for name, factor in zip(self._pushed, push, strict=True):
@@ -150,7 +157,7 @@ class Scatter:
         size = np.maximum(*(np.abs(self._state[n][:, _COPIES]) for n in ("p", "q")))
         # Random roundings of the frequency give a phase error that grows as N√N, roundings to one
         # side one that grows as N²: this extrapolates beyond the steps that were run.
-        growth = max(1.0, step / _MOST_STEPS)
+        growth = max(1.0, step / _MAX_STEPS)
         spreads: list[Spreads | None] = []
         for k in range(self._shape[0]):
             by_column = {
@@ -227,7 +234,7 @@ class CarriedRounding:
         start = orbit.point
         if step == 0:
             return _Row(max(map(abs, start.values())), {}, Fraction(1))
-        middle = self._after(start, step) if step <= _MOST_STEPS else None
+        middle = self._after(start, step) if step <= _MAX_STEPS else None
         if middle is None:
             return None
         size = max(abs(x) for name in start for x in (start[name], middle[name]))
@@ -275,8 +282,8 @@ class Scatters:
             if orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
-            for first in range(0, len(kind), _TOGETHER):
-                together = tuple(kind[first : first + _TOGETHER])
+            for first in range(0, len(kind), _ORBITS_AT_ONCE):
+                together = tuple(kind[first : first + _ORBITS_AT_ONCE])
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
     def spreads_at(self, orbit: Start, step: int) -> Spreads | None:

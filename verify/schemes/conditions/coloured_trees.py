@@ -1,11 +1,12 @@
-"""Rooted trees whose vertices have colours, some of their leaves being leaves of time.
+"""Rooted trees with coloured vertices, some of whose leaves may be leaves of time.
 
-For z' = Σ f_k(z, t), with t' = 1 as one more equation, a vertex of colour k is f_k, differentiated
-as often as it has branches; a branch is a tree, or a leaf of time, which differentiates by t. The
-slope of time is 1 and has no derivatives, so that nothing grows upon its leaves. A grammar says
-which colours may grow upon which: of H = T(p) + V(q) those of p and of q take turns (Hairer,
-Lubich, Wanner, Geometric Numerical Integration, III.2); of q'' = f(q) a vertex of q' = p has one
-branch at most (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, II.14).
+The differential equation is z' = Σ f_k(z, t), with t' = 1 as one more equation. A vertex of colour
+k is f_k, differentiated once for each of its branches. A branch is a tree, or a leaf of time, which
+stands for a derivative by t; the slope of time is 1, so that a leaf of time has no branches. A
+grammar says which colours may grow upon which. For H = T(p) + V(q) the colours of p and of q take
+turns (Hairer, Lubich, Wanner, Geometric Numerical Integration, III.2). For q'' = f(q) a vertex of
+q' = p has at most one branch (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I,
+II.14).
 """
 
 import math
@@ -19,8 +20,11 @@ TIME: Tree = (-1, ())
 
 @dataclass(frozen=True)
 class Grammar:
-    """The rules for colours: `upon[k]`: the colours that may grow upon colour k; `single`: those
-    that have one branch at most; `timed`: whether leaves of time grow upon all."""
+    """The rules for colours.
+
+    `upon[k]`: the colours that may grow upon colour k. `single`: the colours with at most one
+    branch. `timed`: True if leaves of time may grow upon every colour.
+    """
 
     upon: tuple[tuple[int, ...], ...]
     single: tuple[int, ...] = ()
@@ -33,24 +37,22 @@ class Grammar:
 
 
 def unrestricted_grammar(colours: int, timed: bool = False) -> Grammar:
-    """Return the grammar in which any colour grows upon any."""
+    """Return the grammar in which every colour may grow upon every one."""
     return Grammar((tuple(range(colours)),) * colours, timed=timed)
 
 
 def alternating(timed: bool = False) -> Grammar:
-    """Return the grammar of two colours, each upon the other alone."""
+    """Return the grammar of two colours, each of which may grow only upon the other."""
     return Grammar(((1,), (0,)), timed=timed)
 
 
-PLAIN = unrestricted_grammar(
-    1
-)  # rooted trees as they are known, which need neither colours nor time
-NYSTROM = Grammar(((1,), (0,)), single=(1,))  # 0 of p' = f(q), 1 of q' = p
+PLAIN = unrestricted_grammar(1)  # rooted trees, without colours and time
+NYSTROM = Grammar(((1,), (0,)), single=(1,))  # colour 0 is p' = f(q), colour 1 is q' = p
 
 
 @cache
 def trees(grammar: Grammar, order: int, root: int) -> tuple[Tree, ...]:
-    """Return all trees of so many vertices, leaves of time counted, whose root has that colour.
+    """Return all trees of `order` vertices, leaves of time included, with a root of that colour.
 
     >>> [len(trees(unrestricted_grammar(1), n, 0)) for n in range(1, 7)]
     [1, 1, 2, 4, 9, 20]
@@ -63,13 +65,13 @@ def trees(grammar: Grammar, order: int, root: int) -> tuple[Tree, ...]:
 
 @cache
 def all_trees(grammar: Grammar, order: int) -> tuple[Tree, ...]:
-    """Return the trees of every root."""
+    """Return all trees of `order` vertices, with a root of any colour."""
     return tuple(tree for root in grammar.colours for tree in trees(grammar, order, root))
 
 
 @cache
 def _branches(grammar: Grammar, root: int, size: int) -> tuple[Tree, ...]:
-    """Return the trees of so many vertices that may grow upon that colour."""
+    """Return the trees of `size` vertices that may grow upon the colour `root`."""
     leaf = (TIME,) if size == 1 and grammar.timed else ()
     return (
         *leaf,
@@ -81,16 +83,18 @@ def _branches(grammar: Grammar, root: int, size: int) -> tuple[Tree, ...]:
 def _forests(
     grammar: Grammar, root: int, vertices: int, largest: int, first: int
 ) -> tuple[tuple[Tree, ...], ...]:
-    """Return all choices of branches with so many vertices together, large ones first; those of the
-    largest size from the `first` on."""
+    """Return all multisets of branches with `vertices` vertices together, large branches first.
+
+    No branch has more than `largest` vertices; those with as many begin at index `first` of their
+    list.
+    """
     if vertices == 0:
         return ((),)
     if root in grammar.single:
         return tuple((tree,) for tree in _branches(grammar, root, vertices))
     forests: list[tuple[Tree, ...]] = []
     for size in range(min(vertices, largest), 0, -1):
-        # Branches are chosen in non-increasing order, so that each multiset of branches occurs
-        # once.
+        # Branches are chosen in the order of their lists, so that each multiset occurs once.
         begin = first if size == largest else 0
         for k, tree in enumerate(_branches(grammar, root, size)[begin:], begin):
             rests = _forests(grammar, root, vertices - size, size, k)
@@ -105,18 +109,18 @@ def has_time(tree: Tree) -> bool:
 
 @cache
 def vertices(tree: Tree) -> int:
-    """Return |t|, leaves of time counted."""
+    """Return |t|, the number of vertices of t, leaves of time included."""
     return 1 + sum(map(vertices, tree[1]))
 
 
 @cache
 def density(tree: Tree) -> int:
-    """Return γ(t), as of a tree without colours. That of time is 1, as of any leaf."""
+    """Return γ(t), which does not depend on colours; that of a leaf of time is 1."""
     return vertices(tree) * math.prod(map(density, tree[1]))
 
 
 def symmetry(tree: Tree) -> int:
-    """Return σ(t)."""
+    """Return σ(t), the number of symmetries of t."""
     counts = Counter(tree[1])
     return math.prod(math.factorial(n) * symmetry(child) ** n for child, n in counts.items())
 
@@ -128,8 +132,9 @@ def graft(tree: Tree, branch: Tree) -> Tree:
 
 
 def equation_text(tree: Tree, names: tuple[str, ...] = ("",)) -> str:
-    """Return the tree's condition; `names` stand after A, b and c of each colour, t is the vector
-    of the stages' times.
+    """Return the order condition of a tree as text.
+
+    `names[k]` is appended to A, b and c of colour k; t is the vector of the stages' times.
 
     >>> equation_text((0, (TIME, (0, (TIME,)))))
     'b·(t A(t)) = 1/8'
@@ -159,7 +164,7 @@ def product_text(branches: tuple[Tree, ...], names: tuple[str, ...]) -> str:
 
 
 def nystrom_text(tree: Tree) -> str:
-    """Return the condition of a tree of `NYSTROM`, with A for ā and b_bar for b̄.
+    """Return the order condition of a tree of `NYSTROM`, with A for ā and b_bar for b̄.
 
     >>> nystrom_text((0, ((1, ((0, ((1, ()),)),)), (1, ()))))
     'b·(c A(c)) = 1/30'
@@ -175,7 +180,7 @@ def nystrom_text(tree: Tree) -> str:
 
 
 def nystrom_product(tree: Tree) -> str:
-    """Return the factor that its branches contribute to a stage."""
+    """Return the factor that the branches of a vertex of p' contribute to a stage, as text."""
     factors = [f"A({nystrom_product(inner[0])})" if inner else "c" for _, inner in tree[1]]
     powers = sorted(Counter(factors).items(), reverse=True)
     return " ".join(x if n == 1 else f"{x}^{n}" for x, n in powers) or "1"

@@ -1,8 +1,8 @@
-"""A scheme for every H: its step map where H is not specified.
+"""Schemes for every H: step maps of an H that is not specified.
 
-`taylor(jets, most)`: the coefficients of h⁰ … h^most of z', as series over the jets, in as many
-degrees of freedom as these have. `StageEquations` have more: their equations, which give det J
-without solving them.
+The jets are the partial derivatives of H at z, as free variables. `taylor(jets, most)` returns the
+coefficients of h⁰ … h^most of z' as polynomials in the jets, in their degrees of freedom.
+`StageEquations` also have their equations, which give det J without being solved.
 """
 
 from __future__ import annotations
@@ -29,9 +29,10 @@ Slope = TypeVar("Slope")
 
 @runtime_checkable
 class BySeries(Protocol):
-    """A scheme for every H (`separable`: every H = T(p) + V(q)) that has a Taylor series.
+    """A scheme with a Taylor series, for every H, or if `separable` for every H = T(p) + V(q).
 
-    Not to be named Generic: `typing` passes over a protocol of that name, and all would be one.
+    The name must not be Generic: `typing` ignores the members of a protocol of that name, so that
+    every object would be an instance.
     """
 
     @property
@@ -41,7 +42,7 @@ class BySeries(Protocol):
 
 
 class ByChanges(ABC):
-    """A scheme whose step is written in the operations of a step algebra, and so its series."""
+    """A scheme whose step, and so its series, is written in the operations of a step algebra."""
 
     @abstractmethod
     def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
@@ -55,7 +56,7 @@ class ByChanges(ABC):
 
 @dataclass(frozen=True)
 class TaylorSeries(ByChanges):
-    """The exact flow's series, cut off after h^eta (Eq. 2)."""
+    """The Taylor series of the exact flow, truncated after h^eta: `lieη` of the paper (Eq. 2)."""
 
     eta: int
     separable: bool = False
@@ -67,7 +68,7 @@ class TaylorSeries(ByChanges):
         return f"derivatives of p and q along the flow, up to X^{self.eta}"
 
     def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
-        """Return z' − z, by the flow's own terms."""
+        """Return z' − z, the terms of the exact flow up to h^eta."""
         return algebra.along_flow(self.eta)
 
 
@@ -75,8 +76,8 @@ class TaylorSeries(ByChanges):
 class RungeKutta(ByChanges):
     """An explicit Runge–Kutta method: k_i = f(z + h Σ a_ij k_j), j < i, and z' = z + h Σ b_i k_i.
 
-    `rows[i]`: a_ij for j < i, which has as many entries as there are stages before; `weights`:
-    b_i. ValueError where they do not fit together, or Σ b_i ≠ 1.
+    `rows[i]`: a_ij for j < i, so that row i has i entries, from i = 0 on; `weights`: b_i. Raises
+    ValueError if their lengths do not match, or Σ b_i ≠ 1.
     """
 
     rows: tuple[tuple[Fraction, ...], ...]
@@ -112,14 +113,17 @@ class RungeKutta(ByChanges):
         return move(self.weights, slopes)
 
     def changes(self, algebra: StepAlgebra[Any], standing: Fraction | None = None) -> list[Any]:
-        """Return z' − z, stage by stage, each at t + c h where H depends on time, or all at t +
-        `standing` h."""
+        """Return z' − z, stage by stage.
+
+        If H depends on time, stage i is at t + c_i h; or with `standing` every stage at
+        t + `standing` h.
+        """
         places = range(algebra.size)
 
         def move(
             weights: Sequence[Fraction], slopes: Sequence[list[Any]]
         ) -> tuple[list[Any], Fraction]:
-            """Return a change of z, and that of t by h."""
+            """Return the change h Σ weights · slopes of z, and the change of t in parts of h."""
             columns = [[slope[k] for slope in slopes] for k in places]
             changes_of_z = [algebra.move(algebra.nothing, weights, column) for column in columns]
             # The weights' sum is c_i, so that t moves like a coordinate with slope 1.
@@ -134,8 +138,10 @@ class RungeKutta(ByChanges):
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage: p' = p − h·kick·H_q(P, Q), q' = q + h·drift·H_p(P, Q), where P = p + at_p·(p' − p)
-    and Q = q + at_q·(q' − q)."""
+    """One stage: p' = p − h·kick·H_q(P, Q) and q' = q + h·drift·H_p(P, Q).
+
+    Its point is P = p + at_p·(p' − p), Q = q + at_q·(q' − q).
+    """
 
     kick: Fraction
     drift: Fraction
@@ -145,7 +151,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class StageEquations(ByChanges):
-    """Stages that are made one after the other."""
+    """Stages that are solved and applied one after the other."""
 
     stages: tuple[Stage, ...]
     separable: bool = False
@@ -158,7 +164,7 @@ class StageEquations(ByChanges):
 
     @classmethod
     def from_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> StageEquations:
-        """Return kicks and drifts of these step sizes, for H = T(p) + V(q)."""
+        """Return the stages of kicks and drifts, each with its part of h, for H = T(p) + V(q)."""
         stages = []
         for kind, size in parts:
             length, none = Fraction(int(size.p), int(size.q)), Fraction(0)
@@ -166,13 +172,12 @@ class StageEquations(ByChanges):
         return cls(tuple(stages), separable=True)
 
     def changes(self, outer: StepAlgebra[Any]) -> list[Any]:
-        """Return z' − z: the change that each stage makes is solved for, as far as the stage reads
-        it."""
+        """Return z' − z; of each stage's equations those are solved that the stage itself reads."""
         result = [outer.nothing] * outer.size
         for stage in self.stages:
             half = outer.size // 2
-            # A stage at (p', q) reads only the new momenta: then n equations suffice, and none if
-            # it reads z alone.
+            # A stage at (p', q) reads only the new momenta, so that n equations suffice; one at z
+            # needs none.
             count = outer.size if stage.at_q else half if stage.at_p else 0
             right = partial(_stage_moves, stage, result)
             solution = outer.solve(count, partial(right, count)) if count else []
@@ -183,7 +188,7 @@ class StageEquations(ByChanges):
         return result
 
     def conditions(self) -> tuple[Condition, ...]:
-        """Return det A = det B of each stage, which together suffice for det J ≡ 1."""
+        """Return det A = det B for each stage: together they suffice for det J ≡ 1."""
         return tuple(
             Condition(
                 f"A J = B with det A = det B = {b}", 0, str(a - b), a == b and not a.is_zero()
@@ -194,9 +199,9 @@ class StageEquations(ByChanges):
     def determinants(self) -> list[tuple[Poly, Poly]]:
         """Return (det A, det B) of each stage, where A J = B by implicit differentiation.
 
-        Over Q[h, a, b, c] with a, b, c = H_pp, H_pq, H_qq at the stage's own point (P, Q), which
-        are free. Where both are the same polynomial det J = 1, wherever the stage has a solution
-        that depends smoothly on (p, q), which is where det A ≠ 0.
+        The polynomials are in h and in a, b, c = H_pp, H_pq, H_qq at the stage's point (P, Q), as
+        free variables. If both are the same polynomial, det J = 1 wherever det A ≠ 0: there the
+        stage has a solution that depends smoothly on (p, q).
         """
         names = ("h", "a", "b", "c")
         h, a, b, c = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex).gens()
@@ -212,7 +217,7 @@ class StageEquations(ByChanges):
 
 
 def _det(slopes: Sequence[Sequence[Poly]], of_p: flint.fmpq, of_q: flint.fmpq) -> Poly:
-    """Return the determinant of 1 + slopes, whose columns are multiplied by these factors."""
+    """Return det(1 + slopes · diag(of_p, of_q))."""
     (a, b), (c, d) = ((x * of_p, y * of_q) for x, y in slopes)
     return (1 + a) * (1 + d) - b * c
 
@@ -228,13 +233,16 @@ def _stage_moves(
     algebra: StepAlgebra[Any],
     change: Sequence[Any],
 ) -> list[Any]:
-    """Return h times the first `count` slopes of a stage, at a share of the change that they make,
-    as far as that is known."""
+    """Return the first `count` increments of a stage, h times its weights times its slopes.
+
+    `before`: the change of z up to the stage. `change`: the stage's own change, or those of its
+    first entries that the stage reads; the stage's point is at a share of it.
+    """
     n = algebra.size // 2
     # The first n coordinates are momenta, which the kick changes; the others the drift.
     shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
     triples = zip(before, change, shares, strict=False)
     stage_point = [*(algebra.add_share(*triple) for triple in triples), *before[len(change) :]]
-    slopes = algebra.slopes(stage_point, stage.at_q, range(count))  # t goes with q
+    slopes = algebra.slopes(stage_point, stage.at_q, range(count))  # t moves with q
     pairs = zip(weights, slopes, strict=False)
     return [algebra.move(algebra.nothing, [weight], [slope]) for weight, slope in pairs]

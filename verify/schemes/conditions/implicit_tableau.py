@@ -1,15 +1,14 @@
 """Runge–Kutta methods by their coefficients, explicit or implicit.
 
-k_i = f(z + h Σ a_ij k_j, t + c_i h), i = 1 … s, and z' = z + h Σ b_i k_i. Of a partitioned method
-p' = −H_q and q' = H_p have matrices and weights of their own, and their stages in common.
-Coefficients are algebraic numbers, exact. Conditions on them are decided in the ring of
-`verify.algebra.embedding.embed`, by exact algebra, and a value that is not zero there is enclosed
-by Arb; no coefficient is ever rounded for it.
+k_i = f(z + h Σ a_ij k_j, t + c_i h), i = 1 … s, and z' = z + h Σ b_i k_i. In a partitioned method
+the equations p' = −H_q and q' = H_p have two matrices and two vectors of weights, and the same
+stages. Coefficients are exact algebraic numbers. Conditions on them are decided by exact algebra in
+the ring of `verify.algebra.embedding.embed`; a residual that is not zero is enclosed by Arb.
 
 The right clock is c = A 1. With t as one more coordinate, t' = 1, the system is autonomous, and t
-has at stage i the value t + h Σ a_ij: so the method has for every H the properties that it has
-without time. Of a partitioned method t may go with q or with p, and both c = A_q 1 and c = A_p 1
-are right.
+has the value t + h Σ_j a_ij at stage i: so the method with this clock has the properties that it
+has without time. In a partitioned method t may move with q or with p, so that both c = A_q 1 and
+c = A_p 1 are right.
 """
 
 from __future__ import annotations
@@ -27,17 +26,17 @@ from verify.schemes.conditions.condition import Condition, condition_of
 from verify.schemes.conditions.tree_weights import Tableau, TreeWeights
 from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
-Clock: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None where it is right
-SHOWN = 5  # digits of a residual
+Clock: TypeAlias = "tuple[sympy.Expr | None, ...]"  # times in parts of h; None for a right one
+SHOWN = 5  # digits in which a residual is printed
 
 
 @dataclass(frozen=True)
 class ImplicitTableau:
-    """A Runge–Kutta tableau: `rows[i][j]`: a_ij; `weights`: b_i. `clock`: c_i, for an H that
-    depends on time; None without time. `of_q`: of a partitioned method the tableau of q', without
-    its times; this is that of p'.
+    """A Runge–Kutta tableau.
 
-    ValueError where they do not fit together, or are no constants.
+    `rows[i][j]`: a_ij. `weights`: b_i. `clock`: c_i, for an H that depends on time; None without
+    time. `of_q`: in a partitioned method the tableau of q', without times; this one is then that of
+    p'. Raises ValueError if their lengths do not match or coefficients are no constants.
     """
 
     rows: tuple[tuple[sympy.Expr, ...], ...]
@@ -59,19 +58,18 @@ class ImplicitTableau:
     def from_numbers(
         cls, rows: Sequence[Sequence[sympy.Expr | int]], weights: Sequence[sympy.Expr | int]
     ) -> ImplicitTableau:
-        """Return the tableau for numbers as sympy takes them."""
+        """Return the tableau of these numbers, as exact expressions."""
         exact = [[sympy.sympify(x) for x in row] for row in (*rows, weights)]
         return cls(tuple(map(tuple, exact[:-1])), tuple(exact[-1]))
 
     def with_times(self, clock: Sequence[sympy.Expr | int | None] | None = None) -> ImplicitTableau:
-        """Return the same with these times, as parts of h: None for a right one, as all are by
-        default."""
+        """Return the tableau with these times, in parts of h; None (the default) for right ones."""
         times = (None,) * self.stages if clock is None else clock
         return replace(self, clock=tuple(None if c is None else sympy.sympify(c) for c in times))
 
     @property
     def parts(self) -> tuple[ImplicitTableau, ...]:
-        """The tableau itself; or those of p' and of q'."""
+        """The tableau itself; of a partitioned method the tableaux of p' and of q'."""
         return (self,) if self.of_q is None else (self, self.of_q)
 
     @property
@@ -81,15 +79,15 @@ class ImplicitTableau:
 
     @cached_property
     def numbers(self) -> TableauNumbers:
-        """The coefficients in one ring."""
+        """The coefficients as elements of one ring."""
         return TableauNumbers.from_tableau(self)
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """Return the conditions b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; of two parts b_p,i
-        a_q,ij + b_q,j a_p,ji = b_p,i b_q,j and b_p = b_q.
+        """Return conditions that suffice for det J ≡ 1, for every H and any clock.
 
-        They suffice for det J ≡ 1, for every H, at the stages' times (Sanz-Serna 1988; Hairer,
-        Lubich, Wanner, Geometric Numerical Integration, theorems VI.4.3 and VI.4.6).
+        They are b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; in a partitioned method
+        b_p,i a_q,ij + b_q,j a_p,ji = b_p,i b_q,j for all i, j, and b_p = b_q (Sanz-Serna 1988;
+        Hairer, Lubich, Wanner, Geometric Numerical Integration, theorems VI.4.3 and VI.4.6).
         """
         return _area_conditions(self)
 
@@ -116,7 +114,7 @@ def _area_gaps(numbers: TableauNumbers) -> Iterator[tuple[str, Poly]]:
 
 @dataclass(frozen=True)
 class TableauNumbers:
-    """The numbers a_ij, b_i and c_i of each part as elements of a ring without variables."""
+    """The numbers a_ij, b_i and c_i as elements of a ring without variables, a block a part."""
 
     ring: Ring
     blocks: tuple[Tableau[Poly], ...]
@@ -127,8 +125,8 @@ class TableauNumbers:
         count, clock_times = tableau.stages, [c for c in tableau.clock or () if c is not None]
         rows = [row for part in tableau.parts for row in (part.weights, *part.rows)]
         ring, elements = embed([*(x for row in rows for x in row), *clock_times], ())
-        # The order of reading is that of embedding: for each part b, then the rows of a; the times
-        # last.
+        # They are read in the order in which they were embedded: for each part b, then the rows of
+        # a; the times last.
         remaining = iter(elements)
 
         def row() -> tuple[Poly, ...]:
@@ -136,29 +134,29 @@ class TableauNumbers:
 
         parts = [(row(), tuple(row() for _ in range(count))) for _ in tableau.parts]
         times = None
-        if tableau.clock is not None:  # time is a coordinate: of two parts, it goes with q
+        if tableau.clock is not None:  # in a partitioned method time moves with q
             pairs = zip(_row_sums(ring, parts[-1][1]), tableau.clock, strict=True)
             times = tuple(x if c is None else next(remaining) for x, c in pairs)
         return cls(ring, tuple(Tableau(a, b, times) for b, a in parts))
 
     @property
     def a(self) -> tuple[tuple[Poly, ...], ...]:
-        """The matrix a_ij, of two parts that of p'."""
+        """The matrix a_ij; in a partitioned method that of p'."""
         return self.blocks[0].matrix
 
     @property
     def b(self) -> tuple[Poly, ...]:
-        """The weights b_i, of two parts that of p'."""
+        """The weights b_i; in a partitioned method those of p'."""
         return self.blocks[0].weights
 
     @property
     def clock(self) -> tuple[Poly, ...]:
-        """The times c_i; none without time."""
+        """The times c_i; empty without time."""
         return self.blocks[0].times or ()
 
     @cached_property
     def right(self) -> bool:
-        """True if c is a right clock, exactly, or there is none."""
+        """True if c is exactly a right clock, or there is no clock."""
         decide = self.ring.decide
         return any(
             all(
@@ -170,7 +168,7 @@ class TableauNumbers:
 
     @cached_property
     def tree_weights(self) -> TreeWeights[Poly]:
-        """The factors of the numbers in the conditions of trees."""
+        """The weights b·Φ(t) of trees for these numbers."""
         return TreeWeights(self.blocks, self.ring.one, reduce=self.ring.reduce)
 
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
@@ -185,7 +183,7 @@ def _row_sums(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> list[Poly]:
 def implicit_step(
     rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
 ) -> Step:
-    """Return the step z ↦ z' for a_ij, b_i and c_i in the ring of H's field."""
+    """Return the step z ↦ z' of a tableau a_ij, b_i, c_i of elements of the ring of H's field."""
 
     def changes(outer: StepAlgebra[Any]) -> list[Any]:
         size = outer.size
@@ -195,7 +193,7 @@ def implicit_step(
             weight_rows: Sequence[Sequence[Number]],
             unknowns: Sequence[Any],
         ) -> list[Any]:
-            """Return h Σ w_j f(z + Z_j) of each row of weights, row after row."""
+            """Return h Σ w_j f(z + Z_j) for each row w of weights, one after the other."""
             slopes = [
                 algebra.slopes(unknowns[size * i : size * (i + 1)], clock, range(size))
                 for i, clock in enumerate(clocks)
@@ -203,8 +201,7 @@ def implicit_step(
             pairs = product(weight_rows, zip(*slopes, strict=True))
             return [algebra.move(algebra.nothing, row, column) for row, column in pairs]
 
-        # The unknowns are Z_i = Y_i − z, of the size of h: so they are rounded h times less than
-        # Y_i.
+        # The unknowns are Z_i = Y_i − z = O(h): they are rounded less than the stages Y_i.
         stage_changes = outer.solve(size * len(clocks), lambda inner, z: combine(inner, rows, z))
         return combine(outer, [weights], stage_changes)
 

@@ -2,12 +2,11 @@
 
     conditions = conditions_for(scheme.every_h, Kinetic.MASS)
 
-A scheme without specified times has the right ones. A scheme that is a series, as `lieη`, has no
-coefficients to put conditions on: its order is that of the series, with D = ∂_t + X for X.
+A scheme without specified times has the right ones. A scheme that is a Taylor series, as `lieη`,
+has no coefficients for conditions: its order is η, with D = ∂_t + X in place of X.
 
-A clock may be wrong in a way that has a name. The times at which kicks, drifts or stages are taken
-are compared with those that a common mistake would give; where all times that are read agree with
-one, that mistake is named.
+The times at which kicks and drifts are taken are compared with those that common mistakes would
+give. If all times that are read agree with those of a mistake, that mistake is named.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -36,9 +35,9 @@ def conditions_for(
 ) -> Splitting | TreeConditions:
     """Return the conditions of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
 
-    `kinetic` None: for every H(p, q, t) that the scheme takes. `times`: of each part, or of each
-    stage, as parts of h; None for the right one, and without them those of the scheme itself.
-    Raises InputError for what has no coefficients.
+    `kinetic`: the class of T; None for every H(p, q, t) that the scheme takes. `times`: that of
+    each part or stage, in parts of h, None for the right one; if left out, those of the scheme
+    itself. Raises InputError for a scheme without coefficients.
     """
     if isinstance(every_h, Splitting):
         return every_h.in_time(kinetic, tuple(times))
@@ -49,16 +48,18 @@ def conditions_for(
         rows = [[*row, *[0] * (count - len(row))] for row in every_h.rows]
         tableau = ImplicitTableau.from_numbers(rows, every_h.weights)
     elif isinstance(every_h, StageEquations):
-        tableau = _of_stages(every_h)
+        tableau = _tableau_of_stages(every_h)
     else:
         raise InputError("scheme", type(every_h).__name__, "is not given by coefficients")
     general = Kinetic.GENERAL if every_h.separable else None
     return TreeConditions(tableau.with_times(times or None), kinetic or general)
 
 
-def _of_stages(equations: StageEquations) -> ImplicitTableau:
-    """Return the tableau of stages that are made one after the other; one part where p and q are
-    alike in them."""
+def _tableau_of_stages(equations: StageEquations) -> ImplicitTableau:
+    """Return the tableau of stages that are solved one after the other.
+
+    It is partitioned unless the coefficients of p and of q are the same.
+    """
     of_p = _sequential_tableau([(s.kick, s.at_p) for s in equations.stages])
     of_q = _sequential_tableau([(s.drift, s.at_q) for s in equations.stages])
     return of_p if of_p == of_q else replace(of_p, of_q=of_q)
@@ -74,15 +75,15 @@ def _sequential_tableau(stages: Sequence[tuple[Fraction, Fraction]]) -> Implicit
     return ImplicitTableau.from_numbers(rows, weights)
 
 
-# -- mistakes that have a name --------------------------------------------------------------------
+# -- mistakes with a name -------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class ClockReading:
-    """A `quantity` read in each `part` at `times`, where `right` are the right ones.
+    """The `times` at which a `quantity` is read in each `part`; `right` are the right times.
 
-    `sizes`: the part of h that each takes; a part of 0 reads nothing. `own_kind_sums`: the sums of
-    the parts of its own kind before each.
+    A part is a kick or a drift. `sizes`: the part of h that each takes; one of size 0 reads
+    nothing. `own_kind_sums`: for each, the sum of the earlier parts of its own kind.
     """
 
     ring: Ring
@@ -95,10 +96,10 @@ class ClockReading:
 
 
 def find_mistakes(splitting: Splitting, tolerance: Fraction = Fraction(0)) -> list[str]:
-    """Return the mistakes of the kicks and, where their time counts, of the drifts, in words.
+    """Return the mistakes in the clocks of the kicks and of the drifts, in words.
 
-    `tolerance`: how far two times may differ, 0 for exactly; positive for clocks that were
-    measured. Empty where the clocks are right, or wrong in no way that has a name.
+    Drifts count only if T depends on time. `tolerance`: by how much equal times may differ; it is
+    positive for measured clocks. The list is empty if no clock is wrong in a way that has a name.
     """
     names = (mistake_of_clock(reading, tolerance) for reading in _readings_of(splitting))
     return [name for name in names if name is not None]
@@ -117,8 +118,7 @@ def _readings_of(splitting: Splitting) -> Iterator[ClockReading]:
 
 
 def mistake_of_clock(reading: ClockReading, tolerance: Fraction) -> str | None:
-    """Return the mistake that the times look like; None where they are right, or wrong in no known
-    way."""
+    """Return the mistake that explains the times; None if they are right or none explains them."""
     ring = reading.ring
     # A part of size 0 reads nothing, so its time cannot be wrong.
     read = [k for k, size in enumerate(reading.sizes) if not size.is_zero()]
@@ -142,19 +142,19 @@ def _alike(ring: Ring, gap: Poly, tolerance: Fraction) -> bool:
 
 
 def _middle_at(reading: ClockReading, time: int) -> list[Poly]:
-    """Return the right clock, except that parts due at the middle are taken at this time."""
+    """Return the right times, with `time` in place of 1/2."""
     ring, half = reading.ring, reading.ring.one / 2
     due = [ring.decide(clock - half).zero is True for clock in reading.right]
     return [ring.one * time if d else x for d, x in zip(due, reading.right, strict=True)]
 
 
 def _own_kind_after(reading: ClockReading) -> list[Poly]:
-    """Return the sums of the parts of its own kind up to and including each."""
+    """Return for each part the sum of the parts of its own kind up to and including it."""
     sizes = zip(reading.own_kind_sums, reading.sizes, strict=True)
     return [reading.ring.reduce(before + size) for before, size in sizes]
 
 
-# The first that fits is named: of one kick, say, several may.
+# The first mistake that fits is named: several may fit, as for a single kick.
 MISTAKES: Mapping[str, Callable[[ClockReading], Sequence[Poly]]] = {
     "as if the {quantity} were read at t in every {part}": lambda r: [r.ring.zero] * len(r.right),
     "as if the {quantity} were read at the step's end in every {part}": (

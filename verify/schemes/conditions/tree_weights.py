@@ -1,10 +1,10 @@
 """The factors that a tableau's entries contribute to the conditions of trees, over any numbers.
 
-k_i = f(z + h Σ a_ij k_j), each colour with its own matrix, weights and times: Φ_i(t) is the product
-over the root's branches of Σ_j a_ij Φ_j, a leaf of time being c_i, and a condition says Σ b_i
-Φ_i(t) = 1/γ(t). Of a Nyström method a vertex of q' = p is no stage: with Q_i = q + c_i h p + h² Σ
-ā_ij k_j it is c_i as a leaf, and Σ ā_ij Φ_j with a branch of its own. Entries that are 0 by their
-form are None, so that products with them are left out.
+k_i = f(z + h Σ a_ij k_j), where each colour has its own matrix, weights and times. Φ_i(t) is the
+product of Σ_j a_ij Φ_j over the root's branches, with c_i for a leaf of time; the condition is
+Σ b_i Φ_i(t) = 1/γ(t). In a Nyström method, Q_i = q + c_i h p + h² Σ ā_ij k_j, a vertex of q' = p is
+no stage: as a leaf it contributes c_i, and with its one branch Σ ā_ij Φ_j of that branch. Entries
+that are 0 by the form of the tableau are None, so that products with them are left out.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,8 +21,7 @@ Vector: TypeAlias = tuple[E | None, ...]
 
 @dataclass(frozen=True)
 class Tableau(Generic[T_co]):
-    """The tableau of one colour: a_ij, b_i, and the stages' times c_i, None where there are
-    none."""
+    """The tableau of one colour: a_ij, b_i, and the stages' times c_i, None without time."""
 
     matrix: tuple[tuple[T_co, ...], ...]
     weights: tuple[T_co, ...]
@@ -30,11 +29,11 @@ class Tableau(Generic[T_co]):
 
     @property
     def entries(self) -> list[T_co]:
-        """All entries one after the other: rows, weights, and times where there are any."""
+        """All entries, one after the other: rows, weights, and times if there are any."""
         return [*(x for row in self.matrix for x in row), *self.weights, *(self.times or ())]
 
     def map_entries(self, transform: Callable[[T_co, str], S]) -> "Tableau[S]":
-        """Return the same with each entry transformed; `transform` also gets "a", "b" or "c"."""
+        """Return the tableau with each entry transformed; `transform` also gets "a", "b" or "c"."""
         rows = tuple(tuple(transform(x, "a") for x in row) for row in self.matrix)
         weights = tuple(transform(x, "b") for x in self.weights)
         times = None if self.times is None else tuple(transform(x, "c") for x in self.times)
@@ -45,9 +44,11 @@ Block: TypeAlias = Tableau[E | None]
 
 
 class TreeWeights(Generic[E]):
-    """The weights b·Φ(t) of trees, each vector computed once; `nystrom`: colour 1 is of q' = p,
-    with ā and b̄ as its matrix and weights, and with c as its times. `reduce`: applied to sums and
-    products, as a ring needs it."""
+    """The weights b·Φ(t) of trees, each vector computed once.
+
+    `nystrom`: True if colour 1 is q' = p, with ā and b̄ as its matrix and weights and c as its
+    times. `reduce`: is applied to sums and products, as a ring needs it.
+    """
 
     def __init__(
         self,
@@ -67,8 +68,7 @@ class TreeWeights(Generic[E]):
         if self.nystrom and root == 1:
             if not branches:
                 return self.one
-            # A vertex of q' = p at the root is no stage: its one branch is weighted with b̄
-            # instead.
+            # A root of q' = p is no stage: its one branch is weighted with b̄.
             ((root, branches),) = branches
             return self._or_zero(self.dot(self.blocks[1].weights, self.vector((root, branches))))
         return self._or_zero(self.dot(self.blocks[root].weights, self.vector(tree)))
@@ -78,7 +78,7 @@ class TreeWeights(Generic[E]):
         return self.weight(tree) - self.one / density(tree)
 
     def bound(self, tree: Tree) -> E:
-        """Return b·Φ(t) + 1/γ(t)."""
+        """Return b·Φ(t) + 1/γ(t): with |coefficients| a bound of |gap|."""
         return self.weight(tree) + self.one / density(tree)
 
     def _or_zero(self, x: E | None) -> E:
@@ -91,7 +91,7 @@ class TreeWeights(Generic[E]):
         return self._vectors[tree]
 
     def _product(self, tree: Tree) -> Vector[E]:
-        """Return the product over the branches; all but the last are those of a smaller tree."""
+        """Return the product over the branches, from that of the tree without its last branch."""
         root, branches = tree
         if not branches:
             return (self.one,) * self.stages
@@ -99,8 +99,8 @@ class TreeWeights(Generic[E]):
         return sums if len(branches) == 1 else self.times(self.vector((root, branches[:-1])), sums)
 
     def _sums(self, root: int, tree: Tree) -> Vector[E]:
-        """Return a branch's factor."""
-        # The times depend on the colour of the root, the sums of a tree on its own colour alone.
+        """Return the factor of a branch of a root of that colour, for all stages."""
+        # A leaf of time depends on the root's colour, the sums of a tree on its own colour alone.
         key = (root, tree) if tree == TIME else (0, tree)
         if key not in self._branch_sums:
             self._branch_sums[key] = self._make_sums(root, tree)

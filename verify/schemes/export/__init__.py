@@ -11,13 +11,16 @@ if TYPE_CHECKING:
 _FILES = Catalogue(f"{__name__}.languages", [f"{folder}/languages" for folder in __path__])
 
 
-_C = dict.fromkeys(("c++", "cpp", "cxx"), "c")
-_OF_C = '; what c writes is C++ too; check-integrator checks a C++ step that is extern "C"'
+_CPP_NAMES = dict.fromkeys(("c++", "cpp", "cxx"), "c")
+_CPP_ADVICE = '; what c writes is C++ too; check-integrator checks a C++ step that is extern "C"'
 
 
 class Language(Protocol):
-    """A language's file: `SUFFIX`, that of its files; `RESERVED`, words that are no names there;
-    and `render(program)`, which returns the whole text."""
+    """The module of a language.
+
+    `SUFFIX`: the suffix of its files. `RESERVED`: words that cannot be names in the language.
+    `render(program)` returns the whole text.
+    """
 
     SUFFIX: str
     RESERVED: frozenset[str]
@@ -31,9 +34,11 @@ def names() -> tuple[str, ...]:
 
 
 def get(name: str) -> Language:
-    """Return the language of that name, in any case; InputError where there is none."""
+    """Return the language of that name, in any case; InputError if there is none."""
     plain = name.strip().lower() if isinstance(name, str) else name
     if plain not in _FILES:
-        raise unknown_name("language", name, names(), _OF_C if plain in _C else "", _C)
+        raise unknown_name(
+            "language", name, names(), _CPP_ADVICE if plain in _CPP_NAMES else "", _CPP_NAMES
+        )
     language: Language = _FILES.module(plain)
     return language

@@ -1,8 +1,8 @@
 """Numbers of a formula as correctly rounded double literals.
 
-Integers of up to 53 bits stay as they are. A rational number n/d is divided by Python, which rounds
-correctly; an irrational one is enclosed by ball arithmetic, with more bits until both ends of the
-ball have the same nearest double. `repr` of a double is read back as that double, in any language.
+Integers below 2^53 stay as they are. A rational number n/d is divided by Python, which rounds
+correctly; an irrational one is enclosed by ball arithmetic, with more and more bits until both ends
+of the ball have the same nearest double. Any language reads `repr` of a double as that double.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,17 +18,17 @@ from verify.arithmetic.arb import bounds
 from verify.arithmetic.exact import decimal
 from verify.errors import LimitError
 
-_LARGEST = 2**53
+_SMALL_INTEGER_LIMIT = 2**53
 _PRECISIONS = (128, 256, 512, 1024)
-_DIGITS = 20  # of an enclosure
+_ENCLOSURE_DIGITS = 20
 
 
 @dataclass(frozen=True)
 class Constant:
-    """A number: its name in the code, what it is exactly, and the nearest double as a literal.
+    """A number: its name in the code, its exact formula, and the nearest double as a literal.
 
-    `enclosure`: decimals below and above an irrational number; empty where it is rational.
-    `exactly`: whether the double is the number.
+    `enclosure`: decimals below and above an irrational number; empty for a rational one.
+    `exactly`: True if the double is equal to the number.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Constant:
 
 
 class Constants:
-    """Extracts the numbers of expressions, and keeps each once; `name_for(k)` is the k-th name."""
+    """The numbers extracted from expressions, each once; `name_for(k)` is the k-th name."""
 
     def __init__(self, name_for: Callable[[int], str]) -> None:
         self._name_for = name_for
@@ -56,7 +56,7 @@ class Constants:
         return iter(self._constants.values())
 
     def extract(self, x: sympy.Expr) -> sympy.Expr:
-        """Return x with a symbol for each number that is no small integer; exponents stay."""
+        """Return x with a symbol for each number but small integers and rational exponents."""
         if x.is_number and not x.free_symbols:
             return x if _is_small(x) else self._symbol(x)
         if x.is_Pow:
@@ -74,8 +74,7 @@ class Constants:
         return x if x.is_Rational else self.extract(x)
 
     def _symbol(self, number: sympy.Expr) -> sympy.Symbol:
-        # A sign stands better before the name.
-        # x and −x share one constant.
+        # x and −x share one constant: the sign stands before its name.
         if number.could_extract_minus_sign():
             return -self._symbol(-number)
         if number not in self._constants:
@@ -84,12 +83,11 @@ class Constants:
 
 
 def _is_small(x: sympy.Expr) -> bool:
-    return bool(x.is_Integer and abs(int(x)) < _LARGEST)
+    return bool(x.is_Integer and abs(int(x)) < _SMALL_INTEGER_LIMIT)
 
 
 def constant(name: str, number: sympy.Expr) -> Constant:
-    """Return the number under that name. Raises LimitError where no double is shown to be the
-    nearest."""
+    """Return the number under that name; LimitError if no double is shown to be the nearest."""
     exact = to_text(number)
     if number.is_Rational:
         value = Fraction(int(number.p), int(number.q))
@@ -101,8 +99,7 @@ def constant(name: str, number: sympy.Expr) -> Constant:
         if ball is None:
             continue
         low, high = bounds(ball)
-        # Rounding is monotonic: if both ends have the same nearest double, so has the number
-        # between.
+        # Rounding is monotonic: if both ends have the same nearest double, it is the number's.
         if low and high and _nearest(low, exact) == _nearest(high, exact):
             return Constant(name, exact, _nearest(low, exact), _outward(low, high))
     raise LimitError("constant", exact, "is not enclosed closely enough to be rounded to a double")
@@ -119,11 +116,10 @@ def _nearest(value: Fraction, exact: str) -> str:
 
 
 def _outward(low: Fraction, high: Fraction) -> tuple[str, str]:
-    """Return decimals of 20 digits that enclose both: each moved outward by one unit of its last
-    digit."""
+    """Return decimals of 20 digits below `low` and above `high`, by a unit of the last digit."""
     ends = []
     for value, sign in ((low, -1), (high, 1)):
-        middle = Fraction(decimal(value, _DIGITS))
-        unit = abs(middle) / 10 ** (_DIGITS - 1)
-        ends.append(decimal(middle + sign * unit, _DIGITS))
+        middle = Fraction(decimal(value, _ENCLOSURE_DIGITS))
+        unit = abs(middle) / 10 ** (_ENCLOSURE_DIGITS - 1)
+        ends.append(decimal(middle + sign * unit, _ENCLOSURE_DIGITS))
     return ends[0], ends[1]

@@ -1,9 +1,10 @@
 """A step map as assignments, for any language: the step, its Jacobian, and ΔJ.
 
-A composition is written part by part, each part at the point where the last one left off: with the
-parts' Jacobians J_i and ΔJ_i, J is their product and 1 + ΔJ = Π (1 + ΔJ_i), so that nothing is
-expanded and no 1 is subtracted. A map in closed form is one part, with the closed form of its ΔJ.
-Subexpressions that occur more than once are named. Numbers are taken out as constants.
+A composition is written part by part, each part at the point where the one before it ends. With the
+parts' Jacobians J_i and ΔJ_i = det J_i − 1, J is the product of the J_i and 1 + ΔJ = Π (1 + ΔJ_i);
+nothing is expanded, and no 1 is subtracted from the product. A map in closed form is one part, with
+the closed form of its ΔJ. Subexpressions that occur more than once get names. Numbers become
+constants.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,15 +13,15 @@ from dataclasses import dataclass
 import sympy
 
 from verify.algebra.formula import FUNCTIONS, symbol
-from verify.effort import MOST, limit_effort
+from verify.effort import MAX_CALLS, limit_effort
 from verify.errors import InputError, LimitError
 from verify.schemes.export.constants import Constant, Constants
 from verify.schemes.maps.closed_form import ClosedForm, group_by_powers
 from verify.schemes.maps.parts import parts_of
 from verify.schemes.maps.step_map import StepMap
 
-_MOST_COORDINATES = 4  # of a map in stages, whose determinant is written out
-Lines = tuple[tuple[str, sympy.Expr], ...]  # names with the expressions assigned to them, in turn
+_MOST_COORDINATES = 4  # limit for writing out the determinant of a map in stages
+Lines = tuple[tuple[str, sympy.Expr], ...]  # names and the expressions assigned to them, in order
 
 
 def outputs_of(coordinates: Sequence[str]) -> dict[str, tuple[str, ...]]:
@@ -40,10 +41,10 @@ def outputs_of(coordinates: Sequence[str]) -> dict[str, tuple[str, ...]]:
 class Program:
     """The map of `scheme` for H, `hamiltonian`, as three functions of z, h and `parameters`.
 
-    `variables`: the `coordinates` and h, with t, at which the step begins, before h where H depends
-    on it. `name` is the step's; `functions` has the lines of `step`, `jacobian` (∂z'/∂z by rows)
-    and `delta_j`, which end with assignments to the names in `outputs`. `parts`: the formulas of
-    each part, for people. `area_preserving`: whether ΔJ ≡ 0 is proved.
+    `variables`: the coordinates, the time t at which the step begins if H depends on it, and h.
+    `name`: the name of the step's function. `functions`: the lines of `step`, of `jacobian` (∂z'/∂z
+    by rows) and of `delta_j`; each ends with assignments to the names in `outputs`. `parts`: the
+    formulas of each part, for readers. `area_preserving`: True if ΔJ ≡ 0 is proved.
     """
 
     name: str
@@ -84,7 +85,7 @@ class Program:
             ),
             "Constants are the doubles nearest to the exact numbers in the comments.",
         )
-        return tuple(" ".join(line.split()) for line in lines)  # a text of the users' has ends
+        return tuple(" ".join(line.split()) for line in lines)  # a user's text may have line ends
 
 
 def program_of(
@@ -92,9 +93,9 @@ def program_of(
 ) -> Program:
     """Return the map as assignments.
 
-    `name`: the name of the step function; InputError where it is no name. `reserved`: words that no
-    parameter may be called by; one that is gets a `_` behind it. Raises LimitError for a map that
-    is defined by equations.
+    `name`: the name of the step function. `reserved`: words that cannot be names; a `_` is appended
+    to a parameter with such a name. Raises InputError if `name` cannot be one, and LimitError for a
+    map that is defined by equations.
     """
     if not (name.isascii() and name.isidentifier()) or name in {*reserved, *FUNCTIONS}:
         raise InputError("name", name, "is no name for a function; allowed: letters, digits, _")
@@ -108,7 +109,7 @@ def program_of(
     renaming = _free_symbols(step_map.hamiltonian.symbols, reserved_names)
     time = ("t",) if step_map.hamiltonian.time_dependent else ()
     variables = (*coordinates, *time, "h")
-    with limit_effort("map", scheme, "to write it out", 10 * MOST):
+    with limit_effort("map", scheme, "to write it out", 10 * MAX_CALLS):
         writer = _Writer(step_map, renaming, variables)
         functions = {key: getattr(writer, key)() for key in outputs}
     return Program(
@@ -129,7 +130,7 @@ def program_of(
 def _free_symbols(
     names: Sequence[str], reserved_names: set[str]
 ) -> dict[sympy.Symbol, sympy.Symbol]:
-    """Return the parameters under names that are free; a name that is taken gets a `_`."""
+    """Return the parameters with free names: `_` is appended to a name that is taken."""
     symbols = {}
     for name in names:
         free = name
@@ -141,7 +142,7 @@ def _free_symbols(
 
 @dataclass(frozen=True)
 class _Part:
-    """The formulas z' of a part, ∂z'/∂z row by row, and its det − 1."""
+    """The formulas z' of a part, its Jacobian ∂z'/∂z row by row, and its ΔJ."""
 
     formulas: tuple[sympy.Expr, ...]
     jacobian: tuple[sympy.Expr, ...]
@@ -156,7 +157,7 @@ class _Part:
 
 
 def _in_ring(part: ClosedForm) -> _Part:
-    """Return a part in closed form, its formulas by powers of h."""
+    """Return a part given in closed form, its formulas grouped by powers of h."""
     ring, entries = part.ring, [x for row in part.jacobian for x in row]
     formulas, jacobian = (
         tuple(group_by_powers(ring, x) for x in y) for y in (part.elements, entries)
@@ -165,16 +166,14 @@ def _in_ring(part: ClosedForm) -> _Part:
 
 
 def _in_stages(step_map: StepMap) -> _Part:
-    """Return the part of a map whose stages are nested: their common subexpressions get names
-    later."""
+    """Return a map in nested stages as one part; common subexpressions get names later."""
     formulas, state = step_map.composed, list(map(symbol, step_map.hamiltonian.coordinates))
     size = len(state)
     if size > _MOST_COORDINATES:
         return _in_ring(step_map.flat)
     jacobian = tuple(x.diff(y) for x in formulas for y in state)
     entries = [x - int(k % (size + 1) == 0) for k, x in enumerate(jacobian)]
-    # det(1 + K) − 1 is expanded in symbols for K = J − 1, so that the 1 cancels before numbers are
-    # put in.
+    # det(1 + K) − 1 is expanded with symbols for the entries of K = J − 1: the 1 cancels exactly.
     slopes = sympy.Matrix(size, size, sympy.symbols(f"k:{size * size}"))
     change = sympy.expand((sympy.eye(size) + slopes).det(method="berkowitz") - 1)
     substitutions = dict(zip(slopes, entries, strict=True))
@@ -208,8 +207,10 @@ class _Writer:
     def _common(
         self, before: str, expressions: Sequence[sympy.Expr]
     ) -> tuple[Lines, list[sympy.Expr]]:
-        """Return names, which begin so, for subexpressions that occur more than once; and the
-        expressions with them."""
+        """Return the lines that name repeated subexpressions, and the expressions in these names.
+
+        `before`: the beginning of the names.
+        """
         exact = [self.constants.extract(x) for x in expressions]
         names = (sympy.Symbol(self._free(f"{before}{k}"), real=True) for k in range(10**6))
         common, reduced = sympy.cse(exact, names, order="none")
@@ -226,8 +227,7 @@ class _Writer:
     def _move_state(
         self, k: int, pair: Sequence[sympy.Expr], more: Sequence[sympy.Expr]
     ) -> tuple[Lines, list[sympy.Expr]]:
-        """Return the lines that set p and q to those after part k; `more` are values at the point
-        before."""
+        """Return the lines that move the state by part k, and the values of `more` before it."""
         common, reduced = self._common(f"x{k}_", [*pair, *more])
         size = len(self.state)
         value_lines, after = self._name_values(f"w{k}_", reduced[size:])
@@ -240,7 +240,7 @@ class _Writer:
         return (*common, *value_lines, *zip(names, reduced[:size], strict=True), *ends), after
 
     def _can_assign_in_turn(self, changes: Sequence[tuple[str, sympy.Expr]]) -> bool:
-        """Return True if no new value is read by an assignment after it."""
+        """Return True if no assignment reads a value that an earlier one has changed."""
         names: set[str] = set()
         for name, x in changes:
             if names & {s.name for s in x.free_symbols}:
@@ -251,7 +251,7 @@ class _Writer:
     def _name_values(
         self, before: str, values: Sequence[sympy.Expr]
     ) -> tuple[Lines, list[sympy.Expr]]:
-        """Return names for values that change with p and q; numbers stay as they are."""
+        """Return lines that name values, and the names; a number stays as it is."""
         lines, results = [], []
         for n, x in enumerate(values):
             if not x.is_number:
@@ -283,8 +283,7 @@ class _Writer:
         return (*lines, *zip(self.outputs["jacobian"], total, strict=True))
 
     def delta_j(self) -> Lines:
-        """Return the lines of ΔJ: 0 where that is proved, in closed form where there is one, else
-        by the parts."""
+        """Return the lines of ΔJ: 0 if proved, else its closed form, else from the parts."""
         if self.map.has_closed_form:
             lines, (total,) = self._common("x", [self.map.delta_j.xreplace(self.renaming)])
             return (*lines, ("delta_j", total))

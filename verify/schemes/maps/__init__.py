@@ -1,9 +1,9 @@
-"""Step maps, from the coefficients that a scheme has for every H, in any number of degrees.
+"""Step maps from a scheme's coefficients, in any number of degrees of freedom.
 
-A file of `kinds/` has `build(coefficients, hamiltonian, name)`, the map that a kind of coefficients
-makes, `name` being the scheme's; and `conditions(coefficients, degrees)`, which suffice for a
-symplectic one, for every H. Adding a kind is adding one file; its coefficients have its name as
-their `kind`.
+A file of `kinds/` is for one kind of coefficients, whose `kind` is the file's name. It defines
+`build(coefficients, hamiltonian, name)`, which returns the step map of the scheme `name`, and
+`conditions(coefficients, degrees)`, conditions that suffice for a symplectic map, for every H. To
+add a kind is to add one file.
 """
 
 from typing import Any
@@ -15,8 +15,10 @@ _FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path_
 
 
 def kind_of(every_h: object, name: str) -> Any:
-    """Return the module of `kinds/` for these coefficients of a scheme of that name; InputError
-    where there is none."""
+    """Return the module of `kinds/` for the coefficients `every_h` of the scheme `name`.
+
+    Raises InputError if there is none.
+    """
     kind = getattr(every_h, "kind", "")
     if kind not in _FILES:
         raise InputError("scheme", name, "is known in one degree of freedom only")

@@ -1,8 +1,8 @@
-"""A step in balls, with its derivatives by z: the operations of a scheme's step, evaluated in
-balls.
+"""A step and its Jacobian in balls: the operations of a scheme's step, evaluated in ball
+arithmetic.
 
-A value is a change of one coordinate and its gradient. It shares nothing with a kernel's program,
-and uses no Jacobian that is written out: the derivatives of the slopes are enclosed at each stage.
+A value is the change of one coordinate with its gradient by z. Derivatives are propagated from
+stage to stage, so that the map's Jacobian is never written out. No code is shared with the kernels.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,7 +23,7 @@ from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
 
 class UndefinedError(ArithmeticError):
-    """A step may not be defined over a box, or solves equations."""
+    """A step may be undefined somewhere in a box, or it solves equations."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,10 @@ class Change:
 
 
 class BallAlgebra(StepAlgebra[Change]):
-    """The step algebra at a point of balls, with t where H depends on it; in flint's present
-    precision."""
+    """The step algebra over a box, given as balls of z, and of t if H depends on it.
+
+    It works at flint's present precision.
+    """
 
     def __init__(self, field: CanonicalField, point: Mapping[str, Ball], h: Ball) -> None:
         self.field, self.point, self.h = field, point, h
@@ -58,7 +60,7 @@ class BallAlgebra(StepAlgebra[Change]):
         changes, power = [self.nothing] * self.size, flint.arb(1)
         for n in range(1, eta + 1):
             power *= self.h
-            terms = self._evaluate(_of_flow(self.field, n), self.point)
+            terms = self._evaluate(_flow_enclosures(self.field, n), self.point)
             changes = [x.plus(power, y) for x, y in zip(changes, terms, strict=True)]
         return changes
 
@@ -70,7 +72,7 @@ class BallAlgebra(StepAlgebra[Change]):
             box[name] = box[name] + change.value
         if self.field.timed:
             box["t"] = box["t"] + self._number(clock) * self.h
-        elements = self._evaluate(_of_slopes(self.field, tuple(places)), box)
+        elements = self._evaluate(_slope_enclosures(self.field, tuple(places)), box)
         return [Change(x.value, self._chain(x.gradient, changes)) for x in elements]
 
     def move(self, change: Change, weights: Sequence[Number], slopes: Sequence[Change]) -> Change:
@@ -84,11 +86,11 @@ class BallAlgebra(StepAlgebra[Change]):
     def solve(
         self, count: int, right: Callable[[StepAlgebra[Change], Sequence[Change]], list[Change]]
     ) -> list[Change]:
-        raise UndefinedError  # equations are not solved here
+        raise UndefinedError  # balls solve no equations
 
     def from_closed_form(self, closed_form: ClosedForm) -> list[Change]:
         """Return z' − z of a map that is written out."""
-        return self._evaluate(_of_closed_form(closed_form), {**self.point, "h": self.h})
+        return self._evaluate(_closed_form_enclosures(closed_form), {**self.point, "h": self.h})
 
     def _number(self, x: Number) -> Ball:
         if isinstance(x, Fraction):
@@ -99,7 +101,7 @@ class BallAlgebra(StepAlgebra[Change]):
         return ball
 
     def _evaluate(self, enclosures: Enclosures, box: Mapping[str, Ball]) -> list[Change]:
-        """Return elements with their gradients; UndefinedError where one may not be defined."""
+        """Return elements with their gradients; UndefinedError if one may be undefined."""
         balls = enclosures.enclose_over(box)
         if balls is None or not all(x.is_finite() for x in balls):
             raise UndefinedError
@@ -116,17 +118,17 @@ class BallAlgebra(StepAlgebra[Change]):
 
 
 @lru_cache(maxsize=64)
-def _of_slopes(field: CanonicalField, places: tuple[int, ...]) -> Enclosures:
+def _slope_enclosures(field: CanonicalField, places: tuple[int, ...]) -> Enclosures:
     return _with_gradients(field, [field.slopes[k] for k in places])
 
 
 @lru_cache(maxsize=64)
-def _of_flow(field: CanonicalField, n: int) -> Enclosures:
+def _flow_enclosures(field: CanonicalField, n: int) -> Enclosures:
     return _with_gradients(field, field.term(n))
 
 
 @lru_cache(maxsize=64)
-def _of_closed_form(closed_form: ClosedForm) -> Enclosures:
+def _closed_form_enclosures(closed_form: ClosedForm) -> Enclosures:
     return _with_gradients(closed_form.field, closed_form.increments)
 
 
@@ -141,20 +143,24 @@ def step_in_balls(
     point: Mapping[str, Ball],
     h: Ball,
 ) -> tuple[list[Ball], flint.arb_mat]:
-    """Return (z' − z, K = J − 1) over a box, in flint's present precision; UndefinedError where the
-    step may not be defined, or solves equations."""
+    """Return z' − z and K = J − 1 over a box, at flint's present precision.
+
+    Raises UndefinedError if the step may be undefined there, or solves equations.
+    """
     algebra = BallAlgebra(field, point, h)
     changes = algebra.from_closed_form(step) if isinstance(step, ClosedForm) else step(algebra)
     return [x.value for x in changes], flint.arb_mat([list(x.gradient) for x in changes])
 
 
-_POINTS, _BITS = 8, 128
+_POINTS, _BITS = 8, 128  # tested points, and their precision
 Point = Mapping[str, Ball]
 
 
 def may_preserve(field: CanonicalField, step: Step) -> bool:
-    """Return True if no tested point shows that S = JᵀΩJ − Ω is not 0; most steps show one at
-    once."""
+    """Return False if S = JᵀΩJ − Ω is shown not to be 0 at a tested point, else True.
+
+    Most steps that are not symplectic are refuted at the first point.
+    """
     n = len(field.names) // 2
     omega = flint.arb_mat(2 * n, 2 * n)
     for i in range(n):
@@ -170,7 +176,7 @@ def may_preserve(field: CanonicalField, step: Step) -> bool:
 
 
 def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
-    """Return True if no tested point shows that H changes in a step."""
+    """Return False if a step is shown to change H at a tested point, else True."""
     energy = Enclosures(field.ring, [field.energy])
 
     def gap(point: Point, changes: Sequence[Ball], _: flint.arb_mat) -> Sequence[Ball]:
@@ -182,7 +188,7 @@ def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
 
 
 def may_be_uniform(field: CanonicalField, step: Step | ClosedForm) -> bool:
-    """Return True if no two tested points show different det J."""
+    """Return False if det J is shown to differ between tested points, else True."""
     first: list[Ball] = []
 
     def gap(_: Point, __: Sequence[Ball], slopes: flint.arb_mat) -> Sequence[Ball]:
@@ -199,10 +205,10 @@ def _may_vanish(
     step: Step | ClosedForm,
     gap: Callable[[Point, Sequence[Ball], flint.arb_mat], Sequence[Ball]],
 ) -> bool:
-    """Return True if at no tested point one of these balls, computed from a step, excludes 0."""
+    """Return False if a ball of `gap` excludes 0 at a tested point, else True."""
     names, h = [name for name in field.ring.variables if name != "h"], Fraction(1, 16)
     with working_precision(_BITS):
-        # h is a fixed 1/16: a defect that vanishes identically does so for every h.
+        # One h is enough: a defect that is not 0 at h = 1/16 is not identically 0.
         for numbers in islice(points(names), _POINTS):
             point = {name: rational_ball(x) for name, x in numbers.items()}
             try:

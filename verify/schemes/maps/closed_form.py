@@ -1,7 +1,7 @@
 """A map z → z' that is written out: its Jacobian, S = JᵀΩJ − Ω and det J − 1 in closed form.
 
-S is computed coefficient by coefficient of h where the map is a polynomial in h, so that nothing
-cancels in it; in the plane it is ΔJ dp∧dq.
+If the map is a polynomial in h, S is computed one power of h after the other, so that nothing
+cancels between powers; in the plane S is ΔJ dp∧dq.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import TwoForm, wedge
 
-_MOST_PRODUCTS = 40_000  # in all entries of S of several degrees, beyond which it is left as it is
-_MOST_TERMS = 300  # of J's entries together, beyond which det J is not multiplied out
+_MOST_PRODUCTS = 40_000  # limit of the terms of S that are multiplied out, in several degrees
+_MOST_JACOBIAN_TERMS = 300  # limit of the terms of J, all entries, for multiplying out det J
 
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """The map z' as `elements` of the ring of H's `field`, one for each of its names."""
+    """The map z' as `elements` of the ring of H's `field`, one for each coordinate."""
 
     field: CanonicalField
     elements: tuple[Poly, ...]
@@ -48,7 +48,7 @@ class ClosedForm:
 
     @cached_property
     def degree(self) -> int | None:
-        """The degree in h, of a map that is a polynomial in it; else None."""
+        """The degree in h if the map is a polynomial in h; else None."""
         if h_inside(self.ring, *self.elements):
             return None
         return max((max(powers, default=0) for powers in self._powers), default=0)
@@ -59,8 +59,10 @@ class ClosedForm:
 
     @cached_property
     def flow_up_to(self) -> int:
-        """The power of h up to which the elements are the exact flow's own terms, to the letter; −1
-        where they are no polynomials in h."""
+        """The power of h up to which the terms are literally those of the exact flow.
+
+        −1 if the elements are no polynomials in h.
+        """
         for n in range((-1 if self.degree is None else self.degree) + 1):
             coefficients = (powers.get(n, self.ring.zero) for powers in self._powers)
             if any(x != y for x, y in zip(coefficients, self.field.term(n), strict=True)):
@@ -68,7 +70,7 @@ class ClosedForm:
         return -1 if self.degree is None else self.degree
 
     def series(self, most: int) -> State | None:
-        """Return z' up to h^most; None where it is no polynomial in h."""
+        """Return z' up to h^most; None if it is no polynomial in h."""
         if self.degree is None:
             return None
         ring = self.ring
@@ -77,12 +79,12 @@ class ClosedForm:
 
     @property
     def length(self) -> int:
-        """The number of terms in all its parts."""
+        """The number of terms in all elements."""
         return terms_of(self.ring, self.elements)
 
     @property
     def products(self) -> int:
-        """A bound on the number of terms that S has when it is written out."""
+        """A bound of the number of terms of S when it is multiplied out."""
         bound, names = self.ring.terms_of_diff, self.field.names
         rows = [[bound(x, name) for name in names] for x in self.increments]
         n = len(rows) // 2
@@ -95,8 +97,10 @@ class ClosedForm:
 
     @cached_property
     def forms(self) -> Mapping[int, TwoForm] | None:
-        """The coefficients of S that are not 0, by their power of h; S itself by 0 where the map is
-        no polynomial in h. None where there is too much to multiply."""
+        """The coefficients of S that are not 0, by their power of h; None if S is too long.
+
+        If the map is no polynomial in h, S itself stands under the power 0.
+        """
         if self.field.degrees > 1 and self.products > _MOST_PRODUCTS:
             return None
         if self.degree is None:
@@ -111,19 +115,19 @@ class ClosedForm:
 
     @cached_property
     def defect(self) -> TwoForm:
-        """The form S, h being one more variable of its ring."""
+        """The form S, with h as one more variable of its ring."""
         return defect_of(self.ring, self.field.names, self.elements)
 
     @cached_property
     def symplectic(self) -> bool:
-        """True where S is shown to be the zero form."""
+        """True if S is shown to be the zero form."""
         if self.forms is None:
             return False
         entries = [x for form in self.forms.values() for x in form.entries.values()]
         return all(self.ring.vanishes(x) is True for x in entries)
 
     def form(self, power: int) -> TwoForm:
-        """Return the coefficient of h^power in S, of a map that is a polynomial in h."""
+        """Return the coefficient of h^power in S, for a map that is a polynomial in h."""
         empty = TwoForm(self.ring, self.field.names)
         return (self.forms or {}).get(power, empty)
 
@@ -137,8 +141,7 @@ class ClosedForm:
         return sum(parts, self.ring.zero)
 
     def preserves_volume(self) -> bool | None:
-        """Return True if det J ≡ 1; None where that is not decided, or there is too much to
-        multiply."""
+        """Return True if det J ≡ 1; None if that is not decided or det J is too long."""
         return preserves_volume(self.ring, self.jacobian)
 
 
@@ -167,8 +170,10 @@ def unfactored_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
 
 
 def group_by_powers(ring: Ring, x: Poly) -> sympy.Expr:
-    """Return x as an expression: by powers of h, each coefficient factored, where h stands
-    outside."""
+    """Return x as an expression, by powers of h with factored coefficients.
+
+    If h stands inside a generator, x is factored as a whole.
+    """
     if h_inside(ring, x):
         return ring.as_product(x)
     return factored_by_powers(ring, ring.powers(x, "h"))
@@ -180,11 +185,11 @@ def factored_by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Ex
     return sympy.Add(*(h**n * ring.as_product(c) for n, c in sorted(coefficients.items())))
 
 
-# -- of any map, with an H or without --------------------------------------------------------------
+# -- for any map, with an H or without -------------------------------------------------------------
 
 
 def defect_of(ring: Ring, names: tuple[str, ...], elements: Sequence[Poly]) -> TwoForm:
-    """Return S of z ↦ `elements`, z being the variables of these names."""
+    """Return S of z ↦ `elements`, where z are the variables `names`."""
     n, rows = len(names) // 2, [[ring.diff(x, name) for name in names] for x in elements]
 
     def entry(a: int, b: int) -> Poly:
@@ -197,9 +202,8 @@ def defect_of(ring: Ring, names: tuple[str, ...], elements: Sequence[Poly]) -> T
 
 
 def preserves_volume(ring: Ring, jacobian: Sequence[Sequence[Poly]]) -> bool | None:
-    """Return True if the determinant is 1; None where that is not decided, or there is too much to
-    multiply."""
-    if sum(len(x) for row in jacobian for x in row) > _MOST_TERMS:
+    """Return True if the determinant is 1; None if that is not decided or it is too long."""
+    if sum(len(x) for row in jacobian for x in row) > _MOST_JACOBIAN_TERMS:
         return None
     return ring.vanishes(determinant(ring, jacobian) - 1)
 
@@ -212,8 +216,8 @@ def determinant(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> Poly:
     """
     size, entries = len(matrix), [list(row) for row in matrix]
     product = entries
-    # Bird's algorithm: F_(k+1) = μ(F_k) A, where μ keeps the upper part and puts negative partial
-    # traces on the diagonal.
+    # Bird's algorithm: F_(k+1) = μ(F_k) A. μ keeps the part above the diagonal; in place of the
+    # diagonal it puts the negative sums of the diagonal entries below.
     for _ in range(size - 1):
         below = ring.zero
         upper = [[ring.zero] * size for _ in range(size)]

@@ -1,7 +1,7 @@
-"""A step read as closed forms: in the ring where H is a polynomial, else as expressions.
+"""A step read as a closed form: in a ring if H is a polynomial, else as expressions.
 
-A composition of stages and shears may double in size with every stage when it is written out, so
-the attempt ends beyond a size limit.
+A composition may double in length with every stage when it is written out, so that the attempt ends
+at a size limit.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class TooLongError(Exception):
-    """A closed form has more terms than allowed, or there is none."""
+    """A closed form is longer than allowed, or there is none."""
 
 
 class _Writing:
@@ -77,14 +77,14 @@ class _Counting(_Writing, StepAlgebra[None]):
 
 
 def terms_in(field: CanonicalField, step: Step) -> int:
-    """Return the number of terms in a step: in its slopes, and in its sums."""
+    """Return the number of terms in the slopes and sums of a step, not written out."""
     counting = _Counting(field)
     step(counting)
     return counting.terms
 
 
 class RingAlgebra(_Writing, StepAlgebra[Poly]):
-    """Changes of z as elements of the field's ring, of up to `most` terms; for a polynomial H."""
+    """Changes of z as elements of the field's ring, for a polynomial H; `most` limits terms."""
 
     def __init__(self, field: CanonicalField, most: int) -> None:
         super().__init__(field)
@@ -139,7 +139,7 @@ class Written:
 
 
 class FormulaAlgebra(_Writing, StepAlgebra[Written]):
-    """Changes of z as expressions, in which the coordinates occur up to `most` times."""
+    """Changes of z as expressions; `most` limits the occurrences of coordinates in each."""
 
     def __init__(self, field: CanonicalField, most: int | None = None) -> None:
         super().__init__(field)
@@ -190,7 +190,7 @@ class FormulaAlgebra(_Writing, StepAlgebra[Written]):
         return Written(x.expression + exact * y.expression, x.count + y.count)
 
     def _substitute(self, x: Poly, point: Mapping[str, Written]) -> Written:
-        """Return the element where each coordinate is moved by its change."""
+        """Return the element with each coordinate moved by its change in `point`."""
         expression = self.ring.expression(x)
         nodes = list(sympy.preorder_traversal(expression)) if self.most is not None else []
         # Substitution multiplies sizes: the count is known before the expression is built.
@@ -204,15 +204,14 @@ class FormulaAlgebra(_Writing, StepAlgebra[Written]):
 
 
 def is_polynomial(field: CanonicalField) -> bool:
-    """Return True if no coordinate, and no t, occurs in a generator of f."""
+    """Return True if f is a polynomial in z and t: neither occurs in a generator."""
     inside = arguments(field.ring, *field.slopes)
     moving = [*field.names, *("t" * field.timed)]
     return not any(field.ring.depends(a, name) for a in inside for name in moving)
 
 
 def expressions_of(field: CanonicalField, step: Step, most: int | None = None) -> list[sympy.Expr]:
-    """Return z' as expressions, in which the coordinates occur up to `most` times; else
-    TooLongError."""
+    """Return z' as expressions; TooLongError if coordinates occur more than `most` times."""
     changes = step(FormulaAlgebra(field, most))
     if most is not None and sum(1 + x.count for x in changes) > most:
         raise TooLongError
@@ -221,6 +220,6 @@ def expressions_of(field: CanonicalField, step: Step, most: int | None = None) -
 
 
 def elements_of(field: CanonicalField, step: Step, most: int) -> tuple[Poly, ...]:
-    """Return z' of a polynomial H in the field's ring; TooLongError beyond so many terms."""
+    """Return z' of a polynomial H in its field's ring; TooLongError beyond `most` terms."""
     changes = step(RingAlgebra(field, most))
     return tuple(x + y for x, y in zip(field.start, changes, strict=True))

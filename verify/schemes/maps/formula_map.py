@@ -23,8 +23,8 @@ def step_map_from_formulas(
 ) -> StepMap:
     """Return the map that has a formula for each coordinate, by its name with `_next`.
 
-    A formula may use the coordinates, h, H's parameters, t where H has it, and what was defined
-    before it, and the names of `numbers`. Raises InputError.
+    A formula may use the coordinates, h, the parameters of H, t if H depends on it, the names in
+    `numbers`, and the names of earlier formulas. Raises InputError.
     """
     coordinates = hamiltonian.coordinates
     if sorted(formulas) != sorted(name + _NEXT for name in coordinates):
@@ -37,8 +37,7 @@ def step_map_from_formulas(
     domain = FormulaDomain.from_requirements(())
     for name, formula in formulas.items():
         expression, requirements = read(formula, names, source=name)
-        # Formulas may use those before them, so nested texts can grow exponentially when
-        # substituted.
+        # Formulas may use earlier ones, so that substitution can grow exponentially.
         with limit_effort(name, formula, "to put what stands before into it"):
             domain &= (
                 FormulaDomain.from_requirements(requirements)
@@ -66,8 +65,11 @@ def _other_coordinates(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) ->
 def map_from_expressions(
     hamiltonian: Hamiltonian, exact: Sequence[sympy.Expr], domain: FormulaDomain | None = None
 ) -> StepMap:
-    """Return the map of z' as expressions in z, h, t where H has it, and parameters; `domain`:
-    where more than these expressions is defined. InputError where they are not smooth."""
+    """Return the map of z' as expressions in z, h, the parameters, and t if H depends on it.
+
+    `domain`: a domain besides that of these expressions. Raises InputError as `canonical_field`
+    does.
+    """
     field, elements = canonical_field(hamiltonian, *exact)
     smooth = FormulaDomain.from_requirements(
         r for x in exact for r in requirements_of_expression(x, smooth=True)

@@ -20,7 +20,7 @@ from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 @dataclass(frozen=True)
 class _Shear:
-    """A shear: the places move by h `size` f, f taken at t + `clock` h."""
+    """A shear: the coordinates `places` move by h `size` f, with f at the time t + `clock` h."""
 
     size: Poly
     clock: Poly
@@ -58,8 +58,10 @@ class _ShearRecorder(StepAlgebra[None]):
 
 
 def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
-    """Return the maps that it is made of, in their order, in the ring of one field: its shears, or
-    itself where it is defined in closed form; None for others."""
+    """Return the maps that a step is composed of, in their order, over one field.
+
+    They are its shears, or the map itself if it is defined in closed form; None for other maps.
+    """
     if step_map.formulas is not None:
         return (step_map.flat,)
     if step_map.step is None or step_map.implicit:
@@ -81,8 +83,10 @@ def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
 
 
 def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField, Sequence[Poly]]:
-    """Return by how much each place moves, one shear after the other, with the field in their ring;
-    in time by H's derivative at the shear's own."""
+    """Return the increments of all shears, one after the other, with a field in their ring.
+
+    If H depends on time, each shear takes f at its own time.
+    """
     field, exact = step_map.field, step_map.hamiltonian
     if not field.timed:
         return field, [x for shear in shears for x in field.shears(shear.size, shear.places)]

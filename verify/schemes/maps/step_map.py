@@ -2,7 +2,7 @@
 
 z = (p1 … pn, q1 … qn); n = 1 is the plane, z = (p, q). The step is written once, in the operations
 of `verify.schemes.steps.step_algebra`, and read as a series in h, as a closed form, in balls, or as
-a kernel's program; a user's map is defined in closed form. Its defect is S = JᵀΩJ − Ω, which in the
+a kernel's program; a user's map is given in closed form. Its defect is S = JᵀΩJ − Ω, which in the
 plane is ΔJ dp∧dq, ΔJ = det J − 1 (Eq. 14).
 """
 
@@ -16,7 +16,7 @@ from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly, Ring
-from verify.effort import MOST, limit_effort
+from verify.effort import MAX_CALLS, limit_effort
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -40,30 +40,29 @@ from verify.schemes.maps.closed_form_algebras import (
 from verify.schemes.steps.step_algebra import State, Step, series_of
 from verify.structures import Structure
 
-# Of the largest composition that is written in closed form: terms in its parts, its own, those of
-# S, and how often coordinates occur in it.
+# Limits of a composition in closed form: terms in its parts, terms written out, terms of S, and
+# occurrences of coordinates.
 _MOST_IN_PARTS, _MOST_COMPOSED, _MOST_OF_DEFECT, _MOST_WRITTEN = 150, 150, 5000, 5000
-_MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
+_MOST_FACTORED_TERMS = 1000  # a ΔJ of more terms is printed without factoring
 AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 
 
 def solvable(structure: Structure) -> str:
-    """Return the assumption on an implicit scheme, for one H and for every one."""
+    """Return the assumption under which an implicit scheme has a smooth map, as text."""
     return f"the stages have a solution that depends smoothly on {structure.state}"
 
 
 @dataclass(frozen=True, eq=False)
 class StepMap:
-    """A one-step map of one Hamiltonian. It equals itself alone, since to compare maps takes long.
+    """A one-step map of one Hamiltonian; it is equal only to itself, as comparing maps is slow.
 
-    `step`: the step in a step algebra; or `formulas`: z' in the field's ring, of a map that is
-    defined so. `conditions`: where all of them hold the map is symplectic, for every H that the
-    scheme takes. `known_order()`: up to which power of h it agrees with the exact flow and no
-    further, where that is known without the series; else None. `formula_domain`: where the scheme's
-    own formulas are defined. `implicit`: equations are solved for it. `keeps_quadratic`: where the
-    conditions hold it keeps every quadratic first integral of the motion too. `expand`: z' up to
-    h^most over a ring that comes with it, of a map whose steps are opaque.
+    `step`: the step in a step algebra; or `formulas`: z' in the field's ring. `conditions`: if all
+    hold, the map is symplectic, for every H that the scheme takes. `known_order()`: the order of
+    the map for this H if that is known without its series, else None. `formula_domain`: the domain
+    of the scheme's own formulas. `implicit`: True if the step solves equations. `keeps_quadratic`:
+    True if the conditions also imply that quadratic first integrals are kept. `expand(most)`: z' up
+    to h^most with the field in its ring, for a map that is known only by its series.
     """
 
     hamiltonian: Hamiltonian
@@ -81,7 +80,7 @@ class StepMap:
         return f"StepMap of {self.hamiltonian!r}"
 
     def _repr_latex_(self) -> str:
-        """Return z' in closed form, where that is short enough."""
+        """Return z' in closed form, if that is short enough."""
         names = self.hamiltonian.coordinates
         lines = [rf"{name}' &= \text{{(not written in closed form)}}" for name in names]
         if self.closed is not None:
@@ -97,7 +96,7 @@ class StepMap:
 
     @property
     def structure(self) -> Structure:
-        """The structure that a canonical step of it keeps."""
+        """The structure that the exact flow keeps: area in the plane, else the symplectic form."""
         return self.hamiltonian.structure
 
     @property
@@ -107,13 +106,12 @@ class StepMap:
 
     @property
     def in_stages(self) -> bool:
-        """True if it uses H at other points than z, and its closed form may be large."""
+        """True if the step evaluates H at other points than z."""
         return self.formulas is None or self.expand is not None
 
     @cached_property
     def domain(self) -> FormulaDomain:
-        """The domain where the map is smooth: where H is, and is so at the stages, if there are
-        any."""
+        """The domain where the map is smooth: H must be smooth at z and at the stages."""
         words = [solvable(self.structure)] if self.implicit else []
         if self.in_stages and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
@@ -125,14 +123,13 @@ class StepMap:
 
     @property
     def flow_up_to(self) -> int:
-        """The power of h up to which it is made of the exact flow's own terms; −1 where that is not
-        seen."""
+        """The power of h up to which the formulas are the exact flow's terms; −1 if not seen."""
         return self._written_form.flow_up_to if self._written_form and self.expand is None else -1
 
     def series(self, most: int) -> tuple[CanonicalField, State] | None:
         """Return z' up to h^most, with the field in the ring of the coefficients.
 
-        None of a map that has none but its closed form's, which is no polynomial in h.
+        None for a map that has only formulas, which are no polynomials in h.
         """
         if self.expand is not None:
             return self.expand(most)
@@ -149,7 +146,7 @@ class StepMap:
 
     @cached_property
     def closed(self) -> ClosedForm | None:
-        """The map z' written out; None where it is defined by equations, or too long."""
+        """The map z' written out; None if it is defined by equations or too long."""
         if self._written_form is not None or self.step is None or self.implicit:
             return self._written_form
         if self.terms > _MOST_IN_PARTS:
@@ -168,7 +165,7 @@ class StepMap:
 
     @property
     def flat(self) -> ClosedForm:
-        """The map z' written out; LimitError where it is defined by equations, or too long."""
+        """The map z' written out; LimitError if it is defined by equations or too long."""
         if self.closed is None:
             formula = str(self.hamiltonian.expression)
             large = "its closed form, all substeps composed, is too large"
@@ -177,21 +174,20 @@ class StepMap:
 
     @cached_property
     def terms(self) -> int:
-        """The number of terms in the elements that it is made of."""
+        """The number of terms of the formulas, or of the step's slopes and sums."""
         if self._written_form is not None or self.step is None:
             return self._written_form.length if self._written_form else 0
         return terms_in(self.field, self.step)
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, ...]:
-        """The map z' as expressions, not simplified. Raises LimitError for a map that is defined by
-        equations, or takes too long."""
+        """The map z' as expressions, not simplified; LimitError if there are none or it is slow."""
         if self._written_form is not None:
             return tuple(self.ring.expression(x) for x in self._written_form.elements)
         formula = str(self.hamiltonian.expression)
         if self.implicit or self.step is None:
             raise LimitError("map", formula, _NOT_WRITTEN)
-        with limit_effort("map", formula, "to compose its parts", MOST // 4):
+        with limit_effort("map", formula, "to compose its parts", MAX_CALLS // 4):
             return tuple(expressions_of(self.field, self.step))
 
     @property
@@ -216,22 +212,22 @@ class StepMap:
 
     @property
     def symplectic_by_conditions(self) -> bool:
-        """True if it is symplectic by the conditions that its coefficients satisfy."""
+        """True if it is symplectic by the conditions on its coefficients."""
         return bool(self.conditions) and all(c.holds is True for c in self.conditions)
 
     @property
     def written_defect(self) -> ClosedForm | None:
-        """The closed form, of a map that is defined so, where S is not too long to be written."""
+        """The closed form of a map that is defined by formulas; None if S is too long."""
         written = self._written_form
         return written if written is not None and written.forms is not None else None
 
     @cached_property
     def preserves_area(self) -> bool:
-        """True where S, in the plane ΔJ, is shown to vanish."""
+        """True if S, in the plane ΔJ, is shown to vanish."""
         if self.symplectic_by_conditions:
             return True
         if self._written_form is None and self.step is not None:
-            # Balls refute most schemes at the first point; only the rest is worth a closed form.
+            # Balls refute most schemes at the first point; only the others need a closed form.
             if self.implicit or not may_preserve(self.field, self.step):
                 return False
             return self.closed is not None and self.closed.symplectic
@@ -239,8 +235,7 @@ class StepMap:
 
     @cached_property
     def uniform_delta_j(self) -> Poly | None:
-        """The defect ΔJ of a map in the plane, in the ring of its closed form, where it is shown to
-        depend on h and H's parameters alone; else None."""
+        """ΔJ in the plane, if it is shown to depend only on h and H's parameters; else None."""
         step = self.step or self._written_form
         if self.degrees > 1 or step is None or self.implicit:
             return None
@@ -251,7 +246,7 @@ class StepMap:
 
     @cached_property
     def conserves_energy(self) -> bool:
-        """True where H is shown to be the same after every step."""
+        """True if it is shown that no step changes H."""
         field, step = self.field, self.step or self._written_form
         if self.keeps_quadratic and self.symplectic_by_conditions and field.quadratic:
             return True
@@ -276,7 +271,7 @@ class StepMap:
 
     @cached_property
     def delta_j(self) -> sympy.Expr:
-        """ΔJ = det J − 1 (Eq. 14) in closed form; LimitError where that is too large."""
+        """ΔJ = det J − 1 (Eq. 14) in closed form; LimitError if that is too long."""
         if self.preserves_area:
             return sympy.S.Zero
         step = self.flat
@@ -290,12 +285,12 @@ class StepMap:
 
     @cached_property
     def delta_j_text(self) -> str | None:
-        """The formula of ΔJ as text; None where its closed form is too large."""
+        """The formula of ΔJ as text; None if the map has no closed form."""
         if not self.has_closed_form:
             return None
         # In n degrees of freedom entry (0, 1) of S is not ΔJ.
         if not self.preserves_area and self.flat.degree is not None and self.degrees == 1:
             coefficients = self._coefficients
-            if sum(map(len, coefficients.values())) > _MOST_FACTORED:
+            if sum(map(len, coefficients.values())) > _MOST_FACTORED_TERMS:
                 return unfactored_text(self.flat.ring, coefficients)
         return to_text(self.delta_j)

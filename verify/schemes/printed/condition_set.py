@@ -1,4 +1,4 @@
-"""The conditions on a table's entries, as polynomials that any numbers can be put into."""
+"""The conditions on a table's entries, as polynomials that can be evaluated at any numbers."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from verify.algebra.enclosure import enclose_defined
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.number_system import E
 
-BITS = 320  # of the balls in which all is decided
+BITS = 320  # the precision of the balls that decide about printed numbers
 
 
 class Equation(Protocol):
@@ -29,17 +29,17 @@ class Equation(Protocol):
 
 @dataclass(frozen=True)
 class NamedEquation:
-    """A condition that is known by its name alone."""
+    """A condition of which only the name and the order are known."""
 
     name: str
     order: int
 
 
 class Residuals(Protocol):
-    """The residuals, left side − right side, of every condition from the entries; `one` is the
-    ring's.
+    """The residuals, left side − right side, of every condition at given entries.
 
-    `bound`: with every sign plus, so that at |entries| it is a bound of all of them.
+    `one`: the number 1 of their kind. `bound`: every minus becomes a plus, so that at |entries| the
+    value is a bound of the residual.
     """
 
     def __call__(self, entries: Sequence[E], one: E, bound: bool = False) -> list[E]: ...
@@ -47,14 +47,18 @@ class Residuals(Protocol):
 
 @dataclass(frozen=True)
 class ConditionSet:
-    """Conditions on the entries of a table, which are known by their indices.
+    """Conditions on the entries of a table, referred to by their indices.
 
-    `entries`: polynomials in the numbers that are rounded. `residuals`: those of all `equations`,
-    in the same order. `held_by_form`: the number of further conditions that hold by the form of the
-    table alone. `error_weights`: the factor of each residual in an error constant, as 1/σ(t) of a
-    tree; none where all are 1. `entry_names`: for the search of an entry that alone is wrong; none
-    where none is searched. `select_residuals`: from indices to the residuals of those conditions
-    alone, where that takes less work than all of them.
+    - `entries`: polynomials in the rounded numbers.
+    - `residuals`: those of all `equations`, in the same order.
+    - `held_by_form`: the number of further conditions that hold by the form of the table.
+    - `error_weights`: the factor of each residual in an error constant, such as 1/σ(t) of a tree;
+      empty if all are 1.
+    - `entry_names`: the names of entries, for the search of a misprint; empty if there is no
+    search.
+    - `select_residuals`: from indices to the residuals of these conditions alone, if that takes
+    less
+      work than all of them.
     """
 
     entries: tuple[sympy.Expr, ...]
@@ -118,7 +122,7 @@ def prepend_conditions(first: ConditionSet, second: ConditionSet) -> ConditionSe
 
 @lru_cache(maxsize=4096)
 def ball_of(x: sympy.Expr) -> Ball:
-    """Return a constant, at flint's present precision, which is `BITS` wherever this is called."""
+    """Return a constant as a ball; flint's precision must be `BITS`, as the ball is cached."""
     if x.is_Rational:
         return flint.arb(flint.fmpq(int(x.p), int(x.q)))
     ring, (element,) = embed([x], ())
@@ -126,5 +130,5 @@ def ball_of(x: sympy.Expr) -> Ball:
 
 
 def size_of(x: sympy.Expr) -> Ball:
-    """Return the absolute value of a constant."""
+    """Return the absolute value of a constant as a ball."""
     return abs(ball_of(x))

@@ -1,12 +1,14 @@
 """The judgement of conditions by the digits of a printed table; see
 `verify.schemes.printed.neighbourhood`.
 
-- PROVED or REFUTED by exact algebra where no coefficient is rounded;
-- REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a
-  residual is larger than 10⁻⁹;
-- ENCLOSED where exact ones are shown to exist there, or nearby where residuals are smaller: then
-  digits are wrong, which is judged separately;
-- MEASURED where neither is shown: the residuals are small.
+- PROVED or REFUTED by exact algebra if no coefficient is rounded; UNDECIDED if the algebra does not
+  decide;
+- REFUTED if no numbers within ten units of the last digits satisfy all conditions, and a residual
+is
+  larger than 10⁻⁹;
+- ENCLOSED if exact solutions are shown to exist within ten units, or farther away if residuals are
+  smaller: then digits are wrong, which is judged separately;
+- MEASURED if neither is shown: the residuals are small.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,25 +35,32 @@ from verify.schemes.printed.solutions import (
 )
 from verify.verdict import Verdict
 
-WITHIN = 10  # units of the last digit, for the order
-OF_DIGITS = Fraction(1, 10**9)  # a residual below it is of wrong digits, and not of a wrong method
-AS_PRINTED = Fraction(1, 10**30)  # units within which a solution counts as the printed numbers
-_AT_LEAST = Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED
+WITHIN = 10  # units of the last digit, within which exact numbers have the order
+OF_DIGITS = Fraction(1, 10**9)  # a smaller residual is that of wrong digits, not a wrong method
+AS_PRINTED = Fraction(1, 10**30)  # units; a nearer solution counts as the printed numbers
+_HOLDING_VERDICTS = Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED
 
 
 @dataclass(frozen=True)
 class Judgement:
     """The judgement of conditions of orders up to a claimed one.
 
-    `order`: the highest that is not excluded, of those tested. `failing`: the first condition that
-    excludes more, with its `residual` as printed; `lower_failure`: one of a lower order, with the
-    residual that wrong digits cause. `largest_residual`: of the claimed order's conditions.
-    `distance`: that of the printed number which is farthest from a solution's, in units of its last
-    digit, and `nearest` the solution's numbers; None where none is known. `shown_count`: the number
-    of conditions shown to hold there, of `checked`; the others do to 60 digits. `digits`: whether
-    all digits are right to one unit of the last; None where it is not known. `misprints`: the
-    numbers of which each alone explains it. `residuals`: those of all conditions as printed.
-    `numbers`: as they were read.
+    - `order`: the highest tested order that is not excluded.
+    - `checked`: the number of conditions up to the claimed order.
+    - `failing`: the first condition that excludes a higher order, with its `residual` at the
+    printed
+      numbers; `lower_failure`: one of a lower order, whose residual is that of wrong digits.
+    - `largest_residual`: the largest of the conditions up to the claimed order.
+    - `nearest`: the numbers of a solution, None if none is known; `distance`: the largest distance
+    of
+      a printed number from it, in units of the last digit.
+    - `shown_count`: how many of the `checked` conditions are shown to hold there; the others hold
+    to
+      60 digits.
+    - `digits`: True if all digits are right to one unit of the last; None if not known.
+    - `misprints`: the numbers each of which, changed alone, would explain the residuals.
+    - `residuals`: those of all conditions at the printed numbers.
+    - `numbers`: the printed numbers as they were read.
     """
 
     verdict: Verdict
@@ -71,19 +80,19 @@ class Judgement:
 
     @property
     def misprint(self) -> Misprint | None:
-        """The one number that alone explains it; None where none does, or each of several."""
+        """The one number that alone explains the residuals; None if none or several would."""
         return self.misprints[0] if len(self.misprints) == 1 else None
 
     @property
     def holds(self) -> bool:
-        """True if nothing speaks against the claim."""
-        return self.verdict in _AT_LEAST
+        """True if the verdict is PROVED, ENCLOSED or MEASURED."""
+        return self.verdict in _HOLDING_VERDICTS
 
 
 def judge(numbers: PrintedNumbers, conditions: ConditionSet, order: int) -> Judgement:
-    """Judge whether the conditions of orders 1 … `order` can hold; those beyond tell where it ends.
+    """Judge whether the conditions of orders 1 … `order` can hold.
 
-    Of the conditions of higher orders only the failing one counts.
+    Conditions of higher orders tell where the order ends.
     """
     if not conditions.equations:  # they hold by the form of the table
         return Judgement(Verdict.PROVED, order, conditions.held_by_form, numbers=numbers)
@@ -99,7 +108,7 @@ def _judge_rounded(near: Neighbourhood, order: int, numbers: PrintedNumbers) -> 
     equations, rows = near.conditions.equations, near.conditions.up_to(order)
     checked = len(rows) + near.conditions.held_by_form
     wrong = near.find_excluded(range(len(equations)), WITHIN)
-    # A residual that wrong last digits can cause does not end the order while a larger one does.
+    # If some residual is too large for wrong digits, the small ones do not end the order.
     plain = [k for k in wrong if abs(near.printed_residuals[k]) > OF_DIGITS]
     # The condition that ends the order, if any does.
     failing = min(plain or wrong, key=lambda k: equations[k].order, default=None)
@@ -137,7 +146,7 @@ def _with_nearest(
     """Add the nearest solution, if there is one, and its consequences for verdict and digits."""
     order_allowed, largest = judgement.order, judgement.largest_residual
     solution = nearest(near, rows)
-    if solution is None:  # some conditions alone may show wrong digits
+    if solution is None:  # a single condition may still exclude the digits
         digits = False if near.find_excluded(rows, slack) else None
         suspects = misprints(near, rows, single=True) if order_allowed < order else ()
         return replace(judgement, digits=digits, misprints=suspects)
@@ -146,7 +155,7 @@ def _with_nearest(
     suspects = misprints(near, rows, single=True) if wrong_digits and distance > WITHIN else ()
     digits = True if distance <= slack else False if wrong_digits else None
     if distance < AS_PRINTED and solution.shown_count < len(near.names):
-        digits = None  # any others of those that are free would do as well
+        digits = None  # the conditions leave some numbers free: they do not tell these digits
     is_close = order_allowed >= order and distance <= WITHIN
     verdict = Verdict.ENCLOSED if is_close or largest <= OF_DIGITS else Verdict.MEASURED
     if distance > WITHIN and largest > OF_DIGITS and near.has_no_solution(rows, WITHIN):
@@ -160,11 +169,11 @@ def _with_nearest(
     return replace(judgement, digits=digits, misprints=suspects)
 
 
-# -- exactly --------------------------------------------------------------------------------------
+# -- exact coefficients ---------------------------------------------------------------------------
 
 
 def _judge_exact(conditions: ConditionSet, order: int, tentative: bool) -> Judgement:
-    """Judge exact coefficients; `tentative`: without a search for a misprinted one."""
+    """Judge exact coefficients; `tentative`: True for no search of a misprint."""
     equations, residuals = conditions.equations, _exact_residuals(conditions)
     checked = len(conditions.up_to(order)) + conditions.held_by_form
     wrong = [k for k, x in enumerate(residuals) if x.is_zero is False]
@@ -188,7 +197,7 @@ def _judge_exact(conditions: ConditionSet, order: int, tentative: bool) -> Judge
 
 
 class _ExactResidual(NamedTuple):
-    """A residual: `is_zero` is None where that is not decided; `size` is its value, nearly."""
+    """A residual: `is_zero` is None if that is not decided; `size` is an approximate value."""
 
     is_zero: bool | None
     size: Fraction
@@ -201,10 +210,10 @@ def _exact_residuals(conditions: ConditionSet) -> list[_ExactResidual]:
         residuals = conditions.residuals(entries, flint.fmpq(1))
         return [_ExactResidual(x == 0, Fraction(int(x.p), int(x.q))) for x in residuals]
     ring, elements = embed(list(conditions.entries), ())
-    return [_in_ring(ring, x) for x in conditions.residuals(elements, ring.one)]
+    return [_exact_residual(ring, x) for x in conditions.residuals(elements, ring.one)]
 
 
-def _in_ring(ring: Ring, gap: Poly) -> _ExactResidual:
+def _exact_residual(ring: Ring, gap: Poly) -> _ExactResidual:
     gap = ring.reduce(gap)
     zero = ring.decide(gap).zero
     if zero:

@@ -8,8 +8,8 @@ from verify.errors import InputError
 from verify.schemes.printed.printed_numbers import PrintedNumbers, unit_of, unit_of_quotient
 
 MOST_ENTRIES = 2000
-_SHARED = 8  # decimals from which two numbers that are printed alike are taken for one
-# Within a formula: a long decimal, or a long quotient that nothing before it takes apart.
+_SHARED_DECIMALS = 8  # decimals; longer numbers with the same text share a name
+# A long decimal in a formula, or a long quotient that no neighbouring operator takes apart.
 _LONG_INSIDE = re.compile(
     r"(?<![\w.])\d*\.\d{8,}(?:[eE][+-]?\d+)?(?![\w.])|(?<![\w.*/^])\d{6,}/\d{7,40}(?![\w.^*])",
     re.ASCII,
@@ -18,10 +18,9 @@ _WRAPPED = re.compile(r"\([^()]*\)")
 
 
 class Naming:
-    """Gives names to decimals and long quotients that stand in a table without one: `entry` returns
-    the text to write there.
+    """Names for the decimals and long quotients of a table that have none.
 
-    Two that are printed alike to 8 decimals or more are one number.
+    Numbers of 8 decimals or more with the same text, up to the sign, are one number.
     """
 
     def __init__(self, numbers: Mapping[str, str]) -> None:
@@ -33,10 +32,13 @@ class Naming:
         self._names = {_size(text): name for name, text in numbers.items() if _is_long(text)}
 
     def entry(self, text: str, label: str) -> str:
-        """Return a formula in names; `label` is the name of a decimal that has none, and begins
-        that of long ones within a formula."""
+        """Return a table's text with names in place of its decimals.
+
+        `label`: the name for a text that is one decimal, and the beginning of the names for long
+        decimals within a formula.
+        """
         text = text.strip()
-        # Brackets around a whole entry say nothing, and would hide a plain decimal.
+        # Brackets around a whole entry would hide a plain decimal.
         while _WRAPPED.fullmatch(text):
             text = text[1:-1].strip()
         if not text:
@@ -62,7 +64,7 @@ class Naming:
         return name if same else f"(-{name})"
 
     def entries(self, texts: Iterable[str], label: str) -> tuple[str, ...]:
-        """Return the entries of several texts, counted from 1."""
+        """Return the entries of several texts, whose labels are numbered from 1."""
         return tuple(self.entry(x, f"{label}{_place(k)}") for k, x in enumerate(texts))
 
     @property
@@ -78,7 +80,7 @@ def _size(text: str) -> str:
 
 def _is_long(text: str) -> bool:
     unit = unit_of(text) or unit_of_quotient(text)
-    return unit is not None and unit <= 1 / 10**_SHARED
+    return unit is not None and unit <= 1 / 10**_SHARED_DECIMALS
 
 
 def _place(k: int) -> str:

@@ -1,7 +1,7 @@
-"""The order of a splitting whose sizes or times are printed with eight digits and more: that of
-exact ones near them, as `verify.schemes.printed.judgement` says.
+"""The order of a splitting with printed decimals of eight digits and more for sizes or times.
 
-Taken exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
+It is the order of exact numbers near them, as `verify.schemes.printed.judgement` judges it. Taken
+exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -26,12 +26,14 @@ from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 
 T = TypeVar("T")
 WrittenPart: TypeAlias = tuple[str, str, str | None]  # "kick" or "drift", its size, and its time
-_DIGITS = 12  # of a residual
+_RESIDUAL_DIGITS = 12
 
 
 def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
-    """Return the function that finds the order of kicks and drifts with these sizes and times, None
-    for the right time; None where they are exact."""
+    """Return the function that finds the order of exact parts near these; None if they are exact.
+
+    A time of None is the right one.
+    """
     naming = Naming({})
     try:
         sizes = naming.entries((size for _, size, _ in parts), "size")
@@ -46,20 +48,22 @@ def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
         for table in rounded_tables:
             parts_at(table, table.printed.values)
             times_at(table, table.printed.values)
-    except InputError:  # numbers beyond all coefficients, or no polynomials in the decimals
+    except InputError:  # numbers that are too large, or entries that are no polynomials in them
         return None
     return PrintedParts(rounded_tables) if rounded_tables else None
 
 
 @dataclass(frozen=True)
 class PrintedParts:
-    """The parts of a printed splitting; `tables`: one for each way in which the numbers may be
-    read, the first before others."""
+    """The parts of a printed splitting; `tables`: a table for each reading of its numbers.
+
+    Earlier readings are preferred.
+    """
 
     tables: tuple[PrintedTable, ...]
 
     def __call__(self, most: int) -> NearbyOrder | None:
-        """Return the highest order up to `most` that exact numbers near these have."""
+        """Return the highest order up to `most` of exact numbers near these; None if none."""
         if most not in self._by_limit:
             self._by_limit[most] = _highest(self.tables, most)
         return self._by_limit[most]
@@ -83,7 +87,7 @@ def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
 
 
 class HighestOrder(NamedTuple, Generic[T]):
-    """The highest order that numbers near the printed ones have, in a reading of these."""
+    """The highest order of exact numbers near the printed ones, in one reading of these."""
 
     order: int
     reading: T
@@ -93,13 +97,14 @@ class HighestOrder(NamedTuple, Generic[T]):
 def find_highest_order(
     readings: Sequence[T], most: int, judge: Callable[[T, int], Judgement]
 ) -> tuple[HighestOrder[T] | None, Judgement | None]:
-    """Return the highest order up to `most`, None where there is none; and the judgement of the
-    next one, None where that is beyond `most`."""
+    """Return the highest order up to `most`, or None, and the judgement of the next order.
+
+    That judgement is None if the next order is beyond `most`.
+    """
     highest: HighestOrder[T] | None = None
     for order in range(1, most + 1):
         candidates = [HighestOrder(order, reading, judge(reading, order)) for reading in readings]
-        # One reading of the numbers that fits is enough: which decimals are exact is a matter of
-        # reading.
+        # One reading that fits is enough, as the table does not say which decimals are exact.
         near = next((x for x in candidates if is_near(x.judgement)), None)
         if near is None:
             return highest, candidates[-1].judgement
@@ -108,30 +113,32 @@ def find_highest_order(
 
 
 def is_near(judgement: Judgement) -> bool:
-    """Return True if the residuals are caused by the digits alone."""
+    """Return True if the residuals are no larger than the digits explain."""
     distance = judgement.distance
     is_close = distance is not None and distance <= WITHIN
     return judgement.holds and (judgement.digits is not False or is_close)
 
 
 def _failing_condition(judgement: Judgement, order: int) -> Condition | None:
-    """Return the condition that fails, where it is of that order at most."""
+    """Return the failing condition; None if there is none up to that order."""
     failing = judgement.failing
     if failing is None or failing.order > order:
         return None
-    return Condition(failing.name, failing.order, decimal(judgement.residual, _DIGITS), False)
+    return Condition(
+        failing.name, failing.order, decimal(judgement.residual, _RESIDUAL_DIGITS), False
+    )
 
 
 def parts_at(
     table: PrintedTable, numbers: Mapping[str, Fraction]
 ) -> tuple[tuple[str, Fraction], ...]:
-    """Return the parts with these numbers, to some 90 digits."""
+    """Return the parts of a table at these numbers, to some 90 digits."""
     sizes = _values(table.sizes, table.printed.units, numbers)
     return tuple((kind, size) for (kind, _), size in zip(table.parts, sizes, strict=True))
 
 
 def times_at(table: PrintedTable, numbers: Mapping[str, Fraction]) -> tuple[Fraction | None, ...]:
-    """Return the times of the parts with these numbers, None for the right one."""
+    """Return the times of the parts at these numbers, None for the right time."""
     values = _values(table.entries[len(table.sizes) :], table.printed.units, numbers)
     times = dict(zip(table.judged_parts, values, strict=True))
     return tuple(times.get(k) for k in range(len(table.parts)))

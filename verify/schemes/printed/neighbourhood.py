@@ -1,15 +1,15 @@
-"""The residuals of a printed table near its numbers, and a test that none there can be 0.
+"""The residuals of a printed table near its numbers, and a test that no solution lies there.
 
 Coefficients that stand for algebraic numbers are printed as decimals: taken exactly they satisfy no
 condition at all. The question is whether numbers near the printed ones do.
 
-With F the residuals, J their derivative at the printed numbers x₀, and B a bound of the second
-derivatives (Cauchy's, by a majorant that has all signs plus), F(x) is F(x₀) + J (x − x₀) up to B |x
-− x₀|²/2, the norm being the sum. Where some combination of residuals is enclosed away from 0 over
-the whole box, no numbers in it satisfy them. That some do is shown in
-`verify.schemes.printed.solutions`.
+Let F be the residuals, J their derivative at the printed numbers x₀, and B a bound of the second
+derivatives (by Cauchy's estimate, from a majorant with all signs plus). F(x) is F(x₀) + J (x − x₀)
+up to B |x − x₀|²/2, in the norm of the sum. If some combination of residuals is enclosed away from
+0 over a whole box, no numbers in it satisfy the conditions. `verify.schemes.printed.solutions`
+shows that some numbers do.
 
-J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
+J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All numbers are balls.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,11 +24,12 @@ from verify.arithmetic.flint_precision import length_of_series
 from verify.schemes.printed.condition_set import ConditionSet, ball_of, size_of
 from verify.schemes.printed.printed_numbers import entries_at
 
-_STEP = 160  # the difference quotient's, as a power of 1/2
-RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound
-# A condition depends on others where the part of its derivative orthogonal to theirs is below this.
-_DEPENDENT = 1e-10, 1e-5
-Slopes = Mapping[int, Sequence[Ball]]  # of a condition's residual, by the numbers' places
+_STEP_EXPONENT = 160  # the step of difference quotients is 2^−160
+RADIUS = Fraction(1, 8)  # the radius of the polydisc in Cauchy's estimate
+# A condition counts as dependent on others if its normed derivative has a smaller part orthogonal
+# to theirs.
+_DEPENDENCE_THRESHOLDS = 1e-10, 1e-5
+Slopes = Mapping[int, Sequence[Ball]]  # by condition, the derivatives of its residual by number
 
 
 class RoundedNumbers(Protocol):
@@ -46,8 +47,7 @@ class RoundedNumbers(Protocol):
 
 @dataclass(frozen=True)
 class AnyNumbers:
-    """Numbers that no table has printed so: changed ones, or exact ones of which any may be
-    wrong."""
+    """Numbers that no table prints: changed ones, or exact ones that may be misprints."""
 
     numbers: Mapping[str, str]
     values: Mapping[str, Fraction]
@@ -55,7 +55,7 @@ class AnyNumbers:
 
 
 class Neighbourhood:
-    """The residuals near the printed numbers: values, derivatives, a bound of the second ones."""
+    """The residuals near the printed numbers: values, derivatives, bounds of second derivatives."""
 
     def __init__(self, numbers: RoundedNumbers, conditions: ConditionSet) -> None:
         self.numbers, self.conditions = numbers, conditions
@@ -68,7 +68,7 @@ class Neighbourhood:
         self.slope: Slopes = self.slopes(self.start, self.value)
 
     def residuals(self, values: Sequence[Ball], rows: Sequence[int]) -> dict[int, Ball]:
-        """Return the residuals of these conditions, at those numbers."""
+        """Return the residuals of the conditions `rows` at the numbers `values`, by condition."""
         point = dict(zip(self.names, values, strict=True))
         entries = entries_at(self.conditions.entries, point, ball_of)
         return self.conditions.residuals_by_index(rows, entries, flint.arb(1))
@@ -76,13 +76,13 @@ class Neighbourhood:
     def shifted_residuals(
         self, values: Sequence[Ball], k: int, rows: Sequence[int]
     ) -> dict[int, Ball]:
-        """Return the residuals where number k is larger by the difference quotient's step."""
+        """Return the residuals with number k larger by the difference quotient's step."""
         return self.residuals(
             [x + difference_step() if i == k else x for i, x in enumerate(values)], rows
         )
 
     def slopes(self, values: Sequence[Ball], value: Mapping[int, Ball]) -> dict[int, list[Ball]]:
-        """Return the derivatives of the conditions with these values, by number."""
+        """Return the derivatives by each number of the conditions in `value`."""
         derivatives: dict[int, list[Ball]] = {i: [] for i in value}
         for k in range(len(values)):
             for i, y in self.shifted_residuals(values, k, list(value)).items():
@@ -99,18 +99,19 @@ class Neighbourhood:
         reach = {n: abs(x) + radius for n, x in zip(self.names, self.start, strict=True)}
         entries = entries_at(self.conditions.entries, reach, size_of)
         bounds = self.conditions.residuals(entries, flint.arb(1), bound=True)
-        # Cauchy's estimate: |F''| ≤ 2 max|F|/(r/2)² within half of the radius r.
+        # Cauchy's estimate: |F''| ≤ 2 max|F|/(r/2)² within half of the radius r; max|F| is at most
+        # x + 1.
         return [((x + 1) * 8 / radius**2).abs_upper() for x in bounds]
 
-    # -- none exist -------------------------------------------------------------------------------
+    # -- no solutions -----------------------------------------------------------------------------
 
     def _excludes(
         self, weights: Mapping[int, Ball], units: Fraction | int, slopes: Slopes | None = None
     ) -> bool:
-        """Return True if Σ weight · residual is not 0 at any numbers within so many units.
+        """Return True if Σ weight · residual ≠ 0 is shown for all numbers within `units` units.
 
-        With the derivatives over the whole box, `slopes`, by the mean value theorem; without, with
-        those at the printed numbers and the bound of the second ones.
+        `slopes`: the derivatives over the whole box, for the mean value theorem; if left out, those
+        at the printed numbers and the bounds of second derivatives are used.
         """
         radius, zero = [u * rational_ball(Fraction(units)) for u in self.unit], flint.arb(0)
         spread = zero
@@ -123,7 +124,7 @@ class Neighbourhood:
         return bool(abs(sum((w * self.value[k] for k, w in weights.items()), zero)) > spread)
 
     def find_excluded(self, rows: Sequence[int], units: Fraction | int) -> list[int]:
-        """Return the conditions that hold for no numbers within so many units."""
+        """Return the conditions that are shown to hold for no numbers within `units` units."""
         one = flint.arb(1)
         excluded_rows = [k for k in rows if self._excludes({k: one}, units)]
         undecided = [k for k in rows if k not in excluded_rows and self._rough(k, units)]
@@ -133,13 +134,13 @@ class Neighbourhood:
         return sorted(excluded_rows)
 
     def _rough(self, k: int, units: Fraction | int) -> bool:
-        """Return True if only the bound of the second derivatives keeps it from exclusion."""
+        """Return True if only the bound of second derivatives prevents an exclusion."""
         radius = [u * rational_ball(Fraction(units)) for u in self.unit]
         first = sum((abs(s) * r for s, r in zip(self.slope[k], radius, strict=True)), flint.arb(0))
         return bool(abs(self.value[k]) > first)
 
     def has_no_solution(self, rows: Sequence[int], units: Fraction | int) -> bool:
-        """Return True if no numbers within so many units satisfy all of these conditions."""
+        """Return True if it is shown that no numbers within `units` units satisfy all `rows`."""
         return any(self._excludes_together(chosen, units) for chosen in self.choices(rows))
 
     def _excludes_together(self, rows: Sequence[int], units: Fraction | int) -> bool:
@@ -157,8 +158,7 @@ class Neighbourhood:
         return any(self._excludes(weights, units, slopes) for weights in combinations)
 
     def _over_box(self, units: Fraction | int) -> Slopes:
-        """Return the derivatives over the box: slower than `slopes`, and sharper than their
-        bound."""
+        """Return the derivatives over the box; they are slower and sharper than the bounds."""
         wide = rational_ball(Fraction(units))
         box = [x + symmetric_ball(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
         columns = []
@@ -173,18 +173,17 @@ class Neighbourhood:
                 columns.append([x[1] for x in residuals])
         return dict(enumerate(zip(*columns, strict=True)))
 
-    # -- conditions that are independent ----------------------------------------------------------
+    # -- independent conditions -------------------------------------------------------------------
 
     def choices(self, rows: Sequence[int]) -> list[list[int]]:
-        """Return all of them, where they can be independent; and those that seem to be."""
+        """Return selections of `rows`: all unless too many, and those that seem independent."""
         whole_selection = [list(rows)] if len(rows) <= len(self.names) else []
-        independent = (self._independent(rows, least) for least in _DEPENDENT)
+        independent = (self._independent(rows, least) for least in _DEPENDENCE_THRESHOLDS)
         selections = {tuple(x): x for x in (*whole_selection, *independent)}
         return list(selections.values())
 
     def _independent(self, rows: Sequence[int], least: float) -> list[int]:
-        """Return as many of the conditions as do not depend on one another at the printed
-        numbers."""
+        """Return a maximal set of conditions that seem independent at the printed numbers."""
         import numpy as np
 
         largest = max((u for u in self.numbers.units.values()), default=Fraction(1))
@@ -196,7 +195,7 @@ class Neighbourhood:
         selected: list[int] = []
         while len(selected) < min(len(rows), len(self.names)):
             norms = np.linalg.norm(remaining, axis=1)
-            # Of those that are far enough from the ones chosen, the first: lower orders are so.
+            # The first that is far enough from the selected ones: low orders come first.
             far = np.flatnonzero(norms > max(least, 0.1 * norms.max()))
             if not len(far):
                 break
@@ -208,13 +207,12 @@ class Neighbourhood:
         return sorted(rows[k] for k in selected)
 
     def inverse(self, rows: Sequence[int], slope: Slopes) -> flint.arb_mat | None:
-        """Return U Jᵀ(J U Jᵀ)⁻¹, nearly."""
+        """Return U Jᵀ(J U Jᵀ)⁻¹ approximately, U the squared units; None if it is singular."""
         if not rows or len(rows) > len(self.names):
             return None
         jacobian = flint.arb_mat([[x.mid() for x in slope[k]] for k in rows])
         count = len(self.unit)
-        # The units weigh the numbers: of two solutions the one that is nearer in units of last
-        # digits is found.
+        # The units weigh the numbers: the solution found is the nearest in units of last digits.
         squares = [[self.unit[i] ** 2 if i == j else 0 for j in range(count)] for i in range(count)]
         weighted = flint.arb_mat(squares) * jacobian.transpose()
         try:
@@ -227,12 +225,12 @@ class Neighbourhood:
 
 def difference_step() -> Ball:
     """Return the difference quotient's step."""
-    return flint.arb(2) ** -_STEP
+    return flint.arb(2) ** -_STEP_EXPONENT
 
 
 def symmetric_ball(radius: Ball) -> Ball:
     """Return [−radius, radius]."""
-    return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
+    return radius.abs_upper() * flint.arb(0, 1)  # arb(0, radius) may make a tiny radius infinite
 
 
 def _constant(x: "flint.arb") -> flint.arb_series:

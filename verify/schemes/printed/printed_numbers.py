@@ -1,11 +1,12 @@
 """Numbers as they are printed: which of them are rounded, to which digit, and which are exact.
 
-A decimal that stands for an algebraic number is rounded; 0.5 is not. A short one does not show
-which it is, so it is a matter of reading. First, numbers with few digits are exact, by themselves
-or among others: 0.037109375 among numbers of 17 digits has lost zeros at its end, or is 19/512.
-Then they are not. Quotients are exact, and yet some stand for irrational numbers, as
-2365592473904/8146167614645 does: where a table does not hold with them they are taken to be known
-to 100/q², q being the denominator: a continued fraction has 1/q², and some are less good.
+A decimal that stands for an algebraic number is rounded; 0.5 is not. A short decimal does not show
+which it is, so that there are two readings. In the first, numbers with few digits are exact, either
+absolutely or beside longer ones: 0.037109375 among numbers of 17 digits has lost zeros at its end,
+or is 19/512. In the last reading they are rounded. Quotients are exact, but some stand for
+irrational numbers, as 2365592473904/8146167614645 does: if a table does not hold with them, they
+are taken to be accurate to 100/q², q the denominator. (A continued fraction has 1/q²; some are
+worse.)
 """
 
 import math
@@ -23,24 +24,25 @@ from verify.arithmetic.number_system import E
 from verify.effort import limit_effort
 from verify.errors import InputError
 
-FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
-_SHORTEST = 2  # and where it is a question whether even such as 0.333 are rounded
+FIRST, LAST = 7, 3  # most places of an exact decimal, in the first and in the last reading
+_FEWEST_ROUNDED_PLACES = 2  # the same in the strictest reading, in which 0.333 is rounded
 LARGEST = 10**6
-_OF_QUOTIENTS = 1000  # units
-_LONG = 10**6  # what a quotient is divided by that may stand for another number
+_QUOTIENT_SLACK = 1000  # units within which a long quotient counts as right
+_LEAST_DENOMINATOR = 10**6  # a quotient with this denominator may stand for another number
 _QUOTIENT = re.compile(r"[+-]?\d{6,}/(\d{7,40})", re.ASCII)
 _DECIMAL = re.compile(r"[+-]?(\d*)\.(\d*)(?:[eE]([+-]?\d{1,3}))?", re.ASCII)
-_FEWER = 5  # digits than the longest number has
-_OF_DOUBLES = 16, 17  # digits of a double that is printed so that it is read back
+_MISSING_DIGITS = 5  # digits by which an exact number is shorter than the longest one
+_DOUBLE_DIGITS = 16, 17  # the digits of a double that is printed to be read back unchanged
 
 
 @dataclass(frozen=True)
 class PrintedNumbers:
     """`numbers`: by name, decimals as printed, or exact formulas of numbers.
 
-    `exact_up_to`: a decimal with so many places, or fewer, is exact; and so is one with so many
-    digits as `exact_digits`, or fewer. `exact_quotients`: whether long quotients are. `tentative`:
-    whether nobody asks which numbers would be right where these are refuted.
+    - `exact_up_to`: the largest number of places of an exact decimal; 0 for no such limit.
+    - `exact_digits`: the largest number of significant digits of an exact decimal.
+    - `exact_quotients`: True if long quotients are exact.
+    - `tentative`: True if a refutation needs no search for the right numbers.
     """
 
     numbers: Mapping[str, str]
@@ -51,8 +53,10 @@ class PrintedNumbers:
 
     @cached_property
     def units(self) -> dict[str, Fraction]:
-        """The precision of each number that is rounded: one unit of its last digit, or half an ulp
-        where that is more and a program has printed a double."""
+        """The precision of each rounded number: one unit of its last digit.
+
+        For a double that a program has printed it is half an ulp if that is more.
+        """
         units_by_name = ((name, precision_unit(text)) for name, text in self.numbers.items())
         threshold = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
         decimals = {
@@ -69,7 +73,7 @@ class PrintedNumbers:
 
     @cached_property
     def values(self) -> dict[str, Fraction]:
-        """The rounded numbers exactly as they are printed."""
+        """The exact values of the rounded numbers as they are printed."""
         numbers = {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
         for name, x in numbers.items():
             _check_size(x, name, self.numbers[name])
@@ -77,20 +81,19 @@ class PrintedNumbers:
 
     @cached_property
     def last_digits(self) -> dict[str, Fraction]:
-        """One unit of the last digit of each of them; of a quotient its precision."""
+        """One unit of the last digit of each rounded number; for a quotient its precision."""
         return {name: unit_of(self.numbers[name]) or unit for name, unit in self.units.items()}
 
     @cached_property
     def digits(self) -> int:
-        """The number of decimals after the point of the number that has fewest."""
+        """The fewest decimal places of a rounded number."""
         return min(places_of(unit) for unit in self.last_digits.values())
 
     @cached_property
     def slack(self) -> int:
-        """The number of units within which a number is right: many for quotients, which promise no
-        digits."""
+        """The number of units within which a number is right: 1, or 1000 with quotients."""
         quotients = (unit_of_quotient(self.numbers[name]) for name in self.units)
-        return _OF_QUOTIENTS if any(quotients) else 1
+        return _QUOTIENT_SLACK if any(quotients) else 1
 
     @cached_property
     def _exact(self) -> dict[sympy.Symbol, sympy.Expr]:
@@ -101,7 +104,7 @@ class PrintedNumbers:
         }
 
     def entry(self, text: str, source: str = "sizes") -> sympy.Expr:
-        """Return a formula in the numbers, in the symbols of those that are rounded."""
+        """Return a formula in the numbers as an expression; rounded numbers stay symbols."""
         expression = parse(text, self.numbers, source=source)
         with limit_effort(source, text, "to expand it"):
             expression = (
@@ -114,43 +117,51 @@ class PrintedNumbers:
         return expression
 
     def at_print(self, entry: sympy.Expr) -> sympy.Expr:
-        """Return an entry with the rounded numbers as they are printed."""
+        """Return an entry with the printed values of the rounded numbers."""
         values = self.values.items()
         substitutions = {symbol(n): sympy.Rational(x.numerator, x.denominator) for n, x in values}
         return entry.subs(substitutions)
 
     @property
     def closely(self) -> "PrintedNumbers":
-        """The same with almost all of them rounded: then they must be so to half a unit."""
+        """The strictest reading, in which almost all decimals and quotients are rounded."""
         return replace(
-            self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False, tentative=True
+            self,
+            exact_up_to=_FEWEST_ROUNDED_PLACES,
+            exact_digits=0,
+            exact_quotients=False,
+            tentative=True,
         )
 
     def with_number(self, name: str, text: str) -> "PrintedNumbers":
-        """Return the same with one of them printed so, to see whether it holds."""
+        """Return the numbers with another text for one of them, for a trial."""
         return replace(self, numbers={**self.numbers, name: text}, tentative=True)
 
     def of_a_method(self) -> list["PrintedNumbers"]:
-        """Return the readings for the numbers of a single method: those with few digits are exact,
-        and long quotients are where the method holds so."""
+        """Return the readings of the numbers of a single method, the preferred one first.
+
+        Numbers with few digits are exact. In the second reading long quotients are rounded.
+        """
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
         first = replace(
-            self, exact_up_to=FIRST, exact_digits=max(FIRST, longest - _FEWER), tentative=True
+            self,
+            exact_up_to=FIRST,
+            exact_digits=max(FIRST, longest - _MISSING_DIGITS),
+            tentative=True,
         )
         last = replace(first, exact_up_to=0, exact_digits=FIRST, exact_quotients=False)
         return [first] if first.units == last.units else [first, last]
 
     def readings(self) -> list["PrintedNumbers"]:
-        """Return the same as they may be read: with more of the decimals exact first."""
+        """Return the readings of a table's numbers; the first has more exact decimals."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
-        first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
+        first = replace(self, exact_up_to=FIRST, exact_digits=longest - _MISSING_DIGITS)
         last = replace(self, exact_up_to=LAST, exact_quotients=False)
         return [first] if first.units == last.units else [replace(first, tentative=True), last]
 
 
 def _check_size(x: Fraction, name: str, text: str) -> None:
-    """Raise InputError for a number that is beyond all coefficients, and would fill memory in
-    powers."""
+    """Raise InputError for a number too large for a coefficient: its powers would fill memory."""
     if abs(x) > LARGEST:
         raise InputError(name, text, f"is beyond {LARGEST:,}, which no coefficient is")
 
@@ -168,7 +179,7 @@ def unit_of(text: str) -> Fraction | None:
 
 
 def places_of(unit: Fraction) -> int:
-    """Return the decimal places of a number that is known to that unit.
+    """Return the decimal places of a number that is accurate to that unit.
 
     >>> places_of(Fraction(1, 1000)), places_of(Fraction(1, 800)), places_of(Fraction(1))
     (3, 2, 0)
@@ -180,12 +191,15 @@ def places_of(unit: Fraction) -> int:
 
 
 def precision_unit(text: str) -> Fraction | None:
-    """Return `unit_of`; but for a decimal that a program has printed from a double, as
-    0.054293734116568765, at least half an ulp, to which such digits are known."""
+    """Return the unit to which a decimal is accurate; None if it is no decimal with a point.
+
+    It is `unit_of`; but at least half an ulp for a double that a program has printed, such as
+    0.054293734116568765.
+    """
     unit = unit_of(text)
-    if unit is None or _digits(text) not in _OF_DOUBLES:
+    if unit is None or _digits(text) not in _DOUBLE_DIGITS:
         return unit
-    # If the decimal is the shortest text of a double, a program has printed it.
+    # A decimal that is the shortest text of a double is taken for a program's.
     x = float(text.replace(" ", ""))
     if rational(repr(x)) != rational(text.replace(" ", "")):
         return unit
@@ -199,14 +213,15 @@ def _digits(text: str) -> int:
 
 
 def unit_of_quotient(text: str) -> Fraction | None:
-    """Return the precision of a long quotient that stands for another number; None for anything
-    else."""
+    """Return the accuracy of a long quotient as another number; None for any other text."""
     match = _QUOTIENT.fullmatch(text.replace(" ", ""))
-    return Fraction(100, int(match[1]) ** 2) if match and int(match[1]) >= _LONG else None
+    return (
+        Fraction(100, int(match[1]) ** 2) if match and int(match[1]) >= _LEAST_DENOMINATOR else None
+    )
 
 
 def rounded_to(x: Fraction, unit: Fraction) -> str:
-    """Return a number to the place of that unit.
+    """Return a number as a decimal rounded to the place of that unit.
 
     >>> rounded_to(Fraction(-2, 3), Fraction(1, 1000))
     '−0.667'
@@ -222,7 +237,7 @@ def rounded_to(x: Fraction, unit: Fraction) -> str:
 
 
 def power(x: E, n: int) -> E:
-    """Return xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
+    """Return xⁿ, n ≥ 1, by products, as the power of a ball that contains 0 may be undefined."""
     result = x
     for _ in range(n - 1):
         result = result * x
@@ -244,7 +259,7 @@ def evaluate(
 
 @lru_cache(maxsize=4096)
 def _terms(expression: sympy.Expr) -> tuple[tuple[tuple[tuple[str, int], ...], sympy.Expr], ...]:
-    """Return ((number, exponent), …) and the coefficient, of each term."""
+    """Return ((number, exponent), …) and the coefficient for each term of a polynomial."""
     if not expression.free_symbols:
         return (((), expression),)
     names = sorted(expression.free_symbols, key=lambda x: x.name)

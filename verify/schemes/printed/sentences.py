@@ -11,11 +11,11 @@ from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]
 Ruling = tuple[Verdict, Prose, Details]
-_MOST = 8  # numbers, each of which alone would explain the residuals
+_MOST_SUSPECTS = 8  # limit of the possible misprints that are listed
 
 
 def ruling_on_order(judgement: Judgement, claimed: int) -> Ruling:
-    """Return the judgement that the order can be had within ten units of the digits."""
+    """Return verdict, sentence and rows on the claim that the table has the claimed order."""
     if judgement.verdict is Verdict.REFUTED:
         return (
             Verdict.REFUTED,
@@ -26,7 +26,7 @@ def ruling_on_order(judgement: Judgement, claimed: int) -> Ruling:
 
 
 def ruling_on_conditions(judgement: Judgement, what: str) -> Ruling:
-    """Return the same for conditions that have no order, such as `what`: "symplectic"."""
+    """Return verdict, sentence and rows on the claim `what`, such as "symplectic"."""
     if judgement.verdict is not Verdict.REFUTED:
         return judgement.verdict, read_prose(_text_of_holding(judgement)), ()
     failing = judgement.failing
@@ -38,7 +38,7 @@ def ruling_on_conditions(judgement: Judgement, what: str) -> Ruling:
         )
     notes = f"{_none_near(judgement)}{_alone(judgement)}"
     sentence = f"not {what}: `{failing.name}` fails by {_short(judgement.residual)}{notes}"
-    if not judgement.checked:  # no equation: it is said of the table's form
+    if not judgement.checked:  # there are no equations: the form of the table decides
         sentence = f"not {what}: {failing.name}"
     return Verdict.REFUTED, read_prose(sentence), _rows_of_moved(judgement)
 
@@ -54,7 +54,7 @@ def _text_of_holding(judgement: Judgement) -> str:
     if judgement.verdict is Verdict.UNDECIDED:
         return f"whether all {conditions} hold exactly is not decided"
     assert judgement.numbers is not None  # noqa: S101 - of rounded numbers it is known
-    is_enclosed = judgement.verdict is Verdict.ENCLOSED  # then all are shown to hold there
+    is_enclosed = judgement.verdict is Verdict.ENCLOSED  # all are shown to hold at the solution
     if judgement.distance is not None and (is_enclosed or judgement.digits is not False):
         shown_note = "" if judgement.shown_count in (None, judgement.checked) else (
             f"; of these {judgement.shown_count} are shown to hold there, and the others, which "
@@ -103,27 +103,28 @@ def _none_near(judgement: Judgement) -> str:
 
 
 def _alone(judgement: Judgement) -> str:
-    """Return the one misprinted number that explains the residuals; or that each of several
-    does."""
+    """Return a sentence on the numbers each of which alone explains the residuals."""
     m = judgement.misprint
     if m is not None:
         explanation = f"`{m.name}`, printed `{m.printed.strip()}`, would be"
         mended = mended_text(judgement, m)
         return f". One number alone explains it: {explanation} `{mended}`"
     suspects = [f"`{m.name}` = `{mended_text(judgement, m)}`" for m in judgement.misprints]
-    candidates = ", ".join(suspects[:_MOST]) + (", …" if len(suspects) > _MOST else "")
+    candidates = ", ".join(suspects[:_MOST_SUSPECTS]) + (
+        ", …" if len(suspects) > _MOST_SUSPECTS else ""
+    )
     sentence = f"Each of {len(suspects)} numbers alone would explain it, and none is singled out"
     return f". {sentence}: {candidates}" if suspects else ""
 
 
 def mended_text(judgement: Judgement, m: Misprint) -> str:
-    """Return the text that would be printed in its place, with as many digits."""
+    """Return the right text for a misprint, with as many digits."""
     unit = None if judgement.numbers is None else judgement.numbers.last_digits.get(m.name)
     return str(m.value) if unit is None else rounded_to(m.value, unit)
 
 
 def ruling_on_digits(judgement: Judgement) -> Ruling:
-    """Return the judgement that all digits are right to one unit of the last."""
+    """Return verdict, sentence and rows on the claim that all digits are right."""
     if (
         judgement.digits is None
         and judgement.distance is not None
@@ -156,8 +157,10 @@ def ruling_on_digits(judgement: Judgement) -> Ruling:
 
 
 def _rows_of_moved(judgement: Judgement) -> Details:
-    """Return the numbers whose last digits are off by more than a unit, and exact ones with two
-    more digits."""
+    """Return a table of the numbers that are off by more than one unit of their last digit.
+
+    The nearest exact numbers have two more digits.
+    """
     if judgement.nearest is None or judgement.numbers is None or not judgement.numbers.units:
         return ()
     numbers: PrintedNumbers = judgement.numbers
@@ -172,8 +175,7 @@ def _rows_of_moved(judgement: Judgement) -> Details:
 
 
 def _far(judgement: Judgement) -> str:
-    """Return how far the nearest exact coefficients are: in units, or, where it is far,
-    absolutely."""
+    """Format the distance of the nearest exact coefficients, from 100 units on as a number."""
     assert judgement.distance is not None  # noqa: S101 - the callers have one
     assert judgement.nearest is not None  # noqa: S101 - and so its numbers
     assert judgement.numbers is not None  # noqa: S101 - which are rounded

@@ -1,14 +1,14 @@
 """Exact numbers that satisfy a table's conditions: near those printed, or with one of them changed.
 
-With P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units (the rest as in
-`verify.schemes.printed.neighbourhood`), t ↦ t − F(x₀ + P t) may map a ball around −F(x₀) into
-itself: then, by Brouwer, a solution exists, and it is known where.
+Let P = U Jᵀ(J U Jᵀ)⁻¹ with U the squared units; `verify.schemes.printed.neighbourhood` defines F, J
+and x₀. If t ↦ t − F(x₀ + P t) maps a ball around −F(x₀) into itself, then by Brouwer's theorem a
+solution x₀ + P t exists with t in the ball.
 
-Conditions may depend on one another, as those of trees do where simplifying assumptions hold. Then
-a solution of as many as are independent at x₀ is shown to exist, and the others are evaluated
-there: where their residuals are 0 to `HELD`, that is no proof, and much more than chance.
+Conditions may depend on one another, as those of trees do if simplifying assumptions hold. Then a
+solution of a set that is independent at x₀ is shown to exist, and the others are evaluated there.
+If their residuals are below `HELD`, that is no proof, but much more than chance.
 
-A single misprinted number is looked for too: which it can be, and the value it would have to have.
+A single misprint is searched too: a number that can be wrong, and the value that would be right.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,22 +30,27 @@ from verify.schemes.printed.neighbourhood import (
 )
 
 HELD = Fraction(1, 2**200)
-_TURNS = 40
-_CLOSE = flint.arb(2) ** -290  # of a chord's step, the last one
-_FEW, _FAR = 12, 20  # at most so many numbers in the search far away, and their size there
+_MOST_ITERATIONS = 40
+_STEP_TOLERANCE = flint.arb(2) ** -290  # an iteration ends after a smaller step
+# Limits of the search far away: how many numbers a table may have, and how large they may become.
+_FEW_NUMBERS, _LARGEST_NUMBER = 12, 20
 
-_MISPRINT_TURNS = 9
-_FEW_CONDITIONS = 8  # failing ones used in the search for one number; then all are checked
-_ZERO = flint.arb(2) ** -150  # a residual that is 0, where no number is rounded
-_MOST_ENTRIES = 200  # among which one misprint is searched
-_QUOTIENT_CLOSE = Fraction(1, 10**40)  # to the quotient that a misprint stands for
+_MISPRINT_ITERATIONS = 9
+_MOST_FAILING_CONDITIONS = 8  # used in the search for a misprint; then all conditions are checked
+_ZERO_TOLERANCE = flint.arb(2) ** -150  # a smaller residual counts as 0
+_MOST_ENTRIES = 200  # limit of the entries of an exact table for the search of a misprint
+_QUOTIENT_TOLERANCE = Fraction(1, 10**40)  # a number so near to a quotient stands for it
 _LARGEST_DENOMINATOR = 10**12
 
 
 @dataclass(frozen=True)
 class NearbySolution:
-    """A solution: its distance from the printed numbers, in units of the last digit, and its
-    numbers; how many conditions are shown to hold there, and a bound of the others' residuals."""
+    """A solution near printed numbers.
+
+    `distance`: the largest distance of a number, in units of the last digit. `numbers`: those of
+    the solution. `shown_count`: the number of conditions that are shown to hold. `other_residual`:
+    a bound of the residuals of the others.
+    """
 
     distance: Fraction
     numbers: Mapping[str, Fraction]
@@ -54,8 +59,10 @@ class NearbySolution:
 
 
 def nearest(near: Neighbourhood, rows: Sequence[int]) -> NearbySolution | None:
-    """Return a solution of these conditions; None where none is shown to exist, or where those that
-    depend on others do not hold there."""
+    """Return a solution of the conditions `rows` near the printed numbers.
+
+    None if no solution is shown to exist, or if the dependent conditions do not hold there.
+    """
     if not rows:
         return NearbySolution(Fraction(0), dict(near.numbers.values), 0)
     solutions = (_nearest(near, rows, chosen) for chosen in near.choices(rows))
@@ -69,11 +76,11 @@ def _nearest(
     if inverse is None:
         return None
     point = list(near.start)
-    for _ in range(_TURNS):  # chords: far faster than they are needed
+    for _ in range(_MOST_ITERATIONS):  # the chord method: it converges long before the limit
         value = near.residuals(point, chosen)
         change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
         point = [(x - d).mid() for x, (d,) in zip(point, change, strict=True)]
-        if all(abs(d) < _CLOSE for (d,) in change):
+        if all(abs(d) < _STEP_TOLERANCE for (d,) in change):
             break
     if not all(
         abs(x - y) < rational_ball(RADIUS / 4) for x, y in zip(point, near.start, strict=True)
@@ -93,12 +100,14 @@ def _nearest(
 
 
 def find_far_solution(near: Neighbourhood, rows: Sequence[int]) -> NearbySolution | None:
-    """Return a solution that may be far from the printed numbers, by Newton's method; None where it
-    finds none, or one of many. It is for few numbers only."""
-    if len(near.names) > _FEW or not rows:
+    """Return a solution that may be far from the printed numbers, by Newton's method.
+
+    None if there are many numbers, if none is found, and if the solution is not an isolated one.
+    """
+    if len(near.names) > _FEW_NUMBERS or not rows:
         return None
     point, slope = list(near.start), near.slope
-    for _ in range(_TURNS):
+    for _ in range(_MOST_ITERATIONS):
         value = near.residuals(point, rows)
         chosen = near.choices(rows)[-1]
         inverse = near.inverse(chosen, slope)
@@ -106,12 +115,14 @@ def find_far_solution(near: Neighbourhood, rows: Sequence[int]) -> NearbySolutio
             return None
         change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
         point = [(x - d).mid() for x, (d,) in zip(point, change, strict=True)]
-        if all(abs(d) < _CLOSE for (d,) in change) or not all(abs(x) < _FAR for x in point):
+        if all(abs(d) < _STEP_TOLERANCE for (d,) in change) or not all(
+            abs(x) < _LARGEST_NUMBER for x in point
+        ):
             break
         slopes = near.slopes(point, near.residuals(point, rows))
         slope = {k: [x.mid() for x in row] for k, row in slopes.items()}
     values = {n: midpoint_and_radius(x)[0] for n, x in zip(near.names, point, strict=True)}
-    if not all(abs(x) < _FAR for x in point):
+    if not all(abs(x) < _LARGEST_NUMBER for x in point):
         return None
     moved_numbers = AnyNumbers(near.numbers.numbers, values, near.numbers.units)
     solution = nearest(Neighbourhood(moved_numbers, near.conditions), rows)
@@ -125,15 +136,14 @@ def find_far_solution(near: Neighbourhood, rows: Sequence[int]) -> NearbySolutio
 
 
 def _solution(near: Neighbourhood, rows: Sequence[int], point: Sequence[Ball]) -> list[Ball] | None:
-    """Return balls around `point` in which a solution lies; None where that is not shown."""
+    """Return balls around `point` that contain a solution; None if that is not shown."""
     value = near.residuals(point, rows)
     slope = near.slopes(point, value)
     inverse = near.inverse(rows, slope)
     if inverse is None:
         return None
     target = [-value[k] for k in rows]
-    # The ball must contain its own image: it is twice as large as the target, plus a rounding
-    # margin.
+    # The ball must contain its image: its radius is twice the target's size plus a rounding margin.
     slack = 2 * max((x.abs_upper() for x in target), key=float) + flint.arb(2) ** -240
     ball = flint.arb_mat([[x + symmetric_ball(slack)] for x in target])
     offsets = [x for (x,) in (inverse * ball).tolist()]
@@ -145,7 +155,7 @@ def _solution(near: Neighbourhood, rows: Sequence[int], point: Sequence[Ball]) -
     remainder = identity - flint.arb_mat([slope[k] for k in rows]) * inverse
     image = (remainder * ball).tolist()
     for i, k in enumerate(rows):
-        # The remainder of Taylor's formula over the whole reach of the ball.
+        # The remainder of Taylor's formula over the whole ball.
         curvature = symmetric_ball(near.second[k] * reach * reach / 2)
         if not ball[i, 0].contains_interior(target[i] + image[i][0] + curvature):
             return None
@@ -157,12 +167,12 @@ def _upper(x: Ball) -> Fraction:
     return abs(middle) + radius
 
 
-# -- one number alone ------------------------------------------------------------------------------
+# -- a single misprint -----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Misprint:
-    """A number that alone, with the value `value`, would make the conditions hold to the digits."""
+    """A number that, if changed to `value`, would make the conditions hold to the digits."""
 
     name: str
     printed: str
@@ -172,13 +182,13 @@ class Misprint:
 def misprints(
     near: Neighbourhood, rows: Sequence[int], single: bool = False
 ) -> tuple[Misprint, ...]:
-    """Return the numbers of which the change of each alone would do; `single`: none where several
-    would.
+    """Return the numbers each of which, changed alone, would make the conditions hold.
 
-    Where only last digits are wrong, several seem to do: the digits of the others leave room.
+    `single`: return none if there are several. If only last digits are wrong, several numbers seem
+    to do, as the digits of the others leave room.
     """
     failing = [i for i in rows if not _is_small(near, i, near.value[i])]
-    few = failing[:_FEW_CONDITIONS] or list(rows[:_FEW_CONDITIONS])
+    few = failing[:_MOST_FAILING_CONDITIONS] or list(rows[:_MOST_FAILING_CONDITIONS])
     candidates = (_single(near, k, rows, few) for k in range(len(near.names)))
     suspects = tuple(m for m in candidates if m is not None)
     return () if single and len(suspects) > 1 else suspects
@@ -191,7 +201,7 @@ def _single(
     numbers, value = list(near.start), near.value
     largest = max(abs(value[i]) for i in few)
     slope = [near.slope[i][k].mid() for i in few]
-    for turn in range(_MISPRINT_TURNS):
+    for turn in range(_MISPRINT_ITERATIONS):
         if turn:
             shifted = near.shifted_residuals(numbers, k, few)
             slope = [((shifted[i] - value[i]) / difference_step()).mid() for i in few]
@@ -202,7 +212,7 @@ def _single(
         value = near.residuals(numbers, few)
         # Most numbers fail here, after one step: only promising ones are iterated.
         if turn == 0 and not all(abs(value[i]) < largest for i in few):
-            return None  # no change of this number alone brings them down
+            return None  # no change of this number alone makes the residuals small
     if not all(_is_small(near, i, value[i]) for i in few):
         return None
     value = near.residuals(numbers, rows)
@@ -215,7 +225,7 @@ def _single(
 def _is_small(near: Neighbourhood, i: int, value: Ball) -> bool:
     """Return True if a residual is as small as the digits allow."""
     pairs = zip(near.slope[i], near.unit, strict=True)
-    return bool(abs(value) < sum((abs(d) * u for d, u in pairs), _ZERO))
+    return bool(abs(value) < sum((abs(d) * u for d, u in pairs), _ZERO_TOLERANCE))
 
 
 def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:
@@ -225,12 +235,11 @@ def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:
     return sum((d * v for d, v in zip(slope, value, strict=True)), flint.arb(0)) / square
 
 
-# -- of exact tables ------------------------------------------------------------------------------
+# -- exact tables ---------------------------------------------------------------------------------
 
 
 def find_exact_misprints(conditions: ConditionSet, order: int) -> tuple[Misprint, ...]:
-    """Return the rational entries, not 0, each of which alone would do, with the quotient for
-    it."""
+    """Return the possible misprints of a rational table, each with the right quotient."""
     count = len(conditions.entry_names)
     if not 0 < count <= _MOST_ENTRIES or not all(x.is_Rational for x in conditions.entries):
         return ()
@@ -239,7 +248,7 @@ def find_exact_misprints(conditions: ConditionSet, order: int) -> tuple[Misprint
         n: Fraction(int(x.p), int(x.q)) for n, x in zip(names, conditions.entries, strict=True)
     }
     texts = dict(zip(names, map(str, conditions.entries), strict=True))
-    unknowns = AnyNumbers(texts, values, dict.fromkeys(names, _QUOTIENT_CLOSE**2))
+    unknowns = AnyNumbers(texts, values, dict.fromkeys(names, _QUOTIENT_TOLERANCE**2))
     free = replace(conditions, entries=tuple(map(symbol, names)))
     with working_precision(BITS):
         near = misprints(Neighbourhood(unknowns, free), conditions.up_to(order))
@@ -248,10 +257,12 @@ def find_exact_misprints(conditions: ConditionSet, order: int) -> tuple[Misprint
 
 
 def _by_quotient(conditions: ConditionSet, order: int, k: int, near: Fraction) -> Misprint | None:
-    """Return entry k with the quotient near that value; None where the conditions do not hold with
-    it."""
+    """Return the misprint of entry k with the quotient near `near`.
+
+    None if the conditions do not hold exactly with it.
+    """
     value = near.limit_denominator(_LARGEST_DENOMINATOR)
-    if abs(value - near) > _QUOTIENT_CLOSE or value == conditions.entries[k]:
+    if abs(value - near) > _QUOTIENT_TOLERANCE or value == conditions.entries[k]:
         return None
     entries = [flint.fmpq(int(x.p), int(x.q)) for x in conditions.entries]
     entries[k] = flint.fmpq(value.numerator, value.denominator)

@@ -1,9 +1,10 @@
-"""A printed table of splitting coefficients, and its order: of kicks and drifts, or a composition.
+"""A printed table of kicks and drifts, or of a composition, and its order.
 
-It may have clocks: the times, in parts of h, at which its parts read H(p, q, t). Where each time is
-the right one, the sum of the other kind's parts before it, the conditions without time suffice,
-except for a quadratic T that depends on time (`verify.schemes.conditions.splitting_conditions`). If
-one is not, those of words with time decide (`verify.schemes.conditions.words.equations`).
+The table may have clocks: the times, in parts of h, at which its parts read H(p, q, t). The right
+time of a part is the sum of the parts of the other kind before it. If all times are right, the
+conditions without time suffice, except for a quadratic T that depends on time
+(`verify.schemes.conditions.splitting_conditions`). Otherwise the conditions on words with time
+decide (`verify.schemes.conditions.words.equations`).
 """
 
 from collections.abc import Sequence
@@ -35,7 +36,7 @@ from verify.schemes.printed.judgement import Judgement, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
-_MOST_ORDER_OF_WORDS = 6  # with clocks that are not right: of higher ones there are too many words
+_MOST_ORDER_OF_WORDS = 6  # limit with clocks that are not right: beyond, there are too many words
 
 
 @dataclass(frozen=True)
@@ -43,10 +44,10 @@ class PrintedTable:
     """A printed splitting.
 
     `kind`: see `verify.schemes.conditions.words.equations`. `parts`: ("kick" or "drift", size) in
-    the order in which they are made, or ("step", size) of a composition; sizes are formulas in the
-    numbers of `printed`. `times`: a text for each part, None where it reads no time; none without
-    time. `kinetic_in_time`: whether T depends on time, too, so that drifts are judged. InputError
-    for a table that is none.
+    the order in which they are applied, or ("step", size) in a composition; sizes are formulas in
+    the numbers of `printed`. `times`: a text for each part, None if it reads no time; empty without
+    time. `kinetic_in_time`: True if T depends on time, so that the times of drifts count. Raises
+    InputError for an unknown kind or part, and for no parts.
     """
 
     kind: str
@@ -66,19 +67,19 @@ class PrintedTable:
 
     @cached_property
     def sizes(self) -> tuple[sympy.Expr, ...]:
-        """The sizes of the parts, in the symbols of the numbers that are rounded."""
+        """The sizes of the parts as expressions in the rounded numbers."""
         return tuple(self.printed.entry(size) for _, size in self.parts)
 
     @property
     def kinetic(self) -> Kinetic:
-        """The class of T that is claimed."""
+        """The class of T that the order is judged for."""
         if self.kind == "nystrom":
             return Kinetic.MASS if self.kinetic_in_time else Kinetic.QUADRATIC
         return Kinetic.GENERAL if self.kinetic_in_time else Kinetic.AUTONOMOUS
 
     @cached_property
     def judged_parts(self) -> tuple[int, ...]:
-        """The parts whose times count."""
+        """The indices of the parts whose times count."""
         return tuple(
             k
             for k, time in enumerate(self.times)
@@ -101,7 +102,7 @@ class PrintedTable:
 
     @property
     def palindromic(self) -> bool:
-        """True if it is the same read backwards, by its form."""
+        """True if the parts are the same read backwards, for any values of the numbers."""
         names = [name for name, _ in self.parts]
         return names == names[::-1] and self.sizes == self.sizes[::-1]
 
@@ -111,8 +112,10 @@ class PrintedTable:
         return MOST_ORDER_BY_KIND[self.kind]
 
     def with_entry(self, name: str, text: str) -> "PrintedTable":
-        """Return the same with this number, or else part, written so; unchanged where it has
-        none."""
+        """Return the table with another text for a number, or else for a part, of that name.
+
+        If there is none, the table is the same.
+        """
         if name in self.printed.numbers:
             return self.read(self.printed.with_number(name, text))
         parts = ((kind, text if name == f"{kind} {k + 1}" else size) for k, (kind, size) in
@@ -120,7 +123,7 @@ class PrintedTable:
         return replace(self, parts=tuple(parts), printed=replace(self.printed, tentative=True))
 
     def read(self, numbers: PrintedNumbers) -> "PrintedTable":
-        """Return the same with its numbers read so."""
+        """Return the table with another reading of its numbers."""
         return replace(self, printed=numbers)
 
     def residuals(
@@ -131,21 +134,20 @@ class PrintedTable:
         bound: bool,
         times: Sequence[E] | None = None,
     ) -> list[E]:
-        """Return the residuals of conditions on words, with these sizes; without `times` on words
-        without time."""
+        """Return the residuals of conditions on words, at these sizes and times."""
         kinds = (LETTERS.get(kind, STEPS) for kind, _ in self.parts)
-        # Of a composition the letters' second number is the size again: see `step_words`.
+        # A composition has its sizes in place of times (see `step_words`); words without time do
+        # not read them.
         parts = zip(kinds, sizes, times or sizes, strict=True)
         return residuals_of(equations, StepWords(PlainNumbers(one), list(parts), bound))
 
     def sums_to_one(self, name: str) -> bool:
-        """Return True if the sizes of these parts have the sum 1, whatever the numbers are."""
+        """Return True if the sizes of all `name` parts add up to 1, whatever the numbers are."""
         sizes = (x for (kind, _), x in zip(self.parts, self.sizes, strict=True) if kind == name)
         return bool(sympy.expand(sum(sizes, sympy.S.Zero) - 1) == 0)
 
     def conditions(self, order: int) -> tuple[WordEquation, ...]:
-        """Return the conditions of orders 1 … `order` that do not hold by the form of the table
-        alone."""
+        """Return the conditions of orders 1 … `order` that do not hold by the table's form."""
         sums = {"Σ kicks = 1": "kick", "Σ drifts = 1": "drift", "Σ w = 1": "step"}
         rational = all(size.is_Rational for size in self.sizes)
         return tuple(
@@ -159,8 +161,10 @@ class PrintedTable:
         )
 
     def condition_set(self, order: int) -> ConditionSet:
-        """Return the conditions of that order without time, and some beyond, which tell where it
-        ends."""
+        """Return the conditions without time up to that order, and some beyond.
+
+        Those beyond tell where the order ends.
+        """
         highest = min(order + (1 if self.printed.units else 2), self.most_order)
         equations = self.conditions(highest)
 
@@ -183,18 +187,19 @@ class PrintedTable:
         )
 
 
-# -- its order, and its clocks ---------------------------------------------------------------------
+# -- order and clocks ------------------------------------------------------------------------------
 
 
 def judge_clocks(table: PrintedTable) -> Judgement:
-    """Judge whether each time is the right one."""
+    """Judge whether every time is the right one."""
     return judge(table.printed, _clock_conditions(table), 1)
 
 
 def judge_order(table: PrintedTable, order: int) -> Judgement:
-    """Judge whether it can have the order: with times, for the class of T, as they are printed.
+    """Judge whether exact numbers near the printed ones have the order.
 
-    InputError where it cannot be looked at so far.
+    If the table has times, the order is for the class of T and for these times. Raises InputError
+    for an order that is out of range.
     """
     if not 1 <= order <= table.most_order:
         problem = f"of a {table.kind} is looked at up to {table.most_order}"
@@ -210,7 +215,7 @@ def judge_order(table: PrintedTable, order: int) -> Judgement:
         if judgement.verdict is not Verdict.REFUTED:
             return judgement
     most = min(order, _MOST_ORDER_OF_WORDS)
-    for n in range(1, most + 1):  # of a wrong clock it is mostly a low order that fails
+    for n in range(1, most + 1):  # with a wrong clock mostly a low order fails already
         judgement = judge(table.printed, _word_conditions(table, n), n)
         if judgement.verdict is Verdict.REFUTED:
             return judgement

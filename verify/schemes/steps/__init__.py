@@ -1,1 +1,1 @@
-"""The operations of a step, read as power series in h; two-forms, and S of such series."""
+"""The operations of a step, read as power series in h; two-forms, and S of a series."""

@@ -1,7 +1,7 @@
 """S = JᵀΩJ − Ω and ΔJ = det J − 1 of a map, as power series in h.
 
-With N = Ω⁻¹S, det J² = det(1 + N), so that log det J = ½ tr(N − N²/2 + N³/3 − …): where S begins
-with hᵐ, ΔJ is Σ S(p_i, q_i) up to h^(2m−1).
+With N = Ω⁻¹S, det J² = det(1 + N), so that log det J = ½ tr(N − N²/2 + N³/3 − …). If S begins with
+hᵐ, ΔJ = Σ S(p_i, q_i) up to h^(2m−1).
 """
 
 from collections.abc import Callable, Sequence
@@ -19,16 +19,18 @@ Matrix = list[list[Series]]
 
 
 class DefectSeries(Generic[F]):
-    """The coefficients of h⁰, h¹, … of z', S and ΔJ, computed as far as they are read.
+    """The coefficients of h⁰, h¹, … in z', S and ΔJ, computed as far as they are read.
 
-    `expand(most)`: z' up to h^most at least, over the ring of the flow that comes with it.
+    `expand(most)` returns H's field and z' up to h^most at least, over the field's ring.
     """
 
     def __init__(
         self, expand: Callable[[int], tuple[F, State]], first: int, flow_up_to: int = -1
     ) -> None:
-        """`first`: so many coefficients are computed at once. `flow_up_to`: so far they are the
-        flow's own."""
+        """`first`: the power of h that the first expansion reaches.
+
+        `flow_up_to`: the power of h up to which the coefficients are the exact flow's.
+        """
         self._expand, self._first, self._flow_up_to = expand, first, flow_up_to
         self._expansion: tuple[F, State] | None = None
         self._gradients: list[list[tuple[Poly, ...]]] = []
@@ -50,8 +52,7 @@ class DefectSeries(Generic[F]):
         return tuple(series.coefficients[n] for series in self._expand_to(n)[1])
 
     def differences(self, n: int) -> tuple[Any, list[Poly]]:
-        """Return the differences of the coefficients of hⁿ in z' from the exact flow's, with their
-        ring."""
+        """Return the ring, and the coefficients of hⁿ in z' less those of the exact flow."""
         flow, _ = self._expand_to(n)
         pairs = zip(self.coefficient(n), flow.term(n), strict=True)
         return flow.ring, [flow.ring.reduce(x - y) for x, y in pairs]
@@ -59,8 +60,11 @@ class DefectSeries(Generic[F]):
     def agrees(
         self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
     ) -> tuple[bool | None, Any, Poly]:
-        """Return True if the coefficients of hⁿ in z' are the exact flow's, and the difference, or
-        possible one, with its ring; `nearly`: says which differences from a term count as none."""
+        """Return True if the coefficients of hⁿ in z' are the exact flow's, else False or None.
+
+        With it: the ring and the first difference that is not shown to be 0. `nearly(gap, x)`: True
+        if a gap counts as 0 beside the coefficient x.
+        """
         flow, _ = self._expand_to(n)
         for x, gap in zip(self.coefficient(n), self.differences(n)[1], strict=True):
             if nearly is not None and nearly(gap, x):
@@ -89,8 +93,7 @@ class DefectSeries(Generic[F]):
                 total = -ring.one if m == 0 and b == a + n else ring.zero
                 for k in range(m + 1):
                     for i in range(n):
-                        # The Cauchy product of JᵀΩJ = Σ dp_i'∧dq_i', of which Ω is subtracted at
-                        # h⁰.
+                        # The Cauchy product in JᵀΩJ = Σ dp_i'∧dq_i'; Ω is subtracted at h⁰.
                         total += wedge(rows[k][i], rows[m - k][n + i], a, b)
                 return total
 
@@ -108,9 +111,9 @@ class DefectSeries(Generic[F]):
         flow, _ = self._expand_to(most)
         forms = [self.form(m) for m in range(most + 1)]
         ring, size = flow.ring, len(flow.names)
-        matrix = [[_of_inverse(ring, forms, a, b, flow.degrees) for b in range(size)]
+        matrix = [[_entry_of_n(ring, forms, a, b, flow.degrees) for b in range(size)]
                   for a in range(size)]  # fmt: skip
-        # N^k begins with h^(k·begins), so that few powers reach up to h^most.
+        # N^k begins with h^(k·begins): only the powers up to k = most/begins count.
         begins = next((m for m, form in enumerate(forms) if form.entries), most + 1)
         total = Series.from_coefficients(ring, [], most)
         product: Matrix | None = None
@@ -131,14 +134,13 @@ class DefectSeries(Generic[F]):
 
 
 def defect_series_of(flow: F, after: Sequence[Sequence[Poly]]) -> DefectSeries[F]:
-    """Return the series of a map from the coefficients of h⁰, h¹, … in each coordinate's new
-    value."""
+    """Return the series of a map; `after[k]`: the coefficients of h⁰, h¹, … in coordinate k."""
     state = tuple(Series(flow.ring, tuple(x)) for x in after)
     return DefectSeries(lambda _: (flow, state), state[0].most)
 
 
-def _of_inverse(ring: CoefficientRing, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
-    """Return the entry of Ω⁻¹S."""
+def _entry_of_n(ring: CoefficientRing, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
+    """Return the entry ab of N = Ω⁻¹S."""
     row, sign = (a + n, -1) if a < n else (a - n, 1)
     return Series(ring, tuple(form.entry(row, b) * sign for form in forms))
 

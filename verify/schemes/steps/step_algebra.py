@@ -14,13 +14,12 @@ from verify.hamiltonians.canonical_field import VectorField
 
 V = TypeVar("V")
 Recent: TypeAlias = "deque[tuple[object, list[Series]]]"
-_RECENT = 8  # slopes: of as many stages
-Number = Fraction | Poly  # a coefficient of a scheme, in the ring of H's field if it is no rational
+_CACHED_SLOPES = 8  # the number of stages whose slopes are cached
+Number = Fraction | Poly  # a scheme's coefficient; an irrational one is in the ring of H's field
 
 
 class StepAlgebra(Protocol[V]):
-    """Operations on changes of z, which are values `V`, each O(h); as many as there are names in
-    the field."""
+    """Operations on changes of z. A value V is the O(h) change of one coordinate."""
 
     @property
     def nothing(self) -> V:
@@ -35,7 +34,7 @@ class StepAlgebra(Protocol[V]):
         """Return Σ hⁿ/n! Xⁿz, n = 1 … η."""
 
     def slopes(self, changes: Sequence[V], clock: Number, places: Sequence[int]) -> list[V]:
-        """Return those components of f at z + changes, and where H depends on it at t + clock h."""
+        """Return the components `places` of f at z + changes, with a time in H at t + clock h."""
 
     def move(self, change: V, weights: Sequence[Number], slopes: Sequence[V]) -> V:
         """Return change + h Σ weights · slopes."""
@@ -43,7 +42,7 @@ class StepAlgebra(Protocol[V]):
     def shear(
         self, changes: Sequence[V], size: Number, clock: Number, places: Sequence[int]
     ) -> list[V]:
-        """Return changes + h size f(z + changes) in these places: f is evaluated for no others."""
+        """Return changes + h size f(z + changes) in the components `places`, and others as is."""
         result = list(changes)
         slopes = self.slopes(changes, clock, places)
         for place, slope in zip(places, slopes, strict=True):
@@ -56,17 +55,19 @@ class StepAlgebra(Protocol[V]):
     def solve(
         self, count: int, right: "Callable[[StepAlgebra[V], Sequence[V]], list[V]]"
     ) -> list[V]:
-        """Return Z with Z = right(Z), of `count` components, whose right side is O(h); Z[k] is a
-        change of the coordinate number k modulo the number of coordinates."""
+        """Return the solution Z of Z = right(Z), with `count` components; the right side is O(h).
+
+        Z[k] is a change of the coordinate k modulo `size`.
+        """
 
 
 class SeriesAlgebra(StepAlgebra[Series]):
     """The step algebra of series up to h^most over the ring of a field."""
 
     def __init__(self, field: VectorField, most: int, recent: "Recent | None" = None) -> None:
-        """`recent`: slopes that were computed, which are read again where an iteration ends."""
+        """`recent`: the cached slopes, which the iterations of `solve` share."""
         self.field, self.most = field, most
-        self._recent: Recent = deque(maxlen=_RECENT) if recent is None else recent
+        self._recent: Recent = deque(maxlen=_CACHED_SLOPES) if recent is None else recent
 
     @property
     def nothing(self) -> Series:
@@ -88,8 +89,8 @@ class SeriesAlgebra(StepAlgebra[Series]):
     def slopes(
         self, changes: Sequence[Series], clock: Number, places: Sequence[int]
     ) -> list[Series]:
-        # Slopes are multiplied by h, so that one power less is enough.
-        reach = max(self.most - 1, 0)  # as far as `move` takes them, times h
+        # `move` multiplies slopes by h, so that one power less is enough.
+        reach = max(self.most - 1, 0)
         key = reach, clock, places, [x.coefficients[: reach + 1] for x in changes]
         values = next((values for recent_key, values in self._recent if recent_key == key), None)
         if values is None:
@@ -120,9 +121,9 @@ class SeriesAlgebra(StepAlgebra[Series]):
     def solve(
         self, count: int, right: Callable[[StepAlgebra[Series], Sequence[Series]], list[Series]]
     ) -> list[Series]:
-        """Solve by iteration: each makes one more power of h right."""
+        """Solve by iteration: each pass makes one more power of h right."""
         solution = [SeriesAlgebra(self.field, 0).nothing] * count
-        # The right side is O(h): if Z is right up to h^(k−1), right(Z) is up to h^k.
+        # The right side is O(h): if Z is right up to h^(k−1), right(Z) is right up to h^k.
         for longest in range(1, self.most + 1):
             shorter = SeriesAlgebra(self.field, longest, self._recent)
             solution = right(shorter, list(map(shorter._cut, solution)))
@@ -133,7 +134,7 @@ class SeriesAlgebra(StepAlgebra[Series]):
 
 
 State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
-# z' − z from what a step is made of; the same kind of value.
+# A step: it returns z' − z in the values of a step algebra.
 Step = Callable[[StepAlgebra[Any]], list[Any]]
 
 

@@ -13,14 +13,14 @@ from verify.algebra.ring import Decision, Poly
 from verify.hamiltonians.canonical_field import VectorField
 
 Place = tuple[int, int]
-MOST_TERMS = 2000  # of a form that is written out
+MOST_TERMS = 2000  # limit of the terms of a form that is written out
 
 
 @dataclass(frozen=True)
 class TwoForm:
-    """A two-form: its coefficients that are not 0 in normal form, by their places a < b."""
+    """A two-form: its coefficients c_ab ≠ 0 in normal form, by the places a < b."""
 
-    ring: Any  # of coefficients: see `verify.algebra.power_series.CoefficientRing`
+    ring: Any  # a `verify.algebra.power_series.CoefficientRing`
     names: tuple[str, ...]
     entries: Mapping[Place, Poly] = field(default_factory=dict)
 
@@ -28,14 +28,14 @@ class TwoForm:
     def from_entries(
         cls, ring: CoefficientRing, names: tuple[str, ...], entry: Callable[[int, int], Poly]
     ) -> "TwoForm":
-        """Return the form with the coefficients c_ab, which are put in normal form."""
+        """Return the form with the coefficients c_ab = entry(a, b), reduced to normal form."""
         coefficients = {
             place: ring.reduce(entry(*place)) for place in combinations(range(len(names)), 2)
         }
         return cls(ring, names, {place: x for place, x in coefficients.items() if not x.is_zero()})
 
     def entry(self, a: int, b: int) -> Poly:
-        """Return the entry of its matrix."""
+        """Return the entry ab of its matrix."""
         if a > b:
             return -self.entry(b, a)
         return self.entries.get((a, b), self.ring.zero)
@@ -52,7 +52,7 @@ class TwoForm:
 
     @property
     def length(self) -> int:
-        """The number of terms of its entries together."""
+        """The number of terms in all entries."""
         return sum(map(len, self.entries.values()))
 
     @property
@@ -70,7 +70,7 @@ class TwoForm:
 
     @property
     def divergence(self) -> Poly:
-        """The sum Σ c_(p_i q_i): of S it is ΔJ, up to products of its entries."""
+        """The sum Σ c_(p_i q_i): for S it is ΔJ up to products of entries of S."""
         n = len(self.names) // 2
         total: Poly = self.ring.reduce(
             sum((self.entry(i, n + i) for i in range(n)), self.ring.zero)
@@ -96,10 +96,12 @@ class TwoForm:
 
 
 def lie_derivative(flow: VectorField, form: TwoForm) -> TwoForm:
-    """Return the Lie derivative along the flow, of D = ∂_t + X where H depends on time: D applied
-    to the entries, and with A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
+    """Return the Lie derivative along the flow, by X, or D = ∂_t + X if H depends on time.
+
+    It is the derivatives of the entries plus AᵀB + BA, with A = f' and B the form's matrix.
+    """
     ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]
-    # In the plane the other terms are tr A = 0 times the entry.
+    # In the plane AᵀB + BA is tr A = 0 times the entry.
     size = range(len(flow.names)) if flow.degrees > 1 else ()
 
     def entry(a: int, b: int) -> Poly:
@@ -112,5 +114,5 @@ def lie_derivative(flow: VectorField, form: TwoForm) -> TwoForm:
 
 
 def wedge(x: Sequence[Poly], y: Sequence[Poly], a: int, b: int) -> Poly:
-    """Return the entry ab of dx∧dy, of two gradients."""
+    """Return the entry ab of dx∧dy from the gradients of x and y."""
     return x[a] * y[b] - x[b] * y[a]

@@ -6,7 +6,7 @@ from typing import Any
 from verify import observables
 from verify.arithmetic.systems import ball, float64
 from verify.execution.plan import Plan, Results, Study, results_of_tasks, scene_name, toml_section
-from verify.kernels.run_inputs import SECTIONS
+from verify.kernels.run_inputs import DEFAULT_SECTIONS
 from verify.observables.observable import has_no_defect
 from verify.runs.digits_on_demand import WORTH_COMPILING
 from verify.runs.task import RunTask
@@ -54,7 +54,7 @@ def _common_fields(scene: Scene) -> dict[str, Any]:
     return scene.hamiltonian_fields() | {
         "t0": scene.t0, "arithmetic": grid.arithmetic, "digits": grid.digits, "points": 0,
         "observables": select_observables(scene.exact_hamiltonian(), grid.observables),
-        "sections": POINTS if shares_runs(scene) else SECTIONS,
+        "sections": POINTS if shares_runs(scene) else DEFAULT_SECTIONS,
         "shares_kernel": grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     }  # fmt: skip
 

@@ -119,7 +119,8 @@ def flow_tasks(scene: Scene, flow: RegionFlow) -> Iterator[FlowTask]:
                 steps=steps,
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(hamiltonian),
-                distance=is_scheme and flow.exact and hamiltonian.planar,  # of curves in it
+                # Hausdorff distances are of curves in the plane.
+                distance=is_scheme and flow.exact and hamiltonian.planar,
                 point=point,
                 plane=flow.plane,
             )

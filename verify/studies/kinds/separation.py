@@ -55,9 +55,9 @@ class SeparationTask(StartTask):
 
         A requested run is done in place of one of the chain's.
         """
-        of_points = self.point_cost * min(self.steps, self.points)
+        checkpoint_cost = self.point_cost * min(self.steps, self.points)
         difference = 0 if self.run is None else self.run.cost - self.steps * step_cost(AUTO)
-        return of_points + self.runs * self.steps * step_cost(AUTO) + difference
+        return checkpoint_cost + self.runs * self.steps * step_cost(AUTO) + difference
 
     @property
     def ensemble(self) -> str | None:
@@ -94,7 +94,8 @@ class FormSeparationTask(SeparationTask):
     """Split W of a float64 run into truncation and rounding."""
 
     result = SeparationInDegrees
-    runs = 8  # of which those beside float64 are done twice and carry matrices
+    # More than the plane's three: the runs beside float64 are done twice and carry matrices.
+    runs = 8
     points = Matrices.points
     point_cost = 400_000
     kind: Literal["separation in degrees"] = "separation in degrees"
@@ -106,7 +107,10 @@ class FormSeparationTask(SeparationTask):
 
 
 class _SplitKind(NamedTuple):
-    """The task of a split, and its keys in a `SceneResult`: for the grid, and for other grids."""
+    """The task of a split, and the keys of its results in a `SceneResult`.
+
+    `own_key`: that of the scene's `[grid]`; `grid_key`: that of its `[[separation]]` sections.
+    """
 
     task: type[SeparationTask]
     own_key: str
@@ -125,7 +129,7 @@ def _rows(scene: Scene, scheme: str, grid: Grid) -> Sequence[Sequence[Separation
     task = _SPLITS[scene.exact_hamiltonian().structure].task
     shares = grid is scene.grid and shares_runs(scene)
     runs: Iterator[dict[str, Any]] = repeat({})
-    if shares:  # they are in the same order
+    if shares:  # `grid_tasks` lists the runs in the order of the loops below
         runs = ({"run": run} for run in grid_tasks(scene, scheme))
     return [
         [
@@ -152,8 +156,8 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     title = f"{scene_name(scene)}: truncation separated from rounding"
     for grid in (*_own_grids(scene), *_further_grids(scene)):
         if preserves:
-            without = f"{structure.identity} is proved: the truncation part is exactly 0"
-            plan.leave_out(f"{title} for {scheme}", without)
+            reason = f"{structure.identity} is proved: the truncation part is exactly 0"
+            plan.leave_out(f"{title} for {scheme}", reason)
             continue
         for task in chain.from_iterable(_rows(scene, scheme, grid)):
             plan.need(task, f"{title} in {structure.accumulated}")

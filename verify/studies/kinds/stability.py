@@ -30,11 +30,12 @@ from verify.scenes.scene import Scene
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, StabilityMap
 from verify.scenes.values import ExactNumber, StepSize
 
-_RUN_COST = 40_000_000  # about what a run costs that is judged, however short
+# Costs are in float64 steps, and estimates.
+_RUN_COST = 40_000_000  # a verdict on one run, however short
 _BISECTION_COST = 3 * _RUN_COST
-_CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
-_MOTION_COST = 1_000_000  # of a unit of time of the exact motion in n degrees of freedom, at ω = 1
-_STEPS_OF_A_CELL = 4  # for each of its steps: a neighbour's, and those with W
+_CELL_COST = _RUN_COST // 8  # a cell of a map: one short run judges most of them
+_MOTION_COST = 1_000_000  # a unit of time of the exact motion, n degrees of freedom, ω = 1
+_COST_OF_CELL_STEP = 4  # a step of a cell's orbit, with its neighbour's step and those with W
 AnySection = TypeVar("AnySection", LargestStepOver, StabilityMap, OrbitMap)
 
 
@@ -137,7 +138,7 @@ class OrbitMapTask(_FromATime):
     def cost(self) -> int:
         """About the number of float64 steps that it is worth."""
         cells = len(self.across) * len(self.upwards)
-        return _RUN_COST + cells * self.steps * _STEPS_OF_A_CELL
+        return _RUN_COST + cells * self.steps * _COST_OF_CELL_STEP
 
     def compute(self, keeper: Keeper) -> OrbitMapResult:
         """Return the kind of each orbit."""

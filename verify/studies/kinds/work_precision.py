@@ -18,7 +18,7 @@ from verify.studies.work_precision.peers import InitialValueProblem
 if TYPE_CHECKING:
     from verify.studies.work_precision.ladder import SchemeErrors
 
-_POINT_COST = 80_000_000  # of a point of error against run time: some tenths of a second
+_POINT_COST = 80_000_000  # float64 steps: a point takes some tenths of a second
 _NOT_ASKED = "not asked for; `peers = true` in a scene asks, --peers in one line"
 
 
@@ -64,7 +64,10 @@ class WorkPrecisionTask(HamiltonianTask):
     def measure(
         self, advance: Callable[[int], None], errors: "SchemeErrors | None" = None
     ) -> WorkPrecisionResult:
-        """Do `compute`; `advance` is called with the number of points just done."""
+        """Measure as `compute` does; `advance` is called with the number of points just done.
+
+        `errors`: those that `prepare` returned, computed here if they are left out.
+        """
         from verify.studies.work_precision.measurement import work_precision
 
         scheme_errors = errors or self.prepare(advance)
@@ -125,7 +128,7 @@ def _peers(requested: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, st
 
 
 def _problem(library: str) -> str:
-    """Return the reason why it cannot be drawn; empty if it can."""
+    """Return the reason why a peer of this library cannot be drawn; empty if it can."""
     is_installed = find_spec(library) is not None
     return "" if is_installed else f"{library} is not installed; the extra `peers` has it"
 

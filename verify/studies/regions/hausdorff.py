@@ -25,8 +25,8 @@ import numpy as np
 
 from verify.errors import InputError
 
-LEAF = 8  # segments
-_STACK_DEPTH = 64  # a stack that no tree of fewer than 2^60 segments fills
+LEAF_SIZE = 8  # segments
+_STACK_DEPTH = 64  # no tree of fewer than 2^60 segments fills such a stack
 
 
 def segments(curves: Sequence[np.ndarray[Any, np.dtype[np.float64]]]) -> Any:
@@ -38,11 +38,11 @@ def segments(curves: Sequence[np.ndarray[Any, np.dtype[np.float64]]]) -> Any:
 def boxes(rows: Any) -> Any:
     """Build the tree: node k has the box x_min, y_min, x_max, y_max and the children 2k, 2k + 1."""
     leaves = 1
-    while leaves * LEAF < len(rows):
+    while leaves * LEAF_SIZE < len(rows):
         leaves *= 2
     # Copies of the last segment fill the last leaves: they change no box and no nearest distance.
-    padded = np.concatenate((rows, np.repeat(rows[-1:], leaves * LEAF - len(rows), axis=0)))
-    corners = padded.reshape(leaves, 2 * LEAF, 2)
+    padded = np.concatenate((rows, np.repeat(rows[-1:], leaves * LEAF_SIZE - len(rows), axis=0)))
+    corners = padded.reshape(leaves, 2 * LEAF_SIZE, 2)
     tree = np.empty((2 * leaves, 4))
     tree[leaves:] = np.hstack((corners.min(axis=1), corners.max(axis=1)))
     while leaves > 1:
@@ -87,8 +87,8 @@ def nearest(x: float, y: float, rows: Any, tree: Any, hint: int, stack: Any) -> 
         if _to_box(x, y, tree[node]) >= best:
             continue
         if node >= leaves:
-            first = (node - leaves) * LEAF
-            for k in range(first, min(first + LEAF, len(rows))):
+            first = (node - leaves) * LEAF_SIZE
+            for k in range(first, min(first + LEAF_SIZE, len(rows))):
                 square = to_segment(x, y, rows[k])
                 if square < best:
                     index, best = k, square
@@ -108,10 +108,12 @@ def new_stack() -> Any:
 
 
 Curve = np.ndarray[Any, np.dtype[np.float64]]
-RELATIVE = 1e-6  # how closely the polylines' distance is enclosed
-_ROUNDING = 2.0**-48  # of the greatest coordinate: ours, not that of the points
-FARTHEST, _LEAST = 1e150, 1e-150  # so that no square overflows, nor is lost where it matters
-_MOST_DIVISIONS = 60  # divisions of one segment
+RELATIVE = 1e-6  # the relative width of the enclosure of the polylines' distance
+# Relative to the greatest coordinate: the rounding of this module, not that of the points.
+_ROUNDING = 2.0**-48
+# The square of no coordinate overflows, and a square that matters is not lost.
+FARTHEST, _LEAST = 1e150, 1e-150
+_MAX_DIVISIONS = 60  # a segment's part this deep is divided no further
 _HALVINGS = 40
 
 
@@ -159,9 +161,10 @@ def _segments(name: str, curves: Sequence[Curve]) -> Any:
 
 
 def _enclose_distance(first: Any, second: Any, rounding: float) -> tuple[float, float]:
-    """Return the least and the greatest that the polylines' distance can be, up to `rounding`."""
+    """Return bounds, from below and above, of the polylines' distance, up to `rounding`."""
     forth = _enclose_directed(first, second, 0.0, rounding)
-    # What is nearer than the one direction's distance does not matter for the other's.
+    # The distance is the maximum of both directions: a point of the second set that is nearer than
+    # the first direction's distance does not change it.
     back = _enclose_directed(second, first, forth[0], rounding)
     return back[0], max(forth[1], back[1])
 
@@ -171,8 +174,8 @@ def _enclose_directed(
 ) -> tuple[float, float]:
     near = np.empty((len(rows), 2), dtype=np.int64)
     parts, nears = (
-        np.empty((_MOST_DIVISIONS + 2, 4)),
-        np.empty((_MOST_DIVISIONS + 2, 3), dtype=np.int64),
+        np.empty((_MAX_DIVISIONS + 2, 4)),
+        np.empty((_MAX_DIVISIONS + 2, 3), dtype=np.int64),
     )
     work = new_stack(), parts, nears
     low, high = _compile_loop()(rows, others, boxes(others), near, *work, at_least, rounding)
@@ -191,17 +194,18 @@ def _distance(x: float, y: float, row: Any) -> float:
 
 
 def _bound_on_part(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float]:
-    """Return a bound on the distance along a part of a segment, and where to divide it (0 … 1).
+    """Return a bound on the distance along a part of a segment, and where to divide it.
 
-    `part` is x₀, y₀, x₁, y₁; up to some place on it the distance from the segment `start` bounds
-    it, beyond that the one from `end`, these being the nearest to its ends. The place is looked for
-    until the bound is `enough`.
+    `part` is x₀, y₀, x₁, y₁; `start` and `end` are the other set's segments nearest to its ends. Up
+    to some point of the part the distance from `start` is the bound, and beyond it that from `end`.
+    Bisection looks for the point until the bound is at most `enough`. The part is to be divided
+    there, at a share of its length between 0.05 and 0.95.
     """
     x, y, along_x, along_y = part[0], part[1], part[2] - part[0], part[3] - part[1]
     low, high = 0.0, 1.0
     ends = max(_distance(x, y, start), _distance(part[2], part[3], end))
     bound = max(ends, min(_distance(part[2], part[3], start), _distance(x, y, end)))
-    for _ in range(_HALVINGS):  # where the two are equal, or come as close as they do
+    for _ in range(_HALVINGS):  # towards the point at which both distances are equal
         if bound <= enough:
             break
         middle = (low + high) / 2
@@ -226,9 +230,10 @@ def _greatest_on_segment(
     low: float,
     rounding: float,
 ) -> tuple[float, float]:
-    """Return bounds, from below and above, of the greatest distance of a segment from `others`.
+    """Return bounds, from below and above, of the greatest distance from `others`.
 
-    The first is at least `low`. `near` has the indices of the segments nearest to its ends.
+    The first is the greater of `low` and the distances at points of the segment `row`, the second
+    is of this segment alone. `near` has the indices of the segments nearest to its ends.
     """
     high, count = 0.0, 1
     for k in range(4):
@@ -240,12 +245,12 @@ def _greatest_on_segment(
         start, end, depth = nears[count]
         enough = low * (1.0 + RELATIVE) + rounding
         ends = _distance(x0, y0, others[start]) + _distance(x1, y1, others[end])
-        # The distance changes at most as fast as the place.
+        # Along the part the distance changes at most by the length that is gone.
         bound, share = (ends + sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))) / 2, 0.5
         if bound > enough:
             closer, share = _bound_on_part(parts[count], others[start], others[end], enough)
             bound = min(bound, closer)
-        if bound <= enough or depth == _MOST_DIVISIONS:
+        if bound <= enough or depth == _MAX_DIVISIONS:
             high = max(high, bound)
             continue
         x, y = x0 + share * (x1 - x0), y0 + share * (y1 - y0)

@@ -1,7 +1,8 @@
 """The mean of Λ over the region inside a closed curve, which is its relative change of area.
 
-In n degrees of freedom it is that of W's entry at (p_i, q_i), where the region lies in the plane
-(q_i, p_i): ω after N steps on the region is 1 + W_ii times ω before. In one of them W is Λ.
+Λ is det M − 1, M the product of the steps' Jacobians. In n degrees of freedom it is the mean of
+the entry of W = MᵀΩM − Ω at (p_i, q_i), if the region lies in the plane (q_i, p_i): the form ω
+after N steps is, on the region, 1 + W_ii times ω before. In one degree of freedom W_11 is Λ.
 
 A region is swept by rays from a centre c to its curve γ: the integral of f over it is that of
 f(c + r (γ − c)) r (γ − c) × γ' over 0 ≤ r ≤ 1 and the curve, for every closed curve, as what is
@@ -28,14 +29,16 @@ from verify.studies.regions.panels import NODES, rule
 from verify.studies.regions.point_carriers import QP_PLANE, RegionPlane
 
 _FROM_START = Fraction(0)
-_FIRST = 8  # cells along the curve, at least
-_AMID = 16  # points of an arc that tell where the middle is
-_MOST_POINTS = 60_000
-_AGREED = 3e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
-_ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
-_DEFECT = 2.0**-48  # of one step's S, where that is made from J's rounded entries
-_Density = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of points (q, p) of the region's plane
-_Cell = tuple[int, float, float, float, float]  # an arc, from where to where on it, and on the rays
+_LEAST_FIRST_CELLS = 8  # cells along the curve
+_CENTRE_POINTS = 16  # points of each arc whose mean is the centre
+_MAX_POINTS = 60_000
+# Relative to the mean: the cells' difference from their quarters; the quarters' error is far less.
+_TOLERANCE = 3e-3
+# Relative to |Λ| by ΔJ's closed form in float64: such errors mostly cancel in a mean.
+_ROUNDING = 1e-12
+_DEFECT_ROUNDING = 2.0**-48  # S of one step from J's rounded entries
+_Density = Callable[[np.ndarray, np.ndarray], np.ndarray]  # a function of (q, p) in the plane
+_Cell = tuple[int, float, float, float, float]  # arc, its s from and to, the ray's r from and to
 
 
 @dataclass(frozen=True)
@@ -58,8 +61,8 @@ def mean_over(
 ) -> RegionMean:
     """Return the mean of Λ after N steps of a scheme over the outline's region, in float64.
 
-    If H depends on time the steps start at t0. In n degrees of freedom it is the mean of W, in
-    `plane`. The rays start at the centre (q, p). Raises LeftRangeError.
+    If H depends on time the steps start at t0. In n degrees of freedom it is the mean of W's entry
+    of `plane`. The rays start at the centre (q, p). Raises LeftRangeError.
     """
     observables = frozenset({hamiltonian.structure.of_run})
     point_map = PointMap(
@@ -80,7 +83,11 @@ def mean_over(
     has_written_defect = (
         name == "lam" or step_map_of(hamiltonian, scheme).written_defect is not None
     )
-    return mean if has_written_defect else RegionMean(mean.value, mean.error + steps * _DEFECT)
+    return (
+        mean
+        if has_written_defect
+        else RegionMean(mean.value, mean.error + steps * _DEFECT_ROUNDING)
+    )
 
 
 def find_middle(outline: Outline) -> tuple[float, float]:
@@ -88,7 +95,7 @@ def find_middle(outline: Outline) -> tuple[float, float]:
 
     Rays from elsewhere may leave the region, where the map may not be defined.
     """
-    s = (np.arange(_AMID) + 0.5) / _AMID
+    s = (np.arange(_CENTRE_POINTS) + 0.5) / _CENTRE_POINTS
     points = [np.broadcast_arrays(s, *arc(FLOAT, s))[1:] for arc in outline.arcs]
     x, y = np.mean(points, axis=(0, 2))
     return float(x), float(y)
@@ -96,25 +103,25 @@ def find_middle(outline: Outline) -> tuple[float, float]:
 
 def _compute_mean(density: _Density, outline: Outline, centre: tuple[float, float]) -> RegionMean:
     region = _Region(outline, centre, density)
-    count = -(-_FIRST // len(outline.arcs))
+    count = -(-_LEAST_FIRST_CELLS // len(outline.arcs))
     first = [
         (arc, k / count, (k + 1) / count, 0.0, 1.0)
         for arc in range(len(outline.arcs))
         for k in range(count)
     ]
     families = region.families(first, region.sums(first))
-    points = 5 * NODES**2 * len(first)  # of each cell, and of its quarters
+    points = 5 * NODES**2 * len(first)  # a cell and its four quarters, each a square of nodes
     while True:
         area = sum(f.quarters[0].sum() for f in families)
         mean = sum(f.quarters[1].sum() for f in families) / area
         noise = _ROUNDING * sum(f.quarters[2].sum() for f in families) / abs(area)
         error = sum(f.difference(mean) for f in families) / abs(area) + noise
-        share = _AGREED * abs(mean * area) / (2 * len(families))
+        share = _TOLERANCE * abs(mean * area) / (2 * len(families))
         # Cells with more than their share of the error are cut; the share is half of what an even
         # spread allows.
         cut = [f for f in families if f.difference(mean) > share]
         points += 16 * NODES**2 * len(cut)
-        if error <= _AGREED * abs(mean) or not cut or points > _MOST_POINTS:
+        if error <= _TOLERANCE * abs(mean) or not cut or points > _MAX_POINTS:
             return RegionMean(float(mean), float(error))
         sharp = [f for f in families if f.difference(mean) <= share]
         cells = [cell for f in cut for cell in _quarters(f.cell)]
@@ -131,7 +138,7 @@ class _Region:
     density: _Density
 
     def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_CellFamily]":
-        """Cut the cells, whose sums are known, into quarters."""
+        """Cut the cells, whose `sums` are computed, into quarters."""
         parts = [part for cell in cells for part in _quarters(cell)]
         quarters = self.sums(parts).reshape(3, len(cells), 4)
         # Summed without signs later: two wrong totals may agree by chance, not all cells at once.
@@ -141,7 +148,7 @@ class _Region:
         ]
 
     def sums(self, cells: list[_Cell]) -> np.ndarray:
-        """Return each cell's area and the integrals of the density and of its size: (3, cells)."""
+        """Return each cell's area, and its integrals of Λ and of |Λ|: (3, cells)."""
         x, y, weights = _sample_cells(self.outline, self.centre, cells)
         lam = self.density(x, y)
         parts = np.array([weights, weights * lam, np.abs(weights * lam)])
@@ -158,9 +165,9 @@ class _CellFamily:
     differences: np.ndarray
 
     def difference(self, mean: float) -> float:
-        """Return the difference of the integral of Λ − mean.
+        """Return by how much the quarters change the cell's integral of Λ − mean.
 
-        Where Λ, or W, is constant no area's error matters.
+        If Λ, or W, is constant, an error of the cell's area does not count in it.
         """
         return abs(float(self.differences[1] - mean * self.differences[0]))
 

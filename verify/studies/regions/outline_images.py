@@ -19,10 +19,10 @@ from verify.studies.regions.point_carriers import ExactFlowCarrier, RegionPlane
 from verify.studies.regions.polyline import format_points
 from verify.studies.regions.region_area import MeasuredArea
 
-_DRAWN_POINTS = 20_000  # of a curve before it is thinned
-_SHOWN = 12  # significant digits at most
-_SAFETY = 1.01  # for what lies between the points of dense curves
-_Nodes = Sequence[tuple[np.ndarray, ...]]  # of panels, q and p of each
+_POINTS_BEFORE_THINNING = 20_000  # points of a drawn curve
+_MAX_DIGITS = 12  # significant digits of a printed area
+_SAFETY = 1.01  # between the points of dense curves the distance may be greater than at them
+_Nodes = Sequence[tuple[np.ndarray, ...]]  # q and p of each panel's nodes
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class OutlineImage:
     def curve(self, index: int) -> np.ndarray:
         """Return the image in the plane (q_k, p_k), k − 1 = index: points (n, 2)."""
         n = self.plane.degrees
-        return densify([(z[index], z[n + index]) for z in self.after], _DRAWN_POINTS)[0]
+        return densify([(z[index], z[n + index]) for z in self.after], _POINTS_BEFORE_THINNING)[0]
 
 
 # -- results --------------------------------------------------------------------------------------
@@ -47,7 +47,7 @@ class OutlineImage:
 def build_outline(image: OutlineImage, curves: Sequence[np.ndarray]) -> CarriedOutline:
     """Build the result of one outline; `curves`: one for each plane (q_k, p_k)."""
     region, plane = image.measured, image.plane
-    area = abs(region.area)  # of a curve that runs clockwise it has a sign
+    area = abs(region.area)  # the area inside a clockwise curve is negative
     change, error = format_with_error(region.change, region.error)
     return CarriedOutline(
         name=image.outline.name,
@@ -68,7 +68,7 @@ def _build_projections(region: MeasuredArea, curves: Sequence[np.ndarray]) -> It
 
 def format_with_error(value: Fraction, error: Fraction) -> tuple[str, str]:
     """Format the value with one digit more than is known, and its error with that of the text."""
-    value_text = known_text(value, error / 10, _SHOWN)
+    value_text = known_text(value, error / 10, _MAX_DIGITS)
     return value_text, upper(error + abs(value - Fraction(value_text)))
 
 
@@ -110,7 +110,7 @@ def _greatest_with_error(values: Sequence[tuple[float, float]]) -> tuple[float, 
 def _curve_distance(nodes: _Nodes, exact_nodes: _Nodes) -> tuple[float, float]:
     """Return the Hausdorff distance of two curves with its error, from the nodes of their panels.
 
-    It is at most the greatest distance of images of the same point.
+    It is cut to the greatest distance of two images of the same point, which it cannot exceed.
     """
     (curve, sagitta), (exact_curve, exact_sagitta) = densify(nodes), densify(exact_nodes)
     distance = hausdorff([curve], [exact_curve], sagitta, exact_sagitta)

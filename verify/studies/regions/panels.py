@@ -20,12 +20,12 @@ from verify.arithmetic.arb import Ball, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 
 NODES = 16
-_GUARD = 40  # bits, of which differences of nodes take a few
-_MOST_POINTS = 40_000  # of a dense curve
-_BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
-_MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
+_GUARD_BITS = 40  # differences of nodes cancel a few of them
+_DENSE_POINTS = 40_000  # points of a dense curve, within the limits per panel
+_POINTS_PER_PANEL = 16, 128  # the least and the most between the 16 nodes of a panel
+_SAGITTA_FACTOR = 1.5  # an arc may be farther from its chord elsewhere than in its middle
 Points = tuple[Any, ...]  # q and p, or q1 … qn and p1 … pn: a sequence of each
-PanelPart = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to where on it
+PanelPart = tuple[int, int, Fraction, Fraction]  # outline, arc, and its s from and to
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Rule:
 @cache
 def rule(bits: int) -> Rule:
     """Return the rule whose numbers are good to 2^−bits."""
-    with working_precision(bits + _GUARD):
+    with working_precision(bits + _GUARD_BITS):
         roots = [_root(k) for k in range(NODES)]
         nodes, weights = [(1 - x) / 2 for x, _ in roots], [w / 2 for _, w in roots]
         d = _derivative(nodes)
@@ -58,30 +58,35 @@ def rule(bits: int) -> Rule:
             [weights[i] * d[i][j] - weights[j] * d[j][i] for j in range(NODES)]
             for i in range(NODES)
         ]
-    whole = [[round(x * 2 ** (bits - 1)) for x in _midpoints(row)] for row in pairs]
-    area_matrix = np.array(whole, dtype=object)
+    # S_ij is half of these differences, hence bits − 1.
+    scaled = [[round(x * 2 ** (bits - 1)) for x in _midpoints(row)] for row in pairs]
+    area_matrix = np.array(scaled, dtype=object)
     derivative = tuple(map(_midpoints, d))
     return Rule(bits, _midpoints(nodes), _midpoints(weights), derivative, area_matrix)
 
 
 @lru_cache(maxsize=8192)
 def nodes_between(bits: int, start: Fraction, end: Fraction) -> tuple[Fraction, ...]:
-    """Return the nodes of that rule on left ≤ s ≤ right.
+    """Return the nodes of that rule on start ≤ s ≤ end.
 
-    Curves are first cut in the same places.
+    The cache serves the first cuts, which are the same for every curve.
     """
-    width, (shares, whole) = end - start, _common(bits)
-    first, step = start.numerator * width.denominator * whole, width.numerator * start.denominator
-    below = start.denominator * width.denominator * whole
-    return tuple(Fraction(first + step * share, below) for share in shares)
+    width, (shares, common) = end - start, _nodes_over_common_denominator(bits)
+    first = start.numerator * width.denominator * common
+    factor = width.numerator * start.denominator
+    denominator = start.denominator * width.denominator * common
+    return tuple(Fraction(first + factor * share, denominator) for share in shares)
 
 
 @cache
-def _common(bits: int) -> tuple[list[int], int]:
-    """Return the nodes' numerators over one denominator, for one reduction a node, not three."""
+def _nodes_over_common_denominator(bits: int) -> tuple[list[int], int]:
+    """Return the nodes' numerators over one denominator, and that denominator.
+
+    A node of a part then takes one reduction of a fraction, not three.
+    """
     nodes = rule(bits).nodes
-    whole = lcm(*(s.denominator for s in nodes))
-    return [int(s * whole) for s in nodes], whole
+    common = lcm(*(s.denominator for s in nodes))
+    return [int(s * common) for s in nodes], common
 
 
 def _root(k: int) -> tuple[Ball, Ball]:
@@ -130,8 +135,8 @@ class Panel:
     right: Fraction
     start: Points
     image: Points
-    before: int  # area swept, in units of the carrier's grid and of the rule
-    parts: tuple[int, ...]  # that by the image, in each plane (q_k, p_k)
+    before: int  # the area that the panel sweeps, in units of the carrier's grid and of the rule
+    parts: tuple[int, ...]  # the areas that its image sweeps in each plane (q_k, p_k)
 
     @property
     def after(self) -> int:
@@ -153,15 +158,16 @@ class Panel:
 
 @dataclass(frozen=True)
 class PanelFamily:
-    """A panel in halves, with their difference from the whole panel.
+    """A panel in halves, with the difference of their areas from the whole panel's.
 
-    `difference`: of the areas before and after the map; `unsure`: of that before alone.
+    `difference`: that of the areas before the map and that after it, added without signs; `unsure`:
+    that before the map alone. `stuck`: halving no longer reduces the difference.
     """
 
     halves: tuple[Panel, Panel]
     difference: int
     unsure: int
-    parts: tuple[int, ...]  # the difference in each plane, of the images
+    parts: tuple[int, ...]  # the difference after the map, in each plane (q_k, p_k)
     stuck: bool = False
 
     @property
@@ -182,18 +188,18 @@ def split_by_panel(points: Points) -> list[Points]:
 
 
 def densify(
-    panels: Sequence[tuple[np.ndarray, ...]], points: int = _MOST_POINTS
+    panels: Sequence[tuple[np.ndarray, ...]], points: int = _DENSE_POINTS
 ) -> tuple[np.ndarray, float]:
-    """Return about so many points (n, 2) of a closed curve, and its distance from their chords.
+    """Return about `points` points (n, 2) of a closed curve, and its distance from their chords.
 
-    They are interpolated from the nodes of its panels. The distance is an estimate, by points
-    midway between those.
+    Both are interpolated from the nodes of its panels. The distance is an estimate, by a point of
+    the curve midway between each two.
     """
-    least, most = _BETWEEN
+    least, most = _POINTS_PER_PANEL
     between = min(most, max(least, points // len(panels)))
     matrix = interpolation(2 * between)
     nodes = np.array([np.stack(z, axis=1) for z in panels], dtype=np.float64).reshape(-1, NODES, 2)
     fine = np.einsum("kn,pnd->pkd", matrix, nodes).reshape(-1, 2)
     vertices, middles = fine[::2], fine[1::2]
     sagittas = middles - (vertices + np.roll(vertices, -1, axis=0)) / 2
-    return vertices, float(_MORE * np.hypot(*sagittas.T).max())
+    return vertices, float(_SAGITTA_FACTOR * np.hypot(*sagittas.T).max())

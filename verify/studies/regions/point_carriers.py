@@ -5,9 +5,9 @@ area is then the integral of ω over it, and ∮ p·dq along its outline; the ot
 same for all its points, until a map moves them. Points are q and p, or q1 … qn and p1 … pn, in the
 order of their `RegionPlane`: a sequence of each.
 
-A scheme's map in float64 is compared with the same steps with compensated sums. These show nothing
-of a clock's rounding: if H depends on time, and in wider number systems, the map is compared
-with a wider one. The exact flow comes with its own bound.
+To measure its rounding, a scheme's map in float64 is compared with the same steps with compensated
+sums. These do not show the rounding of a clock: if H depends on time, the map is compared with one
+of more digits, as it is in wider number systems. The exact flow comes with its own bound.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -32,8 +32,8 @@ from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.panels import Points
 
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
-_PRECISE = 2000  # bits with which the size of an outline is found
-_WIDER = 19  # digits that the finer arithmetic has more: one limb
+_SIZE_BITS = 2000  # the precision in which the size of an outline is computed
+_EXTRA_DIGITS = 19  # the digits that the finer arithmetic has more: one limb
 _SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
 
 
@@ -41,8 +41,8 @@ _SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
 class RegionPlane:
     """The plane of one pair of coordinates through a point.
 
-    `names`: q1 … qn, p1 … pn, the order of points' coordinates here; `point`: their values, of
-    which those of the pair `index`, from 0, are the region's own.
+    `names`: q1 … qn, p1 … pn, the order of points' coordinates here; `point`: their values. Those
+    of the pair `index`, from 0, are not read: the region's points have their own.
     """
 
     names: tuple[str, ...] = PLANE[::-1]
@@ -51,9 +51,9 @@ class RegionPlane:
 
     @classmethod
     def from_point(cls, point: Mapping[str, Fraction], plane: int) -> "RegionPlane":
-        """Return the plane through this point, p and q or p1 … qn by names.
+        """Return the plane (q_i, p_i), i = `plane` ≥ 1, through this point.
 
-        `plane` is i, from 1.
+        `point` has p and q, or p1 … qn, by their names.
         """
         names = tuple(sorted(point, key=lambda name: (name[0] != "q", int(name[1:] or 1))))
         return cls(names, tuple(point[name] for name in names), plane - 1)
@@ -81,9 +81,13 @@ QP_PLANE = RegionPlane()
 
 
 def smaller_than_one(outline: Outline) -> int:
-    """Return the bits by which the outline's size is below 1, to be added after the point."""
+    """Return the bits by which the outline's size is below 1, 0 if it is not.
+
+    An absolute arithmetic needs so many more after the point. The size is estimated by seven points
+    of each arc.
+    """
     mp = MPContext()
-    mp.prec = _PRECISE
+    mp.prec = _SIZE_BITS
     points = [arc(mp, mp.mpf(k) / 7) for arc in outline.arcs for k in range(7)]
     size = max(abs(z[i] - points[0][i]) for z in points for i in (0, 1))
     return max(0, -int(mp.mag(size))) if size else 0
@@ -92,13 +96,13 @@ def smaller_than_one(outline: Outline) -> int:
 class PointCarrier(Protocol):
     """A number system's points, and a map of them."""
 
-    bits: int  # about so many bits after the point are right
-    grid: int  # 2^grid is what `whole` multiplies by
-    sampled: int  # panels that are carried in finer arithmetic
-    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
+    bits: int  # the number of bits after the point that are right, about
+    grid: int  # `whole` multiplies by 2^grid
+    sampled: int  # the number of panels that are carried in finer arithmetic
+    radius: Fraction | None  # a bound of the images' error; None: finer arithmetic measures it
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
-        """Return an arc's points."""
+        """Return an arc's points at the parameters `s`."""
 
     def images(self, *points: Any) -> Points:
         """Return their images."""
@@ -155,7 +159,7 @@ class FloatCarrier(_Floats):
         # Compensated sums have the same clock, and would not show its rounding: a wider system
         # does.
         if hamiltonian.time_dependent:
-            wide = number_systems.automatic()[-1].make(self.digits + _WIDER)
+            wide = number_systems.automatic()[-1].make(self.digits + _EXTRA_DIGITS)
             self._finer = steps_of(arithmetic=wide)
             self.sampled = _SAMPLED
             self.method = f"float64; its rounding by {_SAMPLED} panels in {wide.name}"
@@ -193,12 +197,13 @@ class ExactFlowCarrier(_Floats):
     def images(self, *points: Any) -> Points:
         starts = dict(zip(self.plane.names, points, strict=True))
         solution = exact_points(self._hamiltonian, starts, [self._time], self._t0)
-        # Probe asks for images several times; one bound holds for all of them.
+        # A `Probe` requests images several times; one bound holds for all of them.
         self.radius = max(self.radius or Fraction(0), Fraction(solution.bound))
         self.method = solution.method
         return tuple(solution.points[name][0] for name in self.plane.names)
 
     def finer(self, *points: Any) -> Points:
+        # Never called: `radius` is not None.
         raise NotImplementedError("the exact flow's error is known")
 
 
@@ -217,14 +222,16 @@ class WideCarrier:
         self.name, self.digits, self.plane = name, digits, plane
         # A bit is 0.301 digits: `smaller` bits below 1 need 3/10 as many digits more, rounded up.
         self._places = digits + -(-smaller * 3 // 10)
-        self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
+        self.method = (
+            f"{name}; its rounding by {_SAMPLED} panels with {digits + _EXTRA_DIGITS} digits"
+        )
         self.bits, self.grid = bits_for(digits), bits_for(self._places)
         self.arithmetic = number_systems.get(name, self._places)
         self._map = self._steps(arithmetic=self.arithmetic)
 
     @cached_property
     def _wider(self) -> PointMap:
-        finer = number_systems.get(self.name, self._places + _WIDER)
+        finer = number_systems.get(self.name, self._places + _EXTRA_DIGITS)
         return self._steps(arithmetic=finer)
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:

@@ -7,8 +7,8 @@ import numpy as np
 from verify.arithmetic.float_context import FLOAT
 from verify.scenes.shapes.outline import Shape
 
-_DRAWN = 800  # a curve is drawn to this part of the picture's size
-_TRACED = 400  # points of an arc that is drawn as it is
+_RESOLUTION = 800  # a curve is drawn to the picture's size divided by this
+_POINTS_PER_ARC = 400
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -38,16 +38,16 @@ def thin(points: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def thin_for_drawing(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Thin the curves of one picture as far as the picture does not show it."""
+    """Thin the curves of one picture, each to within the picture's resolution."""
     extent = float(np.ptp(np.concatenate(curves), axis=0).max())
-    return [thin(curve, extent / _DRAWN) for curve in curves]
+    return [thin(curve, extent / _RESOLUTION) for curve in curves]
 
 
 def _from_chord(points: np.ndarray, start: complex, end: complex) -> np.ndarray:
     """Return distances of points of the complex plane from a segment."""
     along, offsets = end - start, points - start
     length = abs(along)
-    if length < _TINY:  # a point, which nothing can be divided by
+    if length < _TINY:  # the segment is a point: no division by its length
         return abs(offsets)
     offsets /= along
     offsets -= np.minimum(np.maximum(offsets.real, 0), 1)
@@ -68,7 +68,7 @@ def parse_points(points: str) -> np.ndarray:
 
 def trace_outlines(shape: Shape) -> list[np.ndarray]:
     """Return the shape's own outlines, thinned for drawing."""
-    s = np.arange(_TRACED) / _TRACED
+    s = np.arange(_POINTS_PER_ARC) / _POINTS_PER_ARC
     curves = []
     for outline in shape.outlines:
         arcs = (np.broadcast_arrays(*arc(FLOAT, s), s)[:2] for arc in outline.arcs)

@@ -3,11 +3,12 @@
 In n degrees of freedom the area is that of ω, the sum of those of the projections to the planes
 (q_k, p_k), with their signs: ∮ p·dq.
 
-A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each is measured whole
-and in halves; the difference is the error of the whole, and so a bound, and by far, for that of the
-halves, whose areas count. Where shear has stretched the curve so that the difference matters, the
-halves are cut again. Rounding is measured too: the halves' points are carried once more in finer
-arithmetic, and the panels' differences count without their signs. All curves are carried together.
+A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each panel is measured
+whole and in halves. The result takes the areas of the halves; their difference from the whole
+panel's estimates the error of the whole, and so bounds that of the halves by far. If shear has
+stretched the curve so that the difference matters, the halves are cut again. Rounding is measured
+too: points of the halves are carried once more in finer arithmetic, and the panels' differences are
+added without their signs. All curves are carried together.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,10 +32,10 @@ from verify.studies.regions.panels import (
 )
 from verify.studies.regions.point_carriers import PointCarrier
 
-FIRST_PANELS = 8  # of an outline, at least
+FIRST_PANELS = 8  # the least number of panels that an outline is first cut into
 MOST_NODES = 120_000
 _MOST_ROUNDS = 24
-_STUCK = 2  # a difference that halving does not make smaller by this factor is rounding's
+_LEAST_REDUCTION = 2  # halving reduces truncation at least by this factor, and rounding does not
 
 
 class NoAreaError(Exception):
@@ -43,9 +44,9 @@ class NoAreaError(Exception):
 
 @dataclass(frozen=True)
 class Goal:
-    """The greatest error of the quadrature: `change` of the change of area, or `area` of the area.
+    """The greatest error of the quadrature, relative to the change of area or to the area.
 
-    The greater of the two is enough, so that a change of nothing is not followed into rounding.
+    It is allowed the greater of the two, so that a change of 0 is not followed into rounding.
     """
 
     change: Fraction
@@ -107,7 +108,7 @@ class Probe:
             curve_families = self._select_outline(families, index)
             unsure = sum(family.unsure for family in curve_families)
             if unsure <= self._negligible_area(curve_families):
-                # Before a goal that is a part of 0 is sought for long.
+                # A goal relative to an area of 0 would be pursued in vain.
                 self._check_area(curve_families)
         cut = self._select_to_cut(families)
         for _ in range(_MOST_ROUNDS):
@@ -135,8 +136,7 @@ class Probe:
     def _starts(self, parts: Sequence[PanelPart]) -> list[Points]:
         """Return the nodes of each part, those of one arc in one call."""
         points_of_part: dict[PanelPart, Points] = {}
-        of_arc = groupby(sorted(parts), lambda part: part[:2])
-        for (index, arc), group in of_arc:
+        for (index, arc), group in groupby(sorted(parts), lambda part: part[:2]):
             group_parts = list(group)
             nodes = [s for _, _, a, b in group_parts for s in nodes_between(self.rule.bits, a, b)]
             points = self.carrier.points(self.outlines[index], arc, nodes)
@@ -169,7 +169,7 @@ class Probe:
             families.append(PanelFamily((left, right), difference, unsure, parts))
         return families
 
-    # -- where to cut -------------------------------------------------------------------------
+    # -- which panels to cut ------------------------------------------------------------------
 
     @staticmethod
     def _select_outline(families: Sequence[PanelFamily], index: int) -> list[PanelFamily]:
@@ -200,7 +200,7 @@ class Probe:
                 result.append(family)
                 continue
             children = [next(halves), next(halves)]
-            is_smaller = _STUCK * sum(f.difference for f in children) <= family.difference
+            is_smaller = _LEAST_REDUCTION * sum(f.difference for f in children) <= family.difference
             # A difference that halving hardly reduces, far below the area, comes from rounding: to
             # cut on would never end.
             noise = sizes[family.halves[0].outline] >> (self.carrier.bits // 2)
@@ -234,7 +234,10 @@ class Probe:
         )
 
     def _negligible_area(self, families: Sequence[PanelFamily]) -> int:
-        """Return an area that is 0 in comparison with those that the parts of the curve sweep."""
+        """Return an area that rounding cannot distinguish from 0.
+
+        It is relative to the areas that the curve's panels sweep, added without signs.
+        """
         swept = sum(abs(panel.before) for family in families for panel in family.halves)
         return swept >> (self.carrier.bits // 2)
 
@@ -245,9 +248,10 @@ class Probe:
             raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
 
     def _roundings(self, families: Sequence[PanelFamily]) -> list[int]:
-        """Return the sizes of the panels' differences from finer arithmetic, in all planes.
+        """Return the rounding error of each curve's area, in units of the panels' areas.
 
-        Where the images' error is known, it is that error times the length of the image.
+        It is the sum of the panels' absolute differences from finer arithmetic, in all planes. If
+        the carrier has a bound of the images' error, it is that bound times the image's length.
         """
         panels_of_curves = [
             [h for f in self._select_outline(families, i) for h in f.halves]
@@ -279,6 +283,6 @@ class Probe:
         return Fraction(steps * 5 // 4, 2**self.carrier.grid)
 
     def _rule_rounding(self, panels: Sequence[Panel]) -> int:
-        """Return the rounding of the rule's numbers."""
+        """Return a bound of the error that the rounding of the rule's matrix makes, in units."""
         largest = max(int(abs(self.carrier.whole(x)).max()) for p in panels for x in p.image)
         return len(panels[0].parts) * len(panels) * NODES**2 * largest**2

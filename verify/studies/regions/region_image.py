@@ -1,11 +1,12 @@
 """A shape carried by a scheme's steps or by the exact flow: its areas, the mean of Λ, distances.
 
-The relative change of the region's area is measured twice, by the area inside its image
-(`verify.studies.regions.region_area`) and as the mean of Λ over it
-(`verify.studies.regions.mean_lambda`), which by the change of variables are the same number. In n
+The relative change of the region's area is measured twice: by the area inside its image
+(`verify.studies.regions.region_area`), and as the mean of Λ, the cumulative area error, over it
+(`verify.studies.regions.mean_lambda`). By the change of variables they are the same number. In n
 degrees of freedom the area is that of ω, and the mean that of W's entry in the region's plane: by
-Stokes' theorem they are the same. A probe whose own error is not far below the change is no result:
-float64 then gives way to more digits, and where these do not do either, the image says so.
+Stokes' theorem they are the same. The area's measurement, the probe, is no result unless its error
+is far below the change: it is repeated with more digits, and the result says so if they do not
+suffice.
 """
 
 import contextlib
@@ -50,15 +51,16 @@ from verify.studies.regions.point_carriers import (
 from verify.studies.regions.polyline import thin_for_drawing
 from verify.studies.regions.region_area import Goal, MeasuredArea, NoAreaError, Probe
 
-BELOW = 100  # how many times the probe's error is to be below the change of area
-_MORE_DIGITS = 33
+BELOW = 100  # the change of area must be this many times the probe's error
+_WIDE_DIGITS = 33  # the least digits of the arithmetic that replaces float64
 _FLOAT_DIGITS = 17
-_LOST = 7  # digits
-# Of the region where the map changes area, and where it does not, and of the outlines inside it.
-_PART = Fraction(1, 10**4)  # of the change
-_CHANGED = Goal(_PART, Fraction(1, 10**14))
-_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
-_DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
+_SHEAR_DIGITS = 7  # digits that rounding under shear may take from the area
+_CHANGE_TOLERANCE = Fraction(1, 10**4)  # relative to the change of area
+# Goals in float64: for the region if the map changes areas and if it does not, and for the outlines
+# inside the region in any arithmetic.
+_GOAL_IF_CHANGED = Goal(_CHANGE_TOLERANCE, Fraction(1, 10**14))
+_GOAL_IF_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
+_GOAL_INSIDE = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
 
 @dataclass(frozen=True)
@@ -101,12 +103,12 @@ def carry(
     t0: Fraction | None = None,
     plane: RegionPlane = QP_PLANE,
 ) -> FlowImage:
-    """Return the image of the shape by so many steps of the scheme `map_name`, or by EXACT_FLOW.
+    """Return the image of the shape by `steps` steps of the scheme `map_name`, or by EXACT_FLOW.
 
     If H depends on time the map starts at t0; in n degrees of freedom the shape lies in `plane`.
-    The arithmetic has at least so many digits. `mean_lambda`: the mean of Λ over the region, too;
-    `distance`: that of its outlines from the exact ones. In the result `problem` says why there is
-    no image.
+    The arithmetic has at least `digits` digits. `mean_lambda`: compute the mean of Λ over the
+    region, too; `distance`: compute the distance of its outlines' images from the exact ones. In
+    the result `problem` says why there is no image, or none whose area is known.
     """
     start_time = time.perf_counter()
     iterate = _Iterate(hamiltonian, map_name, step_size, steps, t0 or Fraction(0), plane)
@@ -120,7 +122,7 @@ def carry(
             if mean_lambda and not preserves_area and not fields["problem"]:
                 fields |= _mean_fields(iterate, images[0])
             if distance:
-                with contextlib.suppress(NoFlowError):  # the area is known all the same
+                with contextlib.suppress(NoFlowError):  # the area does not need the exact flow
                     fields |= _distance_fields(iterate, images)
     except (LeftRangeError, NoFlowError, NoAreaError) as error:
         fields = {"problem": error.reason if isinstance(error, NoFlowError) else prose(str(error))}
@@ -157,20 +159,24 @@ def _measure_outlines(
         flow_carrier = ExactFlowCarrier(
             iterate.hamiltonian, iterate.time, iterate.t0, smaller, plane
         )
-        return _carry_all(shape, flow_carrier, _UNCHANGED), flow_carrier
+        return _carry_all(shape, flow_carrier, _GOAL_IF_UNCHANGED), flow_carrier
     arguments = iterate.arguments
     if digits <= _FLOAT_DIGITS:
-        with contextlib.suppress(NoAreaError):  # its points may all be one in float64
+        with contextlib.suppress(NoAreaError):  # in float64 a tiny outline may be one point
             floats = FloatCarrier(*arguments, smaller, plane)
-            images = _carry_all(shape, floats, _UNCHANGED if preserves_area else _CHANGED)
+            images = _carry_all(
+                shape, floats, _GOAL_IF_UNCHANGED if preserves_area else _GOAL_IF_CHANGED
+            )
             region = images[0].measured
             # float64 suffices where nothing changes or its error is far below the change; more
             # nodes, not more digits, would mend a curve that is too long.
             if preserves_area or _is_sharp(region) or _is_unresolved(region):
                 return images, floats
-    digits = max(digits, _MORE_DIGITS)
+    digits = max(digits, _WIDE_DIGITS)
     goal = (
-        _goal_without_change(digits) if preserves_area else Goal(_PART, Fraction(100, 10**digits))
+        _goal_without_change(digits)
+        if preserves_area
+        else Goal(_CHANGE_TOLERANCE, Fraction(100, 10**digits))
     )
     *faster, last = (system.name for system in number_systems.automatic())
     for name in faster:
@@ -183,14 +189,17 @@ def _measure_outlines(
 
 
 def _goal_without_change(digits: int) -> Goal:
-    """Return a goal as fine as the arithmetic, less some digits for rounding under shear."""
-    return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
+    """Return a goal relative to the area, with fewer digits than the arithmetic has.
+
+    Rounding under shear may take the others.
+    """
+    return Goal(Fraction(0), Fraction(1, 10 ** (digits - _SHEAR_DIGITS)))
 
 
 def _carry_all(
     shape: Shape, carrier: SchemeCarrier | ExactFlowCarrier, goal: Goal
 ) -> list[OutlineImage]:
-    goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
+    goals = [goal, *[_GOAL_INSIDE] * (len(shape.outlines) - 1)]
     images = []
     for outline, area in zip(
         shape.outlines, Probe(shape.outlines, carrier, goals).measure(), strict=True
@@ -249,7 +258,7 @@ def _describe_problem(region: MeasuredArea, preserves_area: bool) -> Prose:
 def _mean_fields(iterate: _Iterate, region: OutlineImage) -> dict[str, Any]:
     """Return the fields of the mean of Λ, or of W, over the region.
 
-    There are none where the map is not defined on all rays to it.
+    There are none if the map is not defined on all rays from the region's centre to its outline.
     """
     arguments = *iterate.arguments, iterate.plane
     try:
@@ -268,7 +277,8 @@ def _mean_fields(iterate: _Iterate, region: OutlineImage) -> dict[str, Any]:
 def _distance_fields(iterate: _Iterate, images: Sequence[OutlineImage]) -> dict[str, Any]:
     """Return the fields of the outlines' distance from their images by the exact flow.
 
-    There are none where too few points of the region are known for its area. Raises NoFlowError.
+    There are none if the image's area is not resolved, or the image is too far away for float64.
+    Raises NoFlowError.
     """
     region = images[0].measured
     if region.truncation_error > max(Fraction(1), abs(region.change)):

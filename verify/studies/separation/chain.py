@@ -1,9 +1,9 @@
 """The chain Λ₀ … Λ₄, or that of an entry of W, for one step size, and its parts.
 
 `verify.studies.separation.truncation_and_rounding` defines the links. A link is a trail of values
-at a run's checkpoints, as exact rationals over one denominator: a separation subtracts, compares
-and takes maxima of tens of thousands of them, and nearly all are whole multiples of one power of 2,
-so that each of these is an operation of integers.
+at a run's checkpoints: rationals over one common denominator. A separation subtracts, compares and
+takes maxima of tens of thousands of values, and nearly all of them are whole multiples of one power
+of 2. With a common denominator each of these is an operation of integers.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,7 +17,7 @@ from verify.arithmetic.exact import magnitude
 from verify.scenes.results.separation_parts import Parts
 
 Kind = Literal["enclosed", "estimated"]
-PARTS = Parts.rounding  # in the plane
+PARTS = Parts.rounding  # the names of the plane's rounding parts, in the chain's order
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
 
@@ -107,8 +107,8 @@ class Link:
     method: str
 
 
-Links = tuple[Link, ...]  # of Λ alone, or one for each entry of W above its diagonal, row by row
-Entries = tuple[Fraction, ...]  # the values of these at one checkpoint
+Links = tuple[Link, ...]  # one for Λ, or one for each entry of W above its diagonal, row by row
+Entries = tuple[Fraction, ...]  # the values of such links at one checkpoint
 
 
 def links_of(values: Iterable[Entries], bound: Fraction, kind: Kind, method: str) -> Links:
@@ -127,7 +127,7 @@ def exact_links(values: Iterable[Entries], method: str) -> Links:
 class Chain:
     """The chain Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`.
 
-    `parts`: of rounding, one between each link and the next.
+    `parts`: the names of the rounding parts, one between each link and the next.
     """
 
     marks: tuple[int, ...]
@@ -159,7 +159,10 @@ class Chain:
         return trail[-1], bound
 
     def _ends(self, name: str) -> tuple[int | None, int]:
-        """Return the links that a quantity lies between; None: there is none before it."""
+        """Return the indices of the links whose difference a quantity is.
+
+        None in place of the first: the quantity is the second link itself.
+        """
         if name in self.parts:
             k = self.parts.index(name)
             return k, k + 1
@@ -167,9 +170,9 @@ class Chain:
         return {"lambda_working": (None, last), "truncation": (None, 0), "total": (0, last)}[name]
 
     def lacking(self, digits: int, least: Fraction = Fraction(0)) -> list[int]:
-        """Return the digits that each link lacks for those required of the parts at its ends.
+        """Return the number of digits that each link lacks for `digits` digits of its parts.
 
-        A part that is not greater than `least` may stay unknown.
+        A part of which no more is required than that it is at most `least` lacks none.
         """
         lacking = [0] * len(self.links)
         for name in self.quantities:
@@ -196,9 +199,9 @@ class Chain:
 
 
 def lacking(chains: Sequence[Chain], digits: int, hidden: int | None = None) -> list[int]:
-    """Return the digits that each link lacks, for the chain in which it lacks most.
+    """Return the number of digits that each link lacks, in the chain in which it lacks most.
 
-    A part may stay unknown that lies so many digits, and `hidden` ones, below the greatest.
+    `hidden`: a part that is `digits` + `hidden` digits below the greatest one may stay unknown.
     """
     least = Fraction(0)
     if hidden is not None:

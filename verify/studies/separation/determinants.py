@@ -1,15 +1,18 @@
-"""The links of Λ in the plane, which is a product of determinants.
+"""The links of Λ in the plane, which is a product of determinants, less 1.
 
-    w_trajectory  Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ, exactly, at rounded inputs
-    w_clock       the same of a wide state that steps by float64's clock
-    w_factors     the same with d̃_k − 1, d̃_k the determinant that float64 found
-    w_closed      the same with the ΔJ that float64 found from the closed form
+A mixed kernel carries these values along float64's states z̃_k: wide numbers, of many digits, with
+names that begin with w, and float64 numbers with names that begin with f.
+
+    w_trajectory  Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ in wide numbers
+    w_clock       the same along a wide state that steps at the times of float64's clock
+    w_factors     the same with d̃_k − 1, d̃_k the determinant that float64 computes
+    w_closed      the same with the ΔJ that float64 computes from its closed form
     f_plain       Π d̃_k in float64
     f_sum, f_rest Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
                   errors are summed apart, and Λ = expm1(f_sum + f_rest)
 
-The error bounds of Λ₂ and Λ₃. They are products along given float64 states, so that nothing is
-magnified, and their rounding is counted:
+The error bounds of Λ₂ and Λ₃. They are products along float64's states, so that no error of a state
+is magnified. Their rounding is counted:
 
 Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2
 be the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each
@@ -35,7 +38,7 @@ from verify.arithmetic.exact import magnitude
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, SystemNumber, UnsupportedError
 from verify.kernels.kernel import Kernel, KernelWriter
-from verify.kernels.rounding import PRECISION
+from verify.kernels.rounding import PRECISION_BITS
 from verify.kernels.step.computation import common_power
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.stepping import KernelRun, RunOutcome, limits
@@ -59,6 +62,7 @@ from verify.studies.separation.way import (
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
 POINTS = 2048  # checkpoints of a run
+# Knuth's two-sum of f_sum and f_log; `f_rest` collects the errors of the additions.
 _CLOSED_SUM = (
     "f_log = f_log1p(f_dj)",
     "f_total = f_sum + f_log",
@@ -79,7 +83,7 @@ class Determinants(Way):
     observables: ClassVar = frozenset({"lambda"})
     points: ClassVar = POINTS
     parts: ClassVar = Parts.rounding
-    # Float64's 16 digits, less those by which a long run magnifies its rounding.
+    # A difference of two links is rounding, some 16 digits below 1; a long run magnifies it.
     cancelled: ClassVar = 14
     vanishes: ClassVar = "ΔJ ≡ 0"
 
@@ -145,12 +149,12 @@ class Determinants(Way):
         except OverflowError:
             return (math.inf,)
 
-    # -- how far it is known ------------------------------------------------------------------
+    # -- error bounds -------------------------------------------------------------------------
 
     def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
         bounds_by_name: dict[str, Fraction | None] = {}
         for name in run.kernel.followed:
-            # What a wide state does to the steps after it is not counted.
+            # The clock's link has a wide state of its own, whose error is not counted.
             error: Fraction | None = None if name == "clock" else Fraction(0)
             if name == "trajectory":
                 error = _error_of_delta_j(run)
@@ -188,10 +192,13 @@ class Determinants(Way):
     def digits_beside(
         self, run: KernelRun, step_map: StepMap, link_digits: int, compiled: bool
     ) -> int:
-        """Return the digits after the point: compiled kernels take longer the more there are."""
+        """Return the digits beside float64, as few as suffice for compiled kernels.
+
+        Those take longer the more digits there are. A fixed-point system has them after the point.
+        """
         if not compiled:
             return working_digits(link_digits, run.steps)
-        # Along given states only the number of roundings grows; a step's are below 10^6 units.
+        # Along float64's states only the number of roundings grows: N times at most 10^6 units.
         size = run.start["h"] ** _power_of_area(step_map, run.scheme)
         return link_digits + max(0, -magnitude(size)) + len(str(run.steps)) + 6
 
@@ -227,8 +234,8 @@ def _accumulate_lines(name: str, factor: str, start: dict[str, int]) -> list[str
 
 def _error_of_delta_j(run: SteppedRun) -> Fraction | None:
     """Return B, the error of one wide ΔJ over the region that the float64 states have visited."""
-    with working_precision(PRECISION):
-        # A float64 becomes a fixed-point number, cut below that number's last place.
+    with working_precision(PRECISION_BITS):
+        # A float64 becomes a fixed-point number, which cuts it below its last binary place.
         cut = flint.arb(2) ** -run.arithmetic.bits if run.arithmetic.absolute else flint.arb(0)
         values = run.analyse_values([run.kernel.wide.outputs["dj"]], cut)
         return bounds(values[0].error)[1] if values and is_representable(values[0].error) else None
@@ -247,12 +254,18 @@ def _bound_product(
 
 
 def _unit(arithmetic: Arithmetic) -> Fraction:
-    """Return a bound of an operation's error: twice that of rounding to nearest, or a unit."""
+    """Return u of the module's docstring: a bound of the error of one operation.
+
+    It is 2^−bits in fixed point, else 2^(1 − bits), twice the error of rounding to nearest.
+    """
     return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
 
 
 def _power_of_area(step_map: StepMap, scheme: str) -> int:
-    """Return about the power of h in Λ: r − 1 where ΔJ has h^r, as far as its terms show it."""
+    """Return about the power of h in Λ: r − 1 if every term of ΔJ has h^r.
+
+    If the terms show no common power, it is taken from the scheme's order.
+    """
     if step_map.preserves_area:
         return 0
     power = common_power(step_map)

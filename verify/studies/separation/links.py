@@ -1,11 +1,12 @@
 """The links of a separation, each computed when it is needed, at its own number of digits.
 
-There is a link of Λ, or one for each entry of W. Nothing is run for a link that a proof gives, nor
-for the second where every input is a float64. Equal links are one object, and the part between them
-is exactly 0. So where the proof gives ΔJ ≡ 0, or S ≡ 0, all links before float64's factors are
-exactly 0, and the closed form's too; where ΔJ does not depend on (p, q), Λ₀ is a closed form and Λ₂
-= Λ₁. Where every input is a float64, Λ₁ = Λ₀; after one step Λ₂ = Λ₁, for the first ΔJ is taken at
-the initial value.
+There is a link of Λ, or one for each entry of W. A link that a proof gives is not computed by a
+run. Equal links are one object, and the part between them is exactly 0:
+
+- if ΔJ ≡ 0, or S ≡ 0, is proved, Λ₀, Λ₁ and Λ₂ are exactly 0, and the closed form's Λ₃ and Λ₄ too;
+- if ΔJ does not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁;
+- if every input is a float64, Λ₁ = Λ₀;
+- after one step Λ₂ = Λ₁, since the only ΔJ is taken at the initial value.
 """
 
 from collections.abc import Sequence
@@ -48,10 +49,11 @@ EachWay = tuple[tuple[Chain, ...], tuple[Chain, ...] | None]
 
 @dataclass(frozen=True)
 class Chains:
-    """The chains of the plain way and of the closed form, one for Λ, or for each entry of W above
-    the diagonal. The closed form has none where some det J ≤ 0.
+    """The chains of the plain way and of the closed form.
 
-    `arithmetic` stood for exact arithmetic; `sizes`: of M at the checkpoints, for W.
+    There is one for Λ, or one for each entry of W above the diagonal. `closed_form` is None if some
+    det J ≤ 0. `arithmetic`: the system that stood for exact arithmetic; `sizes`: those of M at the
+    checkpoints, empty for Λ.
     """
 
     plain: tuple[Chain, ...]
@@ -77,11 +79,12 @@ def separate_chains(
     keeper: Keeper = NOTHING,
     run: RequestedRun | None = None,
 ) -> Course[Chains]:
-    """Return the chains of a scheme's run from exact inputs, with so many digits if possible.
+    """Return the chains of a scheme's run from exact inputs, with `digits` digits if possible.
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
-    with the steps just done, of three runs of N steps. `run`, of these steps and checkpoints, is
-    taken for the first link. Raises Stopped if Λ, or W, has no value.
+    with the number of steps just done; three runs of N steps are expected. `run`, a requested run
+    of the same steps and checkpoints, serves as the first link. Raises Stopped if Λ, or W, has no
+    value.
     """
     way = way_for(hamiltonian)
     kernel_run = KernelRun(
@@ -102,10 +105,7 @@ class LinksOnDemand:
     def __init__(
         self, way: Way, kernel_run: KernelRun, step_map: StepMap, arithmetic: str, digits: int
     ) -> None:
-        """Take `step_map` for the exact parameters; `digits` are required of every part.
-
-        `auto` takes the fastest arithmetic that can give them.
-        """
+        """Require `digits` digits of every part; `step_map` has the exact parameters."""
         self._start_time = clock()
         digits += way.cancelled
         self.arithmetic = choose(kernel_run, digits) if arithmetic == AUTO else arithmetic
@@ -133,7 +133,7 @@ class LinksOnDemand:
         self.digits["first"] = run.digits
 
     def prove_link(self, name: str) -> Links | None:
-        """Return the `first` link or the `second` to its digits by proof, or None; made once."""
+        """Return the `first` or the `second` link by proof, to its digits; None: no proof."""
         if name not in self._proved_links:
             step_map = _map_for_parameters(self.step_map, self.runs[name])
             self._proved_links[name] = self.way.prove_links(
@@ -142,19 +142,16 @@ class LinksOnDemand:
         return self._proved_links[name]
 
     def working(self) -> Course[Working]:
-        """Do the run in float64, exact arithmetic beside it, once.
+        """Return the links of the run in float64 with exact arithmetic beside it, done once.
 
-        Stopped if it leaves its range.
+        Raises Stopped if float64 leaves its range.
         """
         if self._working is None:
             self._working = yield from self._run_working()
         return self._working
 
     def _run_working(self) -> Course[Working]:
-        """Do that run, in the last number system where another cannot follow float64.
-
-        The last one also replaces one whose rounding is not counted.
-        """
+        """Do that run; if another system fails or its rounding is not counted, in the last one."""
         way, run, digits_needed = self.way, self.kernel_run, self.digits["beside"]
         # After one step, or with a proof, the exact step at float64's states is not needed.
         mixed_run = MixedRun(way, run, self.prove_link("second") is None and run.steps > 1)
@@ -170,7 +167,7 @@ class LinksOnDemand:
 
     def chains(self) -> Course[EachWay]:
         """Return the chains of the plain way and those of the closed form."""
-        # Before the longer runs: where float64 leaves its range there is nothing to separate.
+        # This run is the first: if float64 leaves its range the longer runs are needless.
         working = yield from self.working()
         first = yield from self._link("first")
         second = first if self.has_equal_inputs else (yield from self._link("second"))
@@ -192,7 +189,7 @@ class LinksOnDemand:
         return plain, chains(working.closed_factors, working.closed_form)
 
     def to_digits(self, digits: int) -> Course[EachWay]:
-        """Return the chains, whose links are computed again as long as some lack digits.
+        """Return the chains, with links computed again, a few times, as long as some lack digits.
 
         The number of digits that differences cancel is known only once the links are computed.
         """
@@ -204,19 +201,19 @@ class LinksOnDemand:
         return plain, closed_form
 
     def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
-        """Require so many more digits of the links; return False if none lacks any.
+        """Require more digits of the links that lack some; return False if none does.
 
-        A part that is still noise lacks the same again and again: each attempt doubles the number.
+        A part that is still noise lacks the same number again and again: each attempt doubles it.
         """
         first, second, *beside = lacking
         # One run that serves as two links is made once, with the digits of the one that lacks more.
         if self.has_equal_inputs:
             first, second = max(first, second), 0
         extra_digits = {"first": first, "second": second, "beside": max(beside)}
-        self.advance = lambda _: None  # what was foreseen is done
+        self.advance = lambda _: None  # progress counts the expected runs only, which are done
         for name, increase in extra_digits.items():
             if increase:
-                # `<<` binds less than `+`: (more + 2) · 2^attempt.
+                # `<<` binds less than `+`: (increase + 2) · 2^attempt.
                 self.digits[name] += increase + 2 << attempt
                 self._link_cache.pop(name, None)
                 self._proved_links.pop(name, None)
@@ -225,7 +222,7 @@ class LinksOnDemand:
         return any(extra_digits.values())
 
     def system(self, digits: int) -> str:
-        """Return the arithmetic for so many digits: compiling one takes ever longer with more."""
+        """Return the arithmetic's name for so many digits: compiling takes longer with more."""
         system = number_systems.about(self.arithmetic)
         return system.name if digits <= system.most_digits else last_system().name
 
@@ -251,7 +248,7 @@ class LinksOnDemand:
         return self._link_cache[name]
 
     def _progress(self) -> Advance:
-        """Return a progress that counts the new steps of one run, which may begin again."""
+        """Return a callback for the steps done in one run; steps that it repeats do not count."""
         last = 0
 
         def progress(done: int) -> None:
@@ -264,7 +261,7 @@ class LinksOnDemand:
     def _links_from_run(
         self, kernel_run: KernelRun, digits: int, measurement: Measurement
     ) -> Links:
-        """Return the links of a run to so many digits; Stopped if it cannot give them."""
+        """Return the links of a run to so many digits. Raises Stopped if it cannot give them."""
         bounds, run, observable = measurement.bounds, measurement.outcome, self.way.observable
         if bounds.status != "finished":
             reason = f"in exact arithmetic: {bounds.method}"
@@ -272,8 +269,7 @@ class LinksOnDemand:
         value, bound = bounds.values[observable]
         kind: Kind = "enclosed" if bounds.rigorous else "estimated"
         # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may
-        # be that of a run with more digits; the checkpoints must be those of a run that agrees
-        # with it.
+        # be that of a run with more digits: the checkpoints must be of a run that agrees with it.
         run_digits = working_digits(digits, kernel_run.steps)
         for _ in range(_DOUBLINGS):
             done = run.done == kernel_run.steps

@@ -1,7 +1,8 @@
 """The matrices that a kernel carries at each float64 state z̃ of a run in n degrees of freedom.
 
-With K = J − 1 of the step, by the derivatives of the step's own operations, and the symplectic
-defect S of the step, as the float64 kernel of `verify run` has them, bit for bit:
+K = J − 1 of the step comes from the derivatives of the step's own operations, S = JᵀΩJ − Ω is its
+symplectic defect; K̃ and S̃ are those of the float64 kernel of `verify run`, bit for bit. Names that
+begin with w are wide numbers, of many digits, and those that begin with f are float64:
 
     w_trajectory  M ← M + K M with K exactly at z̃
     w_clock       the same of a wide state that steps by float64's clock
@@ -10,10 +11,11 @@ defect S of the step, as the float64 kernel of `verify run` has them, bit for bi
     w_m           M ← M + K̃ M exactly, and w_closed  W ← W + MᵀS̃M exactly (closed form)
     f_m           M ← M + K̃ M, and f_closed  W ← W + MᵀS̃M in float64 (closed form)
 
-Of the first four W = MᵀΩM − Ω, which holds exactly for exact products and so cancels nothing that
-more digits do not give back; the fourth takes it in float64, as a program would.
+The first four are matrices M, and W = MᵀΩM − Ω is computed from each. That is exact for an exact
+product: the difference cancels digits, which more digits give back. W of f_plain is computed in
+float64, as a program would.
 
-Names of entries end in their row and column, M₁₂ of w_trajectory is w_trajectory_0_1.
+Names of entries end in their row and column, from 0: M₁₂ of w_trajectory is w_trajectory_0_1.
 """
 
 from collections.abc import Sequence
@@ -21,11 +23,15 @@ from itertools import combinations, product
 
 from verify.studies.separation.way import FOLLOWED, KernelLines, Side
 
-Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
+Rows = Sequence[Sequence[str]]  # a matrix of names; an empty name is the entry 0
 
 
 def matrix_lines(narrow: Side, wide: Side | None, clocked: Side | None) -> KernelLines:
-    """Return the lines of the matrices; `wide` and `clocked` where K is followed exactly."""
+    """Return the lines of the matrices.
+
+    `narrow`: the step in float64; `wide`: with K in wide numbers at float64's states; `clocked`:
+    with K along the wide state that steps at the times of float64's clock.
+    """
     names, closed = narrow.step.coordinates, bool(narrow.step.defect)
     sides = {"trajectory": wide, "clock": clocked}
     products = [f"w_{name}" for name, side in sides.items() if side]
@@ -66,8 +72,8 @@ def _update_lines(matrix: str, slopes: Rows) -> list[str]:
 def _assign_lines(matrix: str, entries: Rows, template: str = "{entry}") -> list[str]:
     """Return lines that compute all entries before they assign the first.
 
-    Entries that do not change are left out. `template`: of the new value, with an entry's `name`
-    and its formula `entry`.
+    An entry with an empty formula is left out, and keeps its value. `template`: the new value's
+    formula, by the entry's `name` and its formula `entry`.
     """
     # The prefix f_ or w_ of the new names follows that of the matrix: it selects the arithmetic.
     kind, places = matrix[:2], [(a, b) for a, b in _places(entries) if entries[a][b]]
@@ -79,14 +85,14 @@ def _assign_lines(matrix: str, entries: Rows, template: str = "{entry}") -> list
 
 
 def _widen_lines(matrix: str, entries: Rows) -> tuple[list[str], list[list[str]]]:
-    """Return the lines that make float64's entries exact, and the names of the exact entries."""
+    """Return the lines that convert float64's entries to wide numbers, and the names of these."""
     names = [[x and f"{matrix}_{a}_{b}" for b, x in enumerate(r)] for a, r in enumerate(entries)]
     places = [(a, b) for a, b in _places(entries) if entries[a][b]]
     return [f"{names[a][b]} = wide({entries[a][b]})" for a, b in places], names
 
 
 def _plain_lines(slopes: Rows) -> list[str]:
-    """Return the lines of J̃ = 1 + K̃ and its products, in float64 and exactly."""
+    """Return the lines of J̃ = 1 + K̃ and its products, in float64 and in wide numbers."""
     entries = {(a, b): slopes[a][b] for a, b in _places(slopes) if a == b or slopes[a][b]}
     for k in range(len(slopes)):
         entries[k, k] = f"1.0 + {slopes[k][k] or '0.0'}"
@@ -103,7 +109,7 @@ def _plain_lines(slopes: Rows) -> list[str]:
 
 
 def _closed_form_lines(narrow: Side) -> list[str]:
-    """Return the lines of M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
+    """Return the lines of M ← M + K̃ M and W ← W + MᵀS̃M, in wide numbers and in float64."""
     indices, places = range(len(narrow.slopes)), _places(narrow.slopes)
     lines, wide_names = _widen_lines("w_k", narrow.slopes)
     form = [["" for _ in indices] for _ in indices]
@@ -154,7 +160,7 @@ def _watch_lines(
                 for i in range(half)
             )
             lines.append(f"f_y_{a}_{b} = {' + '.join(areas)}{' - 1.0' * (b == half + a)}")
-        # In chaos W may be as large as its root is float64's range: there is no bound then anyway.
+        # In chaos ‖W‖² may overflow: it is cut, as there is no bound then anyway.
         form = squares([f"f_y_{a}_{b}" for a, b in places])
         keep(f"f_{matrix[2:]}_form", f"min(2.0 * ({form}), 1e300)")
     slopes = narrow.slopes

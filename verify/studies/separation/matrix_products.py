@@ -12,15 +12,15 @@ n (2n − 1) entries above the diagonal has a chain (`verify.studies.separation.
     W₄ = W₀ + (W₁ − W₀) + (W₂ − W₁) + (W₃ − W₂) + (W₄ − W₃)
        = truncation + input + trajectory + derivatives + product,
 
-an equation of rationals, entry by entry. What is carried is in
-`verify.studies.separation.matrix_lines`: of a wide M W = MᵀΩM − Ω as exact rationals, and of
-float64's M in float64, each entry a sum of 2n products from the left, p's row first, and then less
-1 where Ω has one.
+an equation of rationals, entry by entry. `verify.studies.separation.matrix_lines` lists the
+matrices that the kernel carries. W = MᵀΩM − Ω of a wide M is computed in rationals, that of
+float64's M in float64: each entry is a sum of 2n products from the left, p's row first, less 1
+where Ω has 1.
 
-The rounding of a wide link is counted, except for that of a clock. Let M̂_{k+1} = A_k M̂_k + δ_k be
-what was carried, A_k the matrix that it stands for, M_k the exact product, E_k = M̂_k − M_k, all
-norms Frobenius', and ‖δ_k‖ ≤ δ: what rounding a product of rows and columns makes, and what A_k was
-off. Then E_{k+1} = A_k E_k + δ_k, and with Φ = M_{k+1} M_{i+1}⁻¹
+The rounding of a wide link is counted, except for that of a clock. Let M̂_k be the matrix that was
+carried, M̂_{k+1} = A_k M̂_k + δ_k with the exact A_k, M_k the exact product, E_k = M̂_k − M_k, all
+norms Frobenius', and ‖δ_k‖ ≤ δ: the rounding of a product of rows and columns, and the error of the
+computed A_k. Then E_{k+1} = A_k E_k + δ_k, and with Φ = M_{k+1} M_{i+1}⁻¹
 
     E_{k+1} = δ_k + Σ_{i<k} Φ δ_i.
 
@@ -29,11 +29,12 @@ where all ‖W_i‖ ≤ ω < 1. With μ ≥ ‖M̂_k‖ for all k, and as long a
 
     ‖E_{k+1}‖ ≤ (μ + ‖E_{k+1}‖) R,   R = N (μ + E) δ/(1 − ω),
 
-since μ ≥ 1. So ‖E_k‖ ≤ μR/(1 − R) for all k by induction, where that is at most the E that R was
-taken with and R < 1. What is read of M̂ is W = M̂ᵀΩM̂ − Ω, exactly, and so within 2μE + E²; a sum
-of M̂ᵀSM̂ over N steps is within N times ‖S‖ of that, and the rounding of its terms and of itself. μ
-and ω are noted in float64 at every step, M̂ rounded to it. Where W is not below 1, as in chaos,
-there is no bound of this kind, and a rerun estimates one.
+since μ ≥ 1. So ‖E_k‖ ≤ μR/(1 − R) for all k by induction, if R < 1 and that is at most the E that R
+was computed with. W = M̂ᵀΩM̂ − Ω is computed from M̂ exactly, and so is within 2μE + E² of the exact
+product's. A sum of M̂ᵀSM̂ over N steps is within N ‖S‖ (2μE + E²) and the rounding of its terms and
+of its additions. The kernel keeps μ and ω as maxima over all steps, in float64, of M̂ rounded to
+float64. If ‖W‖ is not below 1, as in chaos, there is no bound of this kind, and a rerun estimates
+one.
 """
 
 import math
@@ -48,8 +49,8 @@ import flint
 from verify.arithmetic.arb import bounds, is_representable, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
-from verify.kernels.chunked_loop import ENTRIES
-from verify.kernels.rounding import PRECISION, Ball
+from verify.kernels.chunked_loop import W_ENTRIES
+from verify.kernels.rounding import PRECISION_BITS, Ball
 from verify.kernels.step.computation import Computation, StepRequest, computation_of, step_map_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.observables.observable import Need
@@ -63,8 +64,9 @@ from verify.studies.separation.mixed_run import marks_of
 from verify.studies.separation.way import KernelLines, Side, Size, State, SteppedRun, Way
 
 POINTS = 512  # checkpoints of a run; each has a matrix for each link
-_FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
-_ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to ‖M‖²
+# Bounds of float64's rounding, relative to a sum of squares, and of MᵀΩM's entries to ‖M‖².
+_SQUARES_ROUNDING = flint.arb(2) ** -45
+_ENTRY_ROUNDING = flint.arb(2) ** -44
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class Matrices(Way):
 
     result: ClassVar = SeparationInDegrees
     observable: ClassVar = "symplectic_defect"
-    observables: ClassVar = frozenset({"symplectic_defect", ENTRIES})
+    observables: ClassVar = frozenset({"symplectic_defect", W_ENTRIES})
     points: ClassVar = POINTS
     parts: ClassVar = FormParts.rounding
     cancelled: ClassVar = 20
@@ -130,12 +132,16 @@ class Matrices(Way):
     def _whole_matrix(
         self, state: State, name: str, arithmetic: Arithmetic
     ) -> tuple[list[list[int]], int]:
-        """Return a wide matrix as whole numbers over one denominator, as Fractions are slow."""
+        """Return a wide matrix as whole numbers, and the denominator that all share.
+
+        Fractions would be slow.
+        """
         rationals = [[arithmetic.exact(x) for x in row] for row in self._matrix(state, f"w_{name}")]
-        scale = max(x.denominator for row in rationals for x in row)  # of powers of 2
+        # Denominators are powers of 2, so that the greatest is a multiple of all.
+        scale = max(x.denominator for row in rationals for x in row)
         return [[x.numerator * (scale // x.denominator) for x in row] for row in rationals], scale
 
-    # -- how far it is known ------------------------------------------------------------------
+    # -- error bounds -------------------------------------------------------------------------
 
     def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
         return bound_entries(run)
@@ -164,7 +170,7 @@ def entries_of_defect(
 ) -> tuple[Any, ...]:
     """Return the entries of MᵀΩM − Ω above the diagonal, row by row, in the entries' arithmetic.
 
-    M is scaled by the root of `scale`, and the entries by `scale`.
+    M comes multiplied by the root of `scale`, and the entries are multiplied by `scale`.
     """
     n, entries = size // 2, []
     for a, b in combinations(range(size), 2):
@@ -186,8 +192,8 @@ def compute_size(matrix: Sequence[Sequence[int]], scale: int) -> Size:
     }
     norm = sum(square[a, a] for a in indices)
     # MᵀM is symmetric: entries off the diagonal count twice in its norm.
-    whole = sum((1 if a == b else 2) * x * x for (a, b), x in square.items())
-    return Size(Fraction(norm, scale**2), Fraction(norm * norm - whole, 2 * scale**4))
+    norm_of_square = sum((1 if a == b else 2) * x * x for (a, b), x in square.items())
+    return Size(Fraction(norm, scale**2), Fraction(norm * norm - norm_of_square, 2 * scale**4))
 
 
 def bound_entries(run: SteppedRun) -> Mapping[str, Fraction | None]:
@@ -195,7 +201,7 @@ def bound_entries(run: SteppedRun) -> Mapping[str, Fraction | None]:
 
     There is one for everything that was followed except the clock.
     """
-    with working_precision(PRECISION):
+    with working_precision(PRECISION_BITS):
         count = _RoundingCount(run)
         errors = {"factors": count.bound_product("factors", flint.arb(0), count.top("f_j_norm"))}
         if "trajectory" in run.kernel.followed:
@@ -216,25 +222,29 @@ class _RoundingCount:
 
     def top(self, name: str) -> Ball:
         """Return the root of a greatest sum of squares."""
-        return (rational_ball(Fraction(self.run.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
+        return (
+            (rational_ball(Fraction(self.run.last[name])) * (1 + _SQUARES_ROUNDING))
+            .sqrt()
+            .abs_upper()
+        )
 
     def norm_of(self, matrix: str) -> Ball:
-        least = flint.arb(self.size).sqrt()  # of M₀ = 1
+        least = flint.arb(self.size).sqrt()  # ‖M₀‖, M₀ = 1, which the maxima leave out
         return self.top(f"f_{matrix}_norm").max(least)
 
     def bound_error(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
-        """Return E; `lost` is the error of A, `factor` a bound of ‖A‖, or of 1 + ‖A − 1‖."""
+        """Return E; `lost` bounds the error of A, `factor` bounds ‖A‖, or is 1 + ‖A − 1‖."""
         top = self.norm_of(matrix)
-        # An entry of δ is a rounded sum of products of |A| and |M̂|; what A is off is times M̂.
+        # δ: the rounding of sums of products of |A| and |M̂|, and the error of A times M̂.
         rounding = top * (lost + self.unit * (factor + lost))
-        form = self.top(f"f_{matrix}_form") + self.size * _ENTRY * top * top
+        form = self.top(f"f_{matrix}_form") + self.size * _ENTRY_ROUNDING * top * top
 
         def bound(error: Ball) -> Ball:
             defect = form + 2 * top * error + error * error
             rate = self.steps * (top + error) * rounding / (1 - defect)
             return top * rate / (1 - rate) if defect < 1 and rate < 1 else flint.arb.nan()
 
-        # E is a fixed point: where the bound taken with the guess is at most the guess, it holds.
+        # If the bound computed with the guess is at most the guess, it holds (the induction).
         guess = (2 * bound(flint.arb(0))).abs_upper()
         bound_of_guess = bound(guess)
         return bound_of_guess.abs_upper() if bound_of_guess <= guess else flint.arb.nan()

@@ -1,19 +1,18 @@
-"""One loop in which float64 and exact arithmetic stand side by side, step by step.
+"""One loop that steps in float64 and evaluates in high precision beside it.
 
 The float64 lines are those of the float64 kernel that `verify run` steps with: the same step is
 written, so that the same operations are rounded in the same order, and states and products agree
-with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of high
-precision, evaluate what the chain of `verify.studies.separation.truncation_and_rounding` needs. The
-way decides which values are carried, and which float64 multiplies itself.
+with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of high precision,
+evaluate what the chain of `verify.studies.separation.truncation_and_rounding` needs. The way
+(`verify.studies.separation.way`) decides which values are carried in each arithmetic.
 
-If H depends on time, float64 has a clock, f_t ← f_t + f_h, which the wide lines at z̃_k read,
-too. Beside them a wide state of its own steps at these times (names that begin with `w_at_`).
+If H depends on time, float64 has a clock, f_t ← f_t + f_h, and the wide lines at z̃_k read it. A
+second wide state steps at the clock's times from the rounded inputs (its names begin with `w_at_`).
 
-The source is in the language of `verify.arithmetic.wide.translator`: names begin with `f_` where
-their value is a float64 and with `w_` where it is wide, but for functions of wide numbers, which
-have their own name; `wide(x)` is the exact value of a float64. Python runs it with its own floats
-and libm, and LLVM compiles it for fixed-point numbers; both round as a float64 kernel does
-(tests hold all three against each other).
+The source is in the language of `verify.arithmetic.wide.translator`: the name of a float64 begins
+with `f_` and that of a wide number with `w_`, but functions of wide numbers have no prefix;
+`wide(x)` is the wide number of a float64. Python runs it with its own floats and libm, and LLVM
+compiles it for fixed-point numbers; both round as a float64 kernel does (tests compare all three).
 """
 
 import math
@@ -28,8 +27,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
 from verify.studies.separation.way import MixedKernel, Side, Way
 
-AT = "w_at_"  # before names of the wide state that steps by float64's clock
-LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # of an arithmetic of limited range
+CLOCKED_PREFIX = "w_at_"  # names of the wide state that steps by float64's clock
+LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # arguments in an arithmetic of limited range
 
 
 @lru_cache(maxsize=16)
@@ -49,7 +48,7 @@ def mixed_kernel(
     wide = Side(way.step(step_map, arithmetic, exactly=True), arithmetic, "w_")
     step, coordinates = narrow.step, narrow.step.coordinates
     # The same step a second time, under other names, at float64's times.
-    clocked = replace(wide, prefix=AT) if follow and has_time else None
+    clocked = replace(wide, prefix=CLOCKED_PREFIX) if follow and has_time else None
     before, inside = narrow.lines([*step.outputs.values(), *step.defect.values(), *narrow.entries])
     wide_roots = wide.entries or [wide.step.outputs["dj"]]
     regions, sides = [f"f_{n}" for n in coordinates], list[str]()
@@ -61,17 +60,19 @@ def mixed_kernel(
         static, dynamic = clocked.lines(
             [*wide_roots, *(clocked.step.outputs[f"d{n}"] for n in coordinates)]
         )
-        before += [f"{AT}{name} = w_{name}" for name in _inputs(step.parameters)] + static
-        inside += [f"{AT}t = w_t", *dynamic]
+        before += [
+            f"{CLOCKED_PREFIX}{name} = w_{name}" for name in _inputs(step.parameters)
+        ] + static
+        inside += [f"{CLOCKED_PREFIX}t = w_t", *dynamic]
     lines = way.lines(narrow, wide if follow else None, clocked)
     inside += lines.inside
     if follow:  # the region visited, over which the rounding of the wide step is bounded
         inside += [line for name in regions for line in _box(name)]
         sides = [f"{name}_{side}" for name in regions for side in ("low", "high")]
     inside += _state_update("f_", narrow)
-    inside += _state_update(AT, clocked) if clocked else []
+    inside += _state_update(CLOCKED_PREFIX, clocked) if clocked else []
     inside += ["f_t = f_t + f_h"] * has_time
-    clocked_names = [f"{AT}{n}" for n in coordinates] if clocked else []
+    clocked_names = [f"{CLOCKED_PREFIX}{n}" for n in coordinates] if clocked else []
     names = (*regions, *(["f_t"] * has_time), *clocked_names, *sides, *lines.start)
     limits = LIMITS if arithmetic.absolute else ()
     source = assemble(_inputs(step.parameters), limits, names, before, inside)
@@ -136,7 +137,11 @@ def _compile(
         "wide": lambda x: arithmetic.number(Fraction(x)),
         **arithmetic.functions,
         **{f"f_{name}": x for name, x in {**working.functions, **narrow.constants}.items()},
-        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in constants.items()},
+        **{
+            f"{prefix}{name}": x
+            for prefix in ("w_", CLOCKED_PREFIX)
+            for name, x in constants.items()
+        },
         "f_log1p": _log1p,
         "w_one": arithmetic.number(Fraction(1)),
     }

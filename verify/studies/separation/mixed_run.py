@@ -1,9 +1,9 @@
-"""A float64 run from checkpoint to checkpoint, with exact arithmetic beside it.
+"""A float64 run from checkpoint to checkpoint, with high precision beside it.
 
-The values carried become links at every checkpoint. Their error bounds: numbers of float64 are
-exact. The way counts the rounding of a wide link; where it has no bound, the link is compared with
-a rerun with 15 more digits. Its bound, an estimate, is then twice the greatest difference at any
-checkpoint, with the part that the last bits may hide.
+The values carried become links at every checkpoint. A link of float64 numbers is exact. The way
+counts the rounding of a wide link. If it has no bound for one, the link is that of a rerun with 15
+more digits; its bound, an estimate, is then twice the greatest difference of the two runs at any
+checkpoint, and the part that the last bits may hide.
 """
 
 import copy
@@ -24,13 +24,13 @@ from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
 from verify.runs.estimates import digits_of
 from verify.studies.separation.chain import Entries, Links, exact_links, links_of
-from verify.studies.separation.mixed_kernel import AT, mixed_kernel
+from verify.studies.separation.mixed_kernel import CLOCKED_PREFIX, mixed_kernel
 from verify.studies.separation.way import MixedKernel, Size, State, SteppedRun, Way
 
 Advance = Callable[[int], None]  # called with the number of steps just done
 MORE_DIGITS = 15
 COUNTED = "rounding counted"
-_MANTISSAS = 2**53  # whole numbers up to here are float64s
+_LAST_WHOLE_FLOAT = 2**53  # all whole numbers up to here are float64s
 RERUN = f"rerun with {MORE_DIGITS} more digits"
 
 
@@ -45,7 +45,10 @@ class Stopped(Exception):  # noqa: N818 - no error, an answer
 
 
 def marks_of(steps: int, points: int) -> tuple[int, ...]:
-    """Return the numbers of steps at the checkpoints, as a run of so many sections notes them."""
+    """Return the numbers of steps at the checkpoints, at most `points`, evenly spaced.
+
+    They are those that a run of so many sections records; the last section may be shorter.
+    """
     section = -(-steps // points)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
 
@@ -73,18 +76,19 @@ def round_inputs(kernel_run: KernelRun) -> KernelRun:
 def clock_is_exact(run: KernelRun) -> bool:
     """Return True if t ← t + h rounds nothing: all times are at most 2^53 times one 2^−k."""
     first, h = run.start["t"], run.start["h"]
-    unit = Fraction(1, max(first.denominator, h.denominator))  # of float64s, powers of 2
+    # Both are float64s: their denominators are powers of 2.
+    unit = Fraction(1, max(first.denominator, h.denominator))
     latest = max(abs(first), abs(first + run.steps * h))
-    return latest / unit <= _MANTISSAS
+    return latest / unit <= _LAST_WHOLE_FLOAT
 
 
 @dataclass(frozen=True)
 class Working:
     """The links that one run of the mixed kernel gives; None if one was not followed.
 
-    `factors`: each step's determinant, or Jacobian, is float64's; `closed_factors`: its ΔJ, or S.
-    None, as `closed_form`, where some 1 + ΔJ ≤ 0, which has no logarithm. `sizes`: of the product
-    of Jacobians at every checkpoint, where W is followed.
+    `factors`: with float64's determinant, or Jacobian, of each step; `closed_factors`: with
+    float64's ΔJ, or S. `closed_factors` and `closed_form` are None if some 1 + ΔJ ≤ 0, which has no
+    logarithm. `sizes`: those of the product of Jacobians at every checkpoint; empty for Λ.
     """
 
     clock: Links | None
@@ -97,7 +101,7 @@ class Working:
 
 
 class MixedRun:
-    """The float64 run of a run, with exact arithmetic beside it; `follow` as in the kernel.
+    """A run in float64, with high precision beside it; `follow` as in `mixed_kernel`.
 
     `inputs`: h, the coordinates and the kernel's parameters, as the float64 numbers that they are
     rounded to.
@@ -124,8 +128,8 @@ class MixedRun:
             fine = self._read(finer_run, name)
             pairs = zip(values, fine, strict=True)
             difference = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
-            # The finer run errs less than the first, so that twice their difference bounds its
-            # error, but for digits that both have lost alike.
+            # The finer run has the smaller error, so that twice the difference bounds it, except
+            # for digits that both runs have lost alike.
             bound = 2 * difference + way.hidden_size(
                 replace(finer_run, arithmetic=arithmetic), name
             )
@@ -175,7 +179,7 @@ class MixedRun:
             return all(math.isfinite(state[name]) for name in vital) and way.in_range(state)
 
         def states_after(every: int, stops: int = 1) -> Course[list[State]]:
-            """Return the states at the next stops; fewer where float64 leaves its range."""
+            """Return the states at the next stops; fewer if float64 leaves its range."""
             numbers = state.state if isinstance(state, LazyNote) else [state[n] for n in index_of]
             steps_beyond = run.steps - done - every * stops
             after = yield from arithmetic.states(
@@ -219,14 +223,14 @@ class MixedRun:
         for name in kernel.state_names:
             if name in kernel.start:
                 value = Fraction(kernel.start[name])
-            else:  # of a coordinate or t, or an end of the region that it visits
-                bare = name.removeprefix(AT).removeprefix("f_")
+            else:  # a coordinate or t, or an end of the interval of its values so far
+                bare = name.removeprefix(CLOCKED_PREFIX).removeprefix("f_")
                 value = Fraction(self.inputs[bare.removesuffix("_low").removesuffix("_high")])
             state[name] = _number(arithmetic, name, value)
         return state
 
     def _save_states(self, label: str, states: Sequence[State], arithmetic: Arithmetic) -> None:
-        """Save the checkpoints so far, where that is due."""
+        """Save the checkpoints so far, if the keeper is due to save."""
         if self.run.keeper.due(label):
             texts = [
                 {n: fraction_text(as_rational(x, arithmetic)) for n, x in s.items()} for s in states

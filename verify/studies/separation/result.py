@@ -29,14 +29,15 @@ from verify.studies.separation.growth_fits import (
 )
 from verify.studies.separation.way import Size
 
-SHOWN = 7  # digits of what a figure shows
-_CHECKPOINTS = 32
+SHOWN = 7  # digits of the values in figures
+_SERIES_CHECKPOINTS = 32
 
 
 class Split:
     """The chain of Λ, or those of all entries of W, by one way to evaluate them.
 
-    Of several the greatest size stands for all, at every checkpoint.
+    `tops`: each quantity at every checkpoint; for W the greatest |value| of all entries. `noise`: a
+    bound of its error.
     """
 
     def __init__(self, chains: Sequence[Chain]) -> None:
@@ -46,7 +47,7 @@ class Split:
         for name in self.names:
             trails, bounds = zip(*(chain.trail(name) for chain in chains), strict=True)
             self.tops[name] = trails[0] if len(chains) == 1 else _greatest(trails)
-            # The greatest of several entries is known no better than the worst of them.
+            # Of several entries the greatest bound is that of their maximum.
             self.noise[name] = max(bounds)
 
     def values(self, digits: int) -> dict[str, tuple[Value, ...]]:
@@ -70,11 +71,11 @@ class Split:
 
     def series(self) -> Iterator[tuple[int, dict[str, str]]]:
         """Yield some checkpoints, and each quantity there."""
-        for k in select_log_spaced(range(len(self.marks)), self.marks, _CHECKPOINTS):
+        for k in select_log_spaced(range(len(self.marks)), self.marks, _SERIES_CHECKPOINTS):
             yield k, {name: self.text(name, self.tops[name][k]) for name in self.names}
 
     def text(self, name: str, x: Fraction) -> str:
-        """Return a value of the quantity as text, to the few digits that are known."""
+        """Format a value of the quantity to the digits that are certain, at most seven."""
         return known_text(x, self.noise[name], SHOWN)
 
 

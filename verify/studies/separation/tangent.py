@@ -1,10 +1,10 @@
-"""The growth of a run's tangent map, its consequence for W, and its cause.
+"""The growth of a run's tangent map M, its consequence for W = MᵀΩM − Ω, and its cause.
 
 A scheme may amplify by itself, as lie2 does a harmonic oscillator, by 1 + h⁴/8 a step. The growth
-that a scheme causes depends on h; the growth that the motion causes does not. So the run's tangent
-map is carried along once more, in float64 beside 20 digits, with half the step size over the same
-time: where it grows exponentially there too, at a rate within a factor of 2, the growth is the
-motion's. That is measured, and not proved.
+that a scheme causes depends on h; the growth that the motion causes does not. So the run is done
+once more with half the step size over the same time, and its tangent map is carried along, the
+states with 20 digits and M in float64. If M grows exponentially there too, at a rate within a
+factor of 2, the growth is the motion's. This is measured, and not proved.
 """
 
 import math
@@ -28,13 +28,13 @@ from verify.studies.separation.result import SHOWN, Split
 from verify.studies.separation.way import Size
 
 _DIGITS = 20
-_ALIKE = 2  # rates within this factor of each other
-_SO_W = (
+_RATE_FACTOR = 2  # rates within this factor of each other count as equal
+_CONSEQUENCE_FOR_W = (
     "; W adds MᵀSM at every step, S of that step and M the tangent map so far, and so grows as "
     "areas do under M, at most like ‖M‖²"
 )
 Cause = Literal["motion", "scheme", "undecided"]
-_WHOSE: dict[Cause, str] = {
+_CAUSE_TEXTS: dict[Cause, str] = {
     "motion": ": that growth is the motion's, not the scheme's",
     "scheme": ": that growth is the scheme's at this step size",
     "undecided": ": whether that growth is the motion's or the scheme's is not decided",
@@ -65,7 +65,7 @@ def repeat_with_half_step(start: Start, steps: int, rate: float) -> HalfStep:
     size, time = len(hamiltonian.coordinates), steps * h
     halved_rate = finite_time_lyapunov(math.log(float(tops[-1])) / 2, size, float(time))
     # A rate that belongs to the motion does not depend on h.
-    alike = rate < _ALIKE * halved_rate and halved_rate < _ALIKE * rate
+    alike = rate < _RATE_FACTOR * halved_rate and halved_rate < _RATE_FACTOR * rate
     grows = classify_motion(marks_of(2 * steps, POINTS), tops) == "exponential"
     return HalfStep(
         "motion" if alike and grows else "undecided" if alike else "scheme", halved_rate
@@ -73,7 +73,7 @@ def repeat_with_half_step(start: Start, steps: int, rate: float) -> HalfStep:
 
 
 def tangent_growth(split: Split, sizes: Sequence[Size], start: Start, steps: int) -> TangentGrowth:
-    """Return the growth of M and its consequence for W, of which `split` has the closed form."""
+    """Return the growth of M and its consequence for W; `split`: W by the closed form."""
     marks, last, time = split.marks, sizes[-1], start.step_size * steps
     squares, areas = [x.norm for x in sizes], [_root(x.areas) for x in sizes]
     motion = classify_motion(marks, squares)
@@ -120,7 +120,7 @@ def _describe_exponential(times: str, rate: float, half: HalfStep, vanishes: boo
     half_step = prose(", and with half the step size the orbit leaves the range")
     if half.rate is not None:
         half_step = prose(", and of ", Number(_short(half.rate)), " with half the step size")
-    return prose(growth, half_step, _SO_W, _WHOSE[half.cause])
+    return prose(growth, half_step, _CONSEQUENCE_FOR_W, _CAUSE_TEXTS[half.cause])
 
 
 def _describe_power(law_of_w: PowerLaw | None, law: PowerLaw, motion: Motion) -> Prose:
@@ -144,7 +144,7 @@ def _short(x: float) -> str:
 
 
 def _root(x: Fraction) -> Fraction:
-    """Return √x to some twelve digits, of any size."""
+    """Return √x to some twelve digits, however large or small x is."""
     # 24 significant digits under the root leave 12 in it.
     digits = max(0, 24 - magnitude(x)) if x else 0
     return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)

@@ -1,13 +1,13 @@
 """Truncation separated from rounding in the area error Λ of a float64 run.
 
-A chain of five values leads from exact arithmetic to what a float64 program prints:
+Λ = Π (1 + ΔJ_k) − 1, ΔJ = det J − 1 of one step. A chain of five values leads from exact arithmetic
+to what a float64 program prints:
 
     Λ₀  exact arithmetic at the exact inputs
     Λ₁  exact arithmetic at the inputs (h, parameters, p₀, q₀) rounded to float64
-    Λ₂  the states z̃_k that float64 steps to from the rounded inputs, bit by bit; ΔJ at them and
-        the product exactly
-    Λ₃  the factors det J(z̃_k) as float64 computes them, bit by bit; their product exactly
-    Λ₄  the product in float64, too: Λ as a float64 program finds it, `lambda_working`
+    Λ₂  float64's states z̃_k from the rounded inputs, bit by bit; exact ΔJ at them and exact product
+    Λ₃  float64's factors det J(z̃_k) at these states, bit by bit; exact product
+    Λ₄  float64's product of these factors: Λ of a float64 program, `lambda_working`
 
 The exact flow has Λ = 0, so Λ₀ is the truncation part, the error of the scheme itself. Each later
 link adds rounding of one kind, and the sum telescopes:
@@ -15,24 +15,26 @@ link adds rounding of one kind, and the sum telescopes:
     Λ₄ = Λ₀ + (Λ₁ − Λ₀) + (Λ₂ − Λ₁) + (Λ₃ − Λ₂) + (Λ₄ − Λ₃)
        = truncation + input + trajectory + determinant + product
 
-If H depends on time a link `clock` stands after Λ₁: exact arithmetic at the rounded inputs, but
-each step at the time that a float64 program's clock has, t ← t + h, which is off t₀ + k h by the
-rounding so far. The clock is read by Λ₂ and all links after it.
+If H depends on time a link after Λ₁ adds a part `clock`: exact arithmetic at the rounded inputs,
+but each step at the time of a float64 program's clock, t ← t + h, which differs from t₀ + k h by
+the rounding so far. Λ₂ and all links after it read that clock.
 
-That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever
-error is left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact:
-a part is what its rounding adds to those before it. Constants in H's formula, such as the 0.1 of
-0.1*q**4, are no inputs; their rounding belongs to `trajectory` and `determinant`.
+The sum is one equation of rationals (`verify.studies.separation.chain`): it holds exactly whatever
+the errors of the computed Λ₀ … Λ₃ are, which are bounded. The order of the links is a choice, since
+effects interact: a part is what its rounding adds to those before it. Constants in H's formula,
+such as the 0.1 of 0.1*q**4, are no inputs; their rounding belongs to `trajectory` and
+`determinant`.
 
 Two ways to evaluate Λ in float64 are separated. `plain`: four entries of J, their determinant, the
-product of determinants, minus one; each step's determinant is rounded at 1, by 2⁻⁵³ or so, however
-small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels, and
-Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
+product of determinants, minus 1; each step's determinant is near 1 and rounded by about 2⁻⁵³,
+however small ΔJ is. `closed_form`: ΔJ from a formula of its own, in which nothing cancels, and Λ =
+expm1(Σ log1p(ΔJ_k)), with the errors of the sum's additions added at the end. Truncation, input and
 trajectory are the same for both.
 
-In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.matrix_products`):
-`plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
-`closed_form` is that of `verify run`. The growth of W and of the tangent map is the subject of
+In n degrees of freedom W = MᵀΩM − Ω, M the product of the steps' Jacobians, is split in the same
+way, entry by entry (`verify.studies.separation.matrix_products`). `plain` multiplies the Jacobians
+and computes W from M at the end; `closed_form` adds MᵀSM, S = JᵀΩJ − Ω, at every step, as
+`verify run` does. The growth of W and of M is the subject of
 `verify.studies.separation.growth_fits` and `verify.studies.separation.tangent`.
 
 The error bounds of the parts are in `verify.studies.separation.determinants`,
@@ -74,16 +76,16 @@ from verify.studies.separation.mixed_run import Stopped
 from verify.studies.separation.result import Split, evaluation
 from verify.studies.separation.tangent import tangent_growth
 
-Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
+Progress = Callable[[int], None]  # called with the number of steps just done; 3 N are expected
 _GRIDS: dict[type[Separation], type[AnyGrid]] = {
     SeparationResult: SeparationGrid,
     SeparationInDegrees: SeparationGridInDegrees,
 }
-RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
+RUNS = 3  # runs of N steps: two in place of exact arithmetic, one in float64 with it beside
 
 
 def separate(hamiltonian: Hamiltonian, scheme: str, **arguments: Any) -> AnySeparation:
-    """Do `separate_in_turn`, which takes the same arguments, alone."""
+    """Return the result of `separate_in_turn`, which takes the same arguments, done alone."""
     return run_alone(separate_in_turn(hamiltonian, scheme, **arguments))
 
 
@@ -106,11 +108,11 @@ def separate_in_turn(
 
     In n degrees of freedom, where q and p are lists, it splits W.
 
-    `t0`: when it starts, of an H that depends on time. `digits`: significant digits of every
+    `t0`: the time at which it starts, if H depends on time. `digits`: significant digits of every
     part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: a
     requested run of the same steps in the plane, which is done once for both. Raises InputError for
     h ≤ 0, N < 1, a parameter without a value, unknown names, more than 4 degrees of freedom, and
-    for float64, which is under examination itself.
+    for `arithmetic` float64, which is examined itself.
     """
     scheme, h, way = canonical(scheme), positive(step_size, "step_size"), way_for(hamiltonian)
     run_start = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
@@ -137,7 +139,7 @@ def separate_in_turn(
 
 
 def _chain_fields(chains: Chains, run_start: Start, steps: int, digits: int) -> dict[str, Any]:
-    """Return the fields of a result that the chains give."""
+    """Return the fields of a result that depend on the chains."""
     sizes, closed_form = chains.sizes, chains.closed_form and Split(chains.closed_form)
     methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
     return {
@@ -162,15 +164,15 @@ def separate_grid(
     digits: int = 17,
     **arguments: Any,
 ) -> AnyGrid:
-    """Do `separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
+    """Return `separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
-    Raises InputError as `separate` does, and if a step size is given twice, or not exactly one
-    of `steps` and `time` is given.
+    Raises InputError as `separate` does, if a step size occurs twice, and unless exactly one of
+    `steps` and `time` is set.
     """
     counts = count_steps(step_sizes, steps, time)
     # A bad number of steps is reported at once, not after hours of runs for other step sizes.
     for _, count in counts:
-        check(hamiltonian, count, digits, ())  # before the first of them is run
+        check(hamiltonian, count, digits, ())
     arguments |= {"digits": digits}
     return as_grid(
         [

@@ -1,9 +1,9 @@
 """The interface of a way to follow a float64 run, and the parts of its kernel.
 
-In the plane Λ is a product of determinants, in n degrees of freedom W is made of products of
-matrices (`verify.studies.separation.determinants`, `verify.studies.separation.matrix_products`).
-The two differ by definition, and so in floating point: the rest of a separation is the same for
-both.
+There are two ways. In the plane Λ is a product of determinants, less 1
+(`verify.studies.separation.determinants`); in n degrees of freedom W = MᵀΩM − Ω is computed from
+products of matrices (`verify.studies.separation.matrix_products`). They differ by definition, and
+so in floating point; the rest of a separation is the same for both.
 """
 
 import keyword
@@ -25,16 +25,17 @@ from verify.scenes.results.separation import AnySeparation
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.chain import Entries, Links
 
-FOLLOWED = ("clock", "trajectory", "factors", "closed")  # what may be carried in wide numbers
+FOLLOWED = ("clock", "trajectory", "factors", "closed")  # the values that wide numbers may carry
 _NAME = re.compile(r"[A-Za-z_]\w*")
-_BARE = {*keyword.kwlist, "abs", "range"}  # where equations are solved there is a loop in the loop
+# Words of a kernel's lines that take no prefix; an implicit step has a `for … in range` of its own.
+_BARE = {*keyword.kwlist, "abs", "range"}
 _SIDES = ("low", "high")
 State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
 
 
 @dataclass(frozen=True)
 class Side:
-    """A step in float64, or in wide numbers; in the source its names begin with `prefix`."""
+    """A step in float64 or in wide numbers; its names in a kernel's source begin with `prefix`."""
 
     step: Computation
     arithmetic: Arithmetic
@@ -50,7 +51,7 @@ class Side:
 
     @property
     def slopes(self) -> list[list[str]]:
-        """The names of K's entries; "" where one is 0."""
+        """The names of the entries of K = J − 1; "" for an entry that is constantly 0."""
         zero = self.step.program.is_constant
         return [
             ["" if zero(index, 0) else self.name(index) for index in row]
@@ -59,7 +60,7 @@ class Side:
 
     @property
     def entries(self) -> list[int]:
-        """The indices of all entries of K, of a step that has it."""
+        """The indices of all entries of K; empty if the step has no K."""
         return [index for row in self.step.slopes for index in row]
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
@@ -88,8 +89,9 @@ class Side:
 class KernelLines(NamedTuple):
     """The lines that a way adds to those of a step.
 
-    `start`: the names that are carried from step to step, with their initial values. `followed`:
-    which of `FOLLOWED` they are. `closed`: True unless ΔJ, or S, is constantly 0.
+    `inside`: the lines in the loop. `start`: the names that are carried from step to step, with
+    their initial values. `followed`: the names of `FOLLOWED` that are among them. `closed`: True
+    unless ΔJ, or S, is constantly 0.
     """
 
     inside: list[str]
@@ -103,10 +105,10 @@ class MixedKernel:
     """A kernel that steps in float64 and in wide numbers beside it.
 
     `function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` returns (steps
-    done, *state_names). `state_names` are carried from step to step; `start` has their initial
-    values, except of coordinates and of the ends of the region that they visit. `limits`: of an
-    arithmetic of limited range. `wide`: what the wide lines compute at a float64 state. `followed`,
-    `closed` as in `Lines`.
+    done, *state_names). `state_names` are carried from step to step; `start` has the initial values
+    of all but the coordinates, t and the ends of the intervals that they visit. `limits`: further
+    arguments for an arithmetic of limited range. `wide`: the computation of the wide lines at a
+    float64 state. `followed`, `closed` as in `KernelLines`.
     """
 
     function: Callable[..., tuple[int, *tuple[SystemNumber, ...]]]
@@ -125,10 +127,10 @@ class MixedKernel:
 
 
 class Size(NamedTuple):
-    """The sizes ‖M‖² and ‖∧²M‖² in the Frobenius norm: sums of squares of entries and 2 × 2 minors.
+    """The sums of squares of M's entries, ‖M‖², and of its 2 × 2 minors, ‖∧²M‖².
 
-    The second measures how M changes areas, by which a 2-form grows: it is Σ σ_i² σ_j² of the
-    singular values, i < j, and the first is Σ σ_i².
+    With M's singular values σ_i they are Σ σ_i² and Σ σ_i² σ_j², i < j. The second measures how
+    much M changes areas, and so how much a 2-form grows.
     """
 
     norm: Fraction
@@ -151,9 +153,9 @@ class SteppedRun:
         return self.states[-1]
 
     def inputs_over_region(self, cut: Ball) -> dict[str, RoundedValue]:
-        """Return the wide program's inputs, over the region that the float64 states visited.
+        """Return balls of the wide program's inputs over all float64 states of the run.
 
-        Each number is within `cut` of its float64.
+        `cut` bounds the difference of a wide input from its float64.
         """
         last = self.last
         region = {n: rational_ball(Fraction(x)) for n, x in self.kernel.inputs(self.inputs).items()}
@@ -166,7 +168,7 @@ class SteppedRun:
         return {name: RoundedValue(x, cut) for name, x in region.items()}
 
     def analyse_values(self, roots: Sequence[int], cut: Ball) -> list[RoundedValue] | None:
-        """Return the wide program's values there, with errors; None if one is not defined."""
+        """Return the wide program's values there, with their errors; None if one is undefined."""
         program, rounding = self.kernel.wide.program, rounding_of(self.arithmetic)
         values = analyse(program, program.live(roots), self.inputs_over_region(cut), rounding)
         return None if values is None else [values[index] for index in roots]
@@ -174,14 +176,17 @@ class SteppedRun:
 
 @dataclass(frozen=True)
 class Way(ABC):
-    """A way to evaluate the last links in float64, and to follow them exactly beside it.
+    """A way to evaluate the last links in float64, and to follow them in wide numbers beside it.
 
-    `count`: of coordinates. `result`: the model of the result. `observable`, of `observables`: the
-    quantity of a run in place of exact arithmetic. `points`: its checkpoints. `parts`: of rounding,
-    in the chain's order. `cancelled`: digits that differences between links cancel, and `products`
-    those that reading a product does beside them. `hidden`: so many digits further below the
-    greatest quantity a part is taken for noise, if ever. `vanishes`: in words, why the closed form
-    is exactly 0 where it is.
+    - `count`: the number of coordinates;
+    - `result`: the model of the result;
+    - `observable`: the quantity that a run in place of exact arithmetic measures, `observables` all
+      that it carries, and `points` the number of its checkpoints;
+    - `parts`: the rounding parts in the chain's order;
+    - `cancelled`: the digits that differences of links cancel; `products`: those that computing W
+      from a product of matrices cancels beside them;
+    - `hidden`: a part is taken for noise that many digits below the last required one; None: never;
+    - `vanishes`: the identity by which the closed form is exactly 0, in words.
     """
 
     count: int
@@ -197,14 +202,18 @@ class Way(ABC):
 
     @abstractmethod
     def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Computation:
-        """Return float64's computation of a step, or, `exactly`, that of ΔJ or K at its states.
+        """Return the computation of a step in float64, or, `exactly`, of ΔJ or K in wide numbers.
 
         Raises UnsupportedError if the arithmetic cannot do it.
         """
 
     @abstractmethod
     def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> KernelLines:
-        """Return the lines carried; `wide`: exactly too, `clocked`: at float64's times."""
+        """Return the lines that the way adds.
+
+        `wide`: the step in wide numbers at float64's states, if it is followed; `clocked`: that of
+        the wide state at float64's times.
+        """
 
     def limits(
         self, kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
@@ -216,33 +225,33 @@ class Way(ABC):
 
     @abstractmethod
     def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
-        """Return Λ, or W's entries, as exactly as it was followed; `name` is one of `FOLLOWED`."""
+        """Return Λ, or W's entries, of the wide numbers of this name, one of `FOLLOWED`."""
 
     @abstractmethod
     def plain(self, state: State) -> tuple[float, ...]:
-        """Return the same as float64 finds it in the plain way."""
+        """Return Λ, or W's entries, that float64 computes in the plain way."""
 
     @abstractmethod
     def closed_form(self, state: State) -> tuple[float, ...]:
-        """Return the same as float64 finds it by the closed form."""
+        """Return Λ, or W's entries, that float64 computes by the closed form."""
 
     def in_range(self, state: State) -> bool:
-        """Return True if a state whose float64 numbers are finite is in range."""
+        """Return True if the way's own values of a state with finite float64 numbers are finite."""
         return True
 
     def size(self, state: State, arithmetic: Arithmetic) -> Size | None:
-        """Return the size of the product of Jacobians, where W is followed."""
+        """Return the size of the product of Jacobians; None in the plane."""
         return None
 
     # -- bounds of errors ---------------------------------------------------------------------
 
     @abstractmethod
     def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
-        """Return a rigorous bound of everything that was followed, or None if there is none."""
+        """Return a rigorous bound of each name that was followed; None where there is none."""
 
     @abstractmethod
     def hidden_size(self, run: SteppedRun, name: str) -> Fraction:
-        """Return the error that the last bits may hide from two runs that are compared."""
+        """Return an error in the last bits that two compared runs may have in common."""
 
     # -- runs in place of exact arithmetic ----------------------------------------------------
 
@@ -252,10 +261,10 @@ class Way(ABC):
 
     @abstractmethod
     def values(self, run: RunOutcome, last: Fraction) -> list[Entries]:
-        """Return a run's values at its checkpoints; `last` is the better value of the last one."""
+        """Return a run's values at its checkpoints; `last`: a more accurate one for the last."""
 
     def digits_beside(
         self, run: KernelRun, step_map: StepMap, link_digits: int, compiled: bool
     ) -> int:
-        """Return the digits beside float64 for so many of the links."""
+        """Return the digits of the wide numbers for `link_digits` digits of the links."""
         return working_digits(link_digits, run.steps)

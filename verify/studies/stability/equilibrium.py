@@ -1,15 +1,15 @@
 """Linear stability of a scheme at an equilibrium of H, in one or more degrees of freedom.
 
 The quadratic part of H at the equilibrium, with rational coefficients, gives the linear field A z.
-Its frequencies are the positive roots ω of det(A − iω), a polynomial in ω² with rational
-coefficients, which are isolated exactly.
+The frequencies are the positive roots ω of det(A − iω), a polynomial in ω² with rational
+coefficients; they are isolated exactly.
 
-Where that part is T(p) + V(q), and both are positive definite, a linear change of p and of q takes
-it to a sum of oscillators (p² + ω²q²)/2. Our schemes do the same in the new coordinates, since they
-treat all p alike and all q alike; so powers of a step stay bounded up to that h with which the
-greatest ω reaches the end of the scheme's interval in hω
-(`verify.studies.stability.linear_stability`). Otherwise it is decided for a given h, by the matrix
-of a step (`verify.studies.stability.step_matrix`).
+If the quadratic part is T(p) + V(q), both positive definite, a linear change of p and of q takes it
+to a sum of oscillators (p² + ω²q²)/2. Our schemes treat all p alike and all q alike, so that they
+make the same steps in the new coordinates. Powers of a step then stay bounded up to the h at which
+the greatest hω reaches the end of the scheme's interval
+(`verify.studies.stability.linear_stability`). Otherwise the matrix of a step decides it for each
+requested h (`verify.studies.stability.step_matrix`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -61,9 +61,9 @@ class Frequency:
 class LinearAtEquilibrium:
     """The linear stability of a scheme at an equilibrium.
 
-    `frequencies`: from the smallest on; less than n of them, with multiplicities, where motion
-    near the equilibrium is not oscillation alone. `interval`: of hω, where H's quadratic part is a
-    sum of oscillators; else None. `decided`: for each requested h True if powers of a step stay
+    `frequencies`: from the smallest on; fewer than n, with multiplicities, if motion near the
+    equilibrium is not oscillation alone. `interval`: the scheme's, of hω, if H's quadratic part is
+    a sum of oscillators; else None. `decided`: for each requested h True if powers of a step stay
     bounded, False if not, None if it is not decided.
     """
 
@@ -95,8 +95,8 @@ class LinearAtEquilibrium:
             y, error = end.value, end.radius
         else:
             y, error = Fraction(interval.decimal(2 * _DIGITS)), Fraction(0)
-        # Y and ω are each known to a relative error of 10^−(2 digits); 4 covers both and the
-        # rounding of the quotient.
+        # Y and ω have a relative error of 10^−(2 · `_DIGITS`) each; 4 covers both and the rounding
+        # of the quotient.
         bound = 4 * y / 10 ** (2 * _DIGITS) + error
         return known_digits(y / omega, bound / omega, _DIGITS)
 
@@ -236,9 +236,9 @@ def _is_positive(rows: list[list[flint.fmpq]]) -> bool:
 
 def _frequencies(matrix: flint.fmpq_mat) -> list[Frequency]:
     """Return the positive roots ω of det(A − iω), from the smallest on."""
-    # With λ = iω, λ² = −ω²: the signs of every second coefficient change, and the powers of ω in
-    # between have coefficient 0.
-    even = matrix.charpoly().coeffs()[::2]  # the field of an H: λ and −λ are roots together
+    # The characteristic polynomial is one in λ², since λ and −λ are roots together. With λ = iω its
+    # coefficients change their signs in turn, and odd powers of ω have coefficient 0.
+    even = matrix.charpoly().coeffs()[::2]
     coefficients = [x for k, c in enumerate(even) for x in ((-1) ** k * c, 0)][:-1]
     polynomial = flint.fmpq_poly(coefficients).numer()
     times = {factor.repr(): m for factor, m in polynomial.factor()[1]}

@@ -3,10 +3,10 @@
 In the plane it is followed until it closes (`verify.flows.exact_orbit`), in n degrees of freedom
 beside a neighbour, which shows how fast the two part.
 
-There the flow is followed with 24 digits from one time to the next, and so is a neighbour that
-starts 10⁻¹² of the reach away: their distance, by the first one, is what the tangent map does to
-one direction, as long as it is small. Lengths are measured by the reach: that of the momenta for
-momenta, of the coordinates for coordinates, each the greatest of its kind.
+In n degrees of freedom the flow is followed with 24 digits from one time to the next, and so is a
+neighbour that starts 10⁻¹² of the reach away. As long as their distance is small, its growth is
+that of one vector under the tangent map. Distances are relative to the reach: half the greatest
+range of a momentum for momenta, and of a displacement for displacements.
 """
 
 from collections.abc import Sequence
@@ -29,12 +29,13 @@ from verify.studies.stability.trail import State
 
 _DIGITS = 24
 _TIMES = 96
-_MOST_STEPS = 4000  # from one time to the next
-_NEAR = Fraction(1, 10**12)  # of the reach
-_APART = 0.1  # of the reach, beyond which a distance no longer grows
-_FAR = 10**6  # an orbit that goes so many times farther than it was is leaving
+_MAX_STEPS = 4000  # from one time to the next
+_INITIAL_DISTANCE = Fraction(1, 10**12)  # the neighbour's, relative to the reach
+_LARGE_DISTANCE = 0.1  # relative to the reach; beyond it a distance no longer grows
+_ESCAPE_FACTOR = 10**6  # an orbit escapes if its end is this many times as far out as its start
 _OMEGA_DIGITS = 20
-_NOISE = 1e-6  # of the matrix's size: a double eigenvalue 0 is found so far from it, and more
+# Relative to the matrix's greatest entry: rounding moves a double eigenvalue 0 at least as far.
+_EIGENVALUE_NOISE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,16 @@ class Sensitivity:
 
     @classmethod
     def from_distances(cls, times: Sequence[float], distances: Sequence[float]) -> "Sensitivity":
-        """Measure it by distances at ascending times from 0 on, in parts of the reach.
+        """Return the sensitivity by distances at ascending times from 0 on, relative to the reach.
 
         The first distance must not be 0.
         """
         # Once neighbours are far apart their distance is bounded by the orbit's size and grows no
         # more.
-        count = next((k for k, x in enumerate(distances) if x > _APART), len(distances) - 1) + 1
+        count = (
+            next((k for k, x in enumerate(distances) if x > _LARGE_DISTANCE), len(distances) - 1)
+            + 1
+        )
         first = distances[0]
         # A distance may pass 0 by chance; its logarithm is kept finite.
         logs = [log(max(x, first * 1e-6) / first) for x in distances[:count]]
@@ -70,9 +74,9 @@ class Sensitivity:
 class ExactMotion(ExactOrbit):
     """An exact motion in n degrees of freedom.
 
-    `reach`: of each coordinate, the greatest of its kind; `turns`: none is taken for an angle here;
-    `period`: about the time in which the quickest coordinate turns round; `states`: those at
-    `times`.
+    `reach`: half the greatest range of a momentum, or of a displacement, for each coordinate;
+    `turns`: all False, since no coordinate is taken for an angle; `period`: about that of the
+    quickest coordinate; `states`: those at `times`.
     """
 
     has_neighbours: ClassVar[bool] = True
@@ -83,7 +87,7 @@ class ExactMotion(ExactOrbit):
 
     @property
     def is_sensitive(self) -> bool | None:
-        """True if it parts from its neighbours exponentially; None if that is not decided."""
+        """True if the motion parts from its neighbours exponentially; None if undecided."""
         return None if self.sensitivity is None else self.sensitivity.exponential
 
     @cached_property
@@ -105,7 +109,7 @@ class ExactMotion(ExactOrbit):
                 values = jacobian_at(*map(arithmetic.number, arguments))
             jacobian = np.array([float(arithmetic.exact(x)) for x in values]).reshape(size, size)
             turning = float(np.abs(np.linalg.eigvals(jacobian).imag).max())
-            if turning > _NOISE * float(np.abs(jacobian).max()):
+            if turning > _EIGENVALUE_NOISE * float(np.abs(jacobian).max()):
                 greatest = max(greatest, turning)
         return Fraction(greatest)
 
@@ -143,13 +147,13 @@ def _follow_with_neighbour(
     except NoFlowError as error:
         return search.build_motion("not followed", error.reason, [state])
     size = max(map(abs, state)) or max(map(abs, points[1]))
-    if max(map(abs, points[-1])) > _FAR * size:
+    if max(map(abs, points[-1])) > _ESCAPE_FACTOR * size:
         time_reached = float(t0 + time)
-        summary = f"is `{_FAR:.0e}` times as far out as z0 at t = `{time_reached:.6g}`"
+        summary = f"is `{_ESCAPE_FACTOR:.0e}` times as far out as z0 at t = `{time_reached:.6g}`"
         return search.build_motion("escapes", read_prose(summary), points)
     kind: Kind = "driven" if hamiltonian.time_dependent else "bounded"
     motion = search.build_motion(kind, prose(), points)
-    displaced = displace(state, motion.reach, _NEAR)
+    displaced = displace(state, motion.reach, _INITIAL_DISTANCE)
     try:
         neighbour = search.follow(displaced)
     except NoFlowError:
@@ -190,7 +194,7 @@ class _FlowAtTimes:
         start = (*state, self.t0) if flow.timed else state
         z, points = tuple(map(flow.number, start)), [state]
         for _ in range(_TIMES):
-            z = flow.follow(z, self.part, _MOST_STEPS)
+            z = flow.follow(z, self.part, _MAX_STEPS)
             points.append(tuple(map(flow.arithmetic.exact, z[:size])))
         return points
 
@@ -210,7 +214,7 @@ class _FlowAtTimes:
         # that hardly moves has no scale of its own.
         reach = tuple(greatest[k // n] for k in range(2 * n))
         fastest = self._fastest(points)
-        # H_p = q' and H_q = −p': H changes by about so much across the orbit.
+        # H_p = q' and H_q = −p': H changes by about the sum of these across the orbit.
         products = (fastest[(k + n) % (2 * n)] * half_widths[k] for k in range(2 * n))
         times = [r / v for r, v in zip(half_widths, fastest, strict=True) if r and v]
         period = Fraction(2 * pi) * min(times) if times else None

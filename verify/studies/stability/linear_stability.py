@@ -7,16 +7,15 @@ t = tr M its eigenvalues are at most 1 in size exactly where 1 − d, 1 + d − 
 are > 0, or d = 1 and |t| < 2, powers of M stay bounded. Where d = 1 and |t| = 2 they do so for
 M = ±I alone, and else grow like a shear's; that is why a splitting's interval does not hold Y.
 
-The interval is (0, Y) with the greatest Y such that all three hold in it; there is none where M is
-a shear, or its negative, for all y. Their signs between their roots are decided exactly: by
-isolating the real roots of integer polynomials.
+The interval is (0, Y) with the greatest Y such that all three conditions hold in it; there is none
+if M is a shear, or its negative, for all y. The conditions' signs between their roots are decided
+exactly, by isolating the real roots of integer polynomials.
 
-The matrix of a composition on the harmonic oscillator, as a product of those of its parts.
-
-A part moves (p, q) by a 2 × 2 matrix whose entries are polynomials in h, with numbers of the ring
-as coefficients. Their product has as many terms as the step has parts, while p' and q' as a closed
-form may have exponentially many on the way. Where the numbers are algebraic, resultants with their
-relations, the newest generator first, take a polynomial in h to one over the integers that has all
+M of a composition is the product of the matrices of its parts. A part moves (p, q) by a 2 × 2
+matrix whose entries are polynomials in h, with numbers of the ring as coefficients. The degree of
+the product grows with the number of parts, while p' and q' as a closed form may have exponentially
+many terms on the way. If the numbers are algebraic, resultants with the relations of the ring's
+generators, the newest generator first, take a polynomial in h to one over the integers that has all
 of its roots: the resultant of r and f in a generator vanishes where both have a common root in it.
 """
 
@@ -33,7 +32,7 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import H_STEP
 from verify.arithmetic.exact import known_text
-from verify.effort import MOST, limit_effort
+from verify.effort import MAX_CALLS, limit_effort
 from verify.errors import InputError
 from verify.prose import Prose
 from verify.schemes.maps.closed_form import h_inside
@@ -42,7 +41,7 @@ from verify.schemes.maps.step_map import StepMap
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 
 _BITS = 128
-_MOST_DEGREE = 600  # of the polynomial over the integers, as it may be; its roots take seconds
+_MAX_DEGREE = 600  # an estimate of that over the integers; its roots then take seconds
 Entries = tuple[Poly, Poly, Poly, Poly]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q
 
 
@@ -67,15 +66,15 @@ class RingPolynomial:
 
 
 def matrix_of_step(step: StepMap) -> tuple[Ring, Entries] | None:
-    """Return the matrix of the whole step; None if its parts are not as the module says.
+    """Return the matrix of the whole step; None if its parts are not polynomials in h.
 
-    None, too, if there are so many of them, of so high a degree, that roots would take minutes.
+    None, too, if there are so many parts, of so high a degree, that roots would take minutes.
     """
     parts = parts_of(step)
     if parts is None:
         return None
     ring = parts[0].ring
-    if len(parts) * math.prod(power for _, power, _ in ring.relations) > _MOST_DEGREE:
+    if len(parts) * math.prod(power for _, power, _ in ring.relations) > _MAX_DEGREE:
         return None
     total: Entries = (ring.one, ring.zero, ring.zero, ring.one)
     for part in parts:
@@ -124,9 +123,10 @@ Y = sympy.Symbol("y", positive=True)
 class LinearStability:
     """The stability interval (0, Y) of a scheme; `interval` is Y, 0 for none, ∞ for no end.
 
-    Y is a formula where it is written with square roots, else a certain root of a polynomial; or a
-    number, where the scheme's coefficients are (`verify.studies.stability.scheme_interval`).
-    `delta_j`: det M − 1 as a function of y. `gaps`: a y in each that was passed over.
+    Y is a formula with square roots if it has one, else a root of a polynomial, by its number; or,
+    if the scheme's coefficients are printed decimals, a number with a radius
+    (`verify.studies.stability.scheme_interval`). `delta_j`: det M − 1 as a function of y. `gaps`: a
+    y in each gap of the interval that was passed over.
     """
 
     scheme: str
@@ -136,7 +136,7 @@ class LinearStability:
 
     @property
     def exact(self) -> str:
-        """The end of the interval as a formula, or as a certain root of a polynomial."""
+        """The end of the interval as a formula or a root of a polynomial; empty for a number."""
         if isinstance(self.interval, PositiveRoot):
             return self.interval.describe(Y.name)
         if isinstance(self.interval, NearbyLimit):
@@ -169,7 +169,7 @@ class NearbyLimit:
     note: Prose
 
     def decimal(self, digits: int) -> str:
-        """Return the digits that are known, so many at most."""
+        """Return the value to the digits that are certain, `digits` at most."""
         return format(Decimal(known_text(self.value, self.radius, digits)), "f")
 
 
@@ -178,12 +178,13 @@ def stability_of_map(
 ) -> LinearStability:
     """Return the stability interval in y of a step map of H = (p² + q²)/2, with h for y.
 
-    `narrow`: gaps that are less wide, in parts of y, are passed over. `keeps_area`: det M is taken
-    to be 1, from which it differs by the rounding of printed digits.
+    `narrow`: gaps whose width, relative to y, is less than this are passed over. `keeps_area`: det
+    M is taken to be 1, from which it differs by the rounding of printed digits.
 
-    Raises InputError if it has no closed form there.
+    Raises InputError if the step has no closed form on the oscillator.
     """
-    with limit_effort("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
+    # `lie99` takes 3 · MAX_CALLS.
+    with limit_effort("scheme", name, "its linear theory", 10 * MAX_CALLS):
         stability = _stability_by_product(name, step, narrow) if step.formulas is None else None
         return stability or _stability_by_closed_form(name, step, narrow, keeps_area)
 
@@ -194,8 +195,8 @@ def _stability_by_product(name: str, step: StepMap, narrow: Fraction) -> LinearS
     if matrix is None:
         return None
     ring, (a, b, c, e) = matrix
-    trace, delta_j_element = ring.reduce(a + e), ring.reduce(a * e - b * c - ring.one)  # more is ΔJ
-    # Jury's conditions 1 − d, 1 + d − t and 1 + d + t, with d = 1 + `more`.
+    trace, delta_j_element = ring.reduce(a + e), ring.reduce(a * e - b * c - ring.one)
+    # Jury's conditions 1 − d, 1 + d − t and 1 + d + t, with d = 1 + `delta_j_element`.
     signs = [-delta_j_element, delta_j_element + 2 - trace, delta_j_element + 2 + trace]
     vanish = [ring.vanishes(x) for x in signs]
     conditions = [ring_polynomial(ring, x) for x, v in zip(signs, vanish, strict=True) if not v]
@@ -259,7 +260,8 @@ def _find_interval(
     No condition may be constantly 0. The gaps are those that were passed over.
     """
     end: PositiveRoot | None = None
-    above, gaps = Fraction(0), list[Fraction]()  # the end of what encloses `left`
+    # `above`: the upper end of the last root's enclosure.
+    above, gaps = Fraction(0), list[Fraction]()
     for root, (low, high) in positive_roots(f.over_integers for f in conditions):
         # No condition changes its sign between two roots, so that one point decides a whole gap.
         middle = (above + low) / 2

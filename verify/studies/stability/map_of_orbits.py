@@ -1,10 +1,10 @@
 """The map of a scheme's orbits over two of their initial values, in float64.
 
-All orbits are stepped at once, and with each a neighbour that starts 10⁻⁹ of the greatest start
-away. After every so many steps the orbits that have left are noted, and the distances of neighbours
-are measured: where a distance grows exponentially the orbit is sensitive
-(`verify.runs.tangent_growth`). The map examined is the scheme's own at this step size. Where it is
-not proved to be symplectic, W of the orbits that stay is measured too.
+All orbits are stepped at once, and with each of them a neighbour at a distance of 10⁻⁹ of the
+greatest initial coordinate. After each of 64 stretches the orbits that have left are noted, and the
+distances of neighbours are measured: if a distance grows exponentially the orbit is sensitive
+(`verify.runs.tangent_growth`). The map examined is the scheme's own at this step size. Unless it is
+proved to be symplectic, W = MᵀΩM − Ω of the orbits that stay is measured too.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,8 +26,8 @@ from verify.scenes.observables import carries_defect
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 from verify.studies.stability.exact_motion import Sensitivity
 
-_SECTIONS = 64  # stretches, after each of which the orbits are examined
-_NEAR = 1e-9  # of the greatest start, a neighbour
+_STRETCHES = 64  # the orbits are examined after each of them
+_NEIGHBOUR_DISTANCE = 1e-9  # relative to the greatest initial |coordinate|
 _KINDS: Mapping[bool | None, OrbitKind] = {True: "sensitive", False: "regular", None: "undecided"}
 _T = TypeVar("_T")
 
@@ -47,7 +47,7 @@ class Orbits:
     @property
     def every(self) -> int:
         """The number of steps of a stretch; the last one may be shorter."""
-        return -(-self.steps // _SECTIONS)
+        return -(-self.steps // _STRETCHES)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -64,7 +64,7 @@ class Orbits:
             yield first, min(self.every, self.steps - first)
 
     def map_from(self, first: int, steps: int, *observables: str) -> PointMap:
-        """Return the map of so many steps that follow the first ones, with these observables."""
+        """Return the map of `steps` steps after the first `first` ones, with these observables."""
         return PointMap(
             self.hamiltonian, self.scheme, step_size=self.step_size, steps=steps,
             arithmetic=number_systems.get(float64.NAME, 17),
@@ -74,23 +74,24 @@ class Orbits:
     def follow(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the steps after which each orbit had left, or 0, and neighbours' distances.
 
-        Distances are in parts of the greatest start, at each time; nan once the orbit has left.
+        Distances are at each time, relative to the greatest initial |coordinate|; nan once the
+        orbit has left.
         """
         count = self.starts.shape[1]
         steps_to_leave = np.zeros(count, dtype=int)
-        distances = np.full((_SECTIONS + 1, count), np.nan)
+        distances = np.full((_STRETCHES + 1, count), np.nan)
         size = len(self.names)
         # All components of the direction differ from 0, so that no symmetry of H keeps the
         # neighbour on a special plane.
         direction = np.array([(-1) ** k / (1 + k) for k in range(size)])[:, None]
-        z, neighbours = self.starts, self.starts + _NEAR * self._sizes * direction
+        z, neighbours = self.starts, self.starts + _NEIGHBOUR_DISTANCE * self._sizes * direction
         distances[0] = _distance(z, neighbours, self._sizes)
         staying = np.arange(count)
         for k, (first, steps) in enumerate(self.stretches(), start=1):
             pairs = self.map_from(first, steps).carried_after(np.hstack([z, neighbours]))[:size]
             z, neighbours = np.hsplit(pairs, 2)
             # Orbits that have left are dropped, so that overflow cannot slow or spoil the others.
-            stays = (np.abs(z) <= self.beyond).all(axis=0)  # nan is not
+            stays = (np.abs(z) <= self.beyond).all(axis=0)  # False for nan
             steps_to_leave[staying[~stays]] = first + steps
             staying, z, neighbours = staying[stays], z[:, stays], neighbours[:, stays]
             if not len(staying):
@@ -111,7 +112,8 @@ class Orbits:
 
 def _distance(states: np.ndarray, neighbours: np.ndarray, size: float) -> np.ndarray:
     distances: np.ndarray = np.abs(states - neighbours).max(axis=0) / size
-    return np.where(np.isfinite(distances), distances, 1 / _NEAR)  # a neighbour that has left
+    # A distance that is not finite is that of a neighbour that has left.
+    return np.where(np.isfinite(distances), distances, 1 / _NEIGHBOUR_DISTANCE)
 
 
 def orbit_map(
@@ -142,7 +144,7 @@ def orbit_map(
     orbits = Orbits(hamiltonian, scheme, step_size, steps, t0 or Fraction(0), starts, float(beyond))
     energies = _energies(hamiltonian, points)
     steps_to_leave, distances = orbits.follow()
-    # Time 0 has the initial distance, to which all later ones are compared.
+    # Time 0 has the initial distance, with which all later ones are compared.
     times = [0.0] + [float((a + n) * step_size) for a, n in orbits.stretches()]
     is_defined = [energy is not None or hamiltonian.time_dependent for energy in energies]
     kinds, rates, width = [], [], len(across)

@@ -1,9 +1,9 @@
 """The positive roots of polynomials with integer coefficients, exactly and in order.
 
 flint isolates the roots of a polynomial of any degree by balls that do not meet, and gives a real
-root the imaginary part 0, exactly (Arb's `arb_fmpz_poly_complex_roots`). Which of two roots of
-different polynomials is the smaller one is decided by more bits: irreducible factors that differ
-have no root in common.
+root the imaginary part 0, exactly (Arb's `arb_fmpz_poly_complex_roots`). Roots of different
+polynomials are put in order by as many bits as that takes: different irreducible factors have no
+root in common, so that enough bits separate them.
 """
 
 from collections.abc import Iterable
@@ -77,7 +77,8 @@ def positive_roots(
 
 def _enclosures(irreducible: flint.fmpz_poly, bits: int) -> list[flint.arb]:
     """Return enclosures of its positive roots, from the smallest one on."""
-    inner, power = irreducible.deflation()  # as a polynomial of x^power: its roots are fewer
+    # The polynomial is `inner`(x^power); `inner` has fewer roots.
+    inner, power = irreducible.deflation()
     if inner.degree() == 1 and inner[0] == 0:
         return []
     with working_precision(bits):

@@ -1,4 +1,4 @@
-"""The initial value in float64: its rounding, and an equilibrium that float64 takes it for."""
+"""The initial value in float64: its rounding, and an equilibrium with the same float64 numbers."""
 
 from fractions import Fraction
 
@@ -9,12 +9,12 @@ from verify.prose import Number, Prose, prose, read_prose
 from verify.studies.stability.trail import StabilityRun
 
 _DIGITS = 120
-_NEWTON = 12
-_NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
+_NEWTON_STEPS = 12
+_NEIGHBOURHOOD = Fraction(1, 10**6)  # an equilibrium counts within this distance of the start
 
 
 def describe_rounded_start(run: StabilityRun) -> Prose:
-    """Describe how float64 rounds the initial value, and an equilibrium it takes it for, if any."""
+    """Describe float64's rounding of the initial value, and an equilibrium that rounds to it."""
     sentences = Prose()
     for name, value in zip(("q", "p"), reversed(run.state), strict=True):
         gap = abs(Fraction(float(value)) - value)
@@ -45,16 +45,17 @@ def nearest_equilibrium(run: StabilityRun) -> tuple[Fraction, Fraction] | None:
     hessian = [ring.diff(x, name) for x in gradient for name in ("p", "q")]
     evaluate = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
     start = tuple(map(arithmetic.number, run.state))
-    near = arithmetic.number(_NEAR)
+    near = arithmetic.number(_NEIGHBOURHOOD)
     try:
         with arithmetic.context():
             p, q = start
-            for _ in range(_NEWTON):
+            for _ in range(_NEWTON_STEPS):
                 u, v, a, b, c, d = evaluate(p, q)
                 # Newton's step solves the Hessian's 2 × 2 system by Cramer's rule.
                 below = a * d - b * c
                 dp, dq = (d * u - b * v) / below, (a * v - c * u) / below
                 p, q = p - dp, q - dq
+            # The last step must be at most 10^−60: the iteration has converged.
             if (
                 not max(abs(p - start[0]), abs(q - start[1])) < near
                 or max(abs(dp), abs(dq)) > near**10

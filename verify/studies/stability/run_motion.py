@@ -1,13 +1,14 @@
 """The motion in one run, in float64 and in high precision: its bounds, and a drift.
 
-Bounds: ten times the exact orbit's reach in each coordinate, and a hundred times its energy scale
-(see `verify.studies.stability.exact_motion`), but for an H that depends on time, whose value the
-drive changes. Two runs are apart if they differ by a tenth of the reach.
+A run keeps within its bounds if each coordinate stays within ten times the exact orbit's reach of
+its centre, and |H − H(z₀)| within a hundred times the orbit's energy scale (see
+`verify.studies.stability.exact_motion`). The second is not required if H depends on time, as the
+drive changes its value. Two runs are apart if they differ by more than a tenth of the reach.
 
 The energy of a bounded run drifts if it moves on in one direction, however much it swings. The run
 is cut into eight stretches of equal length. A drift is a mean energy that moves in one direction
-from each to the next, by more in all than the means are uncertain; and that still does so in a run
-four times as long, so that no slow beat is taken for one.
+from each stretch to the next, in all by at least four standard errors of a mean. It must continue
+in a run four times as long, so that no slow beat is taken for a drift.
 """
 
 from collections.abc import Sequence
@@ -35,20 +36,20 @@ from verify.studies.stability.trail import (
     follow_precisely,
 )
 
-_BEYOND = 10  # times the reach
-_ENERGY = 100  # times the energy scale
-_APART = Fraction(1, 10)  # of the reach
+_REACH_FACTOR = 10  # a run leaves its bounds beyond this many times the reach
+_ENERGY_FACTOR = 100  # and beyond this many times the energy scale
+_APART = Fraction(1, 10)  # relative to the reach
 _DIGITS = 40
-_NEIGHBOUR = Fraction(1, 10**20)  # of the reach, one of the scheme's own orbit
-# Of a drift:
+_NEIGHBOUR_DISTANCE = Fraction(1, 10**20)  # in the scheme's own sensitivity, relative to the reach
+# Constants of a drift:
 _STRETCHES = 8
-_LONGER = 4
-_PERIODS = 8  # of the exact orbit, that the longer run lasts at least
-_SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
-_MOST_LOOKED_AT = 20_000  # steps of a last period
-_FEW = 16  # of them, in which a run that goes on moves farther than one that has died
-_SURE = 4.0  # standard errors of a mean
-_SLOWER = 16.0  # times less, at most, in the longer run
+_LENGTH_FACTOR = 4  # the longer run has this many times the steps
+_LEAST_PERIODS = 8  # of the exact orbit's: the longer run lasts at least so long
+_LEAST_DRIFT = 2.0**-53  # relative to the energy scale: float64 could not show less
+_MAX_STEPS_AT_END = 20_000  # steps of the period in which a run is examined for rest
+_FEW_STEPS = 16  # most runs that are not at rest show it in so many steps of that period
+_STANDARD_ERRORS = 4.0  # the least drift, in standard errors of a mean
+_MAX_SLOWDOWN = 16.0  # the rate in the longer run is at most this many times smaller
 
 
 def float64() -> Arithmetic:
@@ -60,7 +61,7 @@ class RunMotion:
     """One run compared with the exact orbit; each of its trails is computed when it is needed."""
 
     def __init__(self, run: StabilityRun, orbit: ExactOrbit | None = None) -> None:
-        """Take `orbit`, where it is given, for the exact one over the run's time or longer."""
+        """Compare with `orbit`, which lasts at least as long as the run; computed if left out."""
         self.run = run
         self.orbit = orbit or exact_motion(run.hamiltonian, run.state, run.time, run.t0)
         self.digits = _DIGITS + self.orbit.more_digits
@@ -73,7 +74,7 @@ class RunMotion:
 
     @cached_property
     def precise(self) -> RunTrail:
-        """The run to `digits` digits, of as many of its steps as `follow_precisely` does."""
+        """The run with `digits` digits, for as many of its steps as `follow_precisely` does."""
         return follow_precisely(self.run, self.digits)
 
     @cached_property
@@ -89,7 +90,7 @@ class RunMotion:
         """The sensitivity of the scheme's own map, in high precision."""
         reach = self.orbit.reach
         neighbour_run = self.run.onwards(
-            displace(self.run.state, reach, _NEIGHBOUR), 0, self.precise.steps
+            displace(self.run.state, reach, _NEIGHBOUR_DISTANCE), 0, self.precise.steps
         )
         neighbour, h = follow_precisely(neighbour_run, self.digits), float(self.run.step_size)
         pairs = list(zip(self.precise.points, neighbour.points, strict=False))
@@ -110,7 +111,7 @@ class RunMotion:
         return energies_at(self.run.hamiltonian, 2 * self.digits, columns)
 
     def _error(self, energy: Any) -> Any:
-        """Return H − H(z₀) in parts of the orbit's scale; None if either is not known."""
+        """Return H − H(z₀) relative to the orbit's energy scale; None if either is not known."""
         if energy is None or self._first_energy is None:
             return None
         return (quotient(energy) - self._first_energy) / self._scale
@@ -145,24 +146,24 @@ class RunMotion:
 
     @cached_property
     def _bounds(self) -> list[tuple[int, Any, Any]]:
-        """The coordinates that have bounds, by their places, with the least and the greatest."""
+        """The indices of the coordinates that have bounds, each with its lower and upper bound."""
         orbit = self.orbit
-        of_each = enumerate(zip(orbit.centre, orbit.reach, orbit.turns, strict=True))
+        triples = enumerate(zip(orbit.centre, orbit.reach, orbit.turns, strict=True))
         # An angle has no bound. A coordinate that does not move has reach 0, for which 1 stands.
-        wide = [(k, c, _BEYOND * (r or 1)) for k, (c, r, turns) in of_each if not turns]
+        wide = [(k, c, _REACH_FACTOR * (r or 1)) for k, (c, r, turns) in triples if not turns]
         return [(k, quotient(centre - half), quotient(centre + half)) for k, centre, half in wide]
 
     def _is_inside(self, columns: Sequence[Sequence[Any]]) -> bool:
-        """Return True if no coordinate of these states is out of the exact orbit's bounds."""
+        """Return True if no coordinate of these states is out of its bounds."""
         bounds = ((columns[k], low, high) for k, low, high in self._bounds)
         return all(low <= min(x) and max(x) <= high for x, low, high in bounds)
 
     def is_outside(self, point: TrailPoint) -> bool:
-        """Return True if a coordinate is out of the exact orbit's bounds."""
+        """Return True if a coordinate is out of its bounds."""
         return not self._is_inside([[x] for x in point.state])
 
     def is_beyond(self, point: TrailPoint) -> bool:
-        """Return True if a point is out of the exact orbit's bounds, its energy included."""
+        """Return True if a coordinate or the energy is out of its bounds."""
         outside = self.is_outside(point)
         if outside or self.run.hamiltonian.time_dependent:
             return outside
@@ -170,18 +171,18 @@ class RunMotion:
         return _is_too_large(self._error(energy))
 
     def stays(self, trail: RunTrail) -> bool:
-        """Return True if a run keeps within the bounds, to its end."""
+        """Return True if a run finishes and keeps within the bounds, its energy included."""
         if not (trail.is_finished and self._is_inside(trail.columns)):
             return False
         return not any(map(_is_too_large, self._extreme_errors(trail)))
 
     @cached_property
     def _tolerances(self) -> list[Any]:
-        """The distances up to which the coordinates of two runs count as together."""
+        """For each coordinate the greatest difference of two runs that are not apart."""
         return [quotient(_APART * (r or 1)) for r in self.orbit.reach]
 
     def are_apart(self, point: TrailPoint, other_point: TrailPoint) -> bool:
-        """Return True if two states differ by a tenth of the reach in some coordinate."""
+        """Return True if two states differ by more than a tenth of the reach in a coordinate."""
         pairs = zip(point.state, other_point.state, self._tolerances, strict=True)
         return any(abs(x - y) > tolerance for x, y, tolerance in pairs)
 
@@ -201,13 +202,13 @@ def _farthest(xs: Sequence[Any], ys: Sequence[Any]) -> Any:
 
 
 def _is_too_large(error: Any) -> bool:
-    return error is None or abs(error) > _ENERGY
+    return error is None or abs(error) > _ENERGY_FACTOR
 
 
 def find_drift(motion: RunMotion) -> Fraction | None:
-    """Return the energy's change in a unit of time, in parts of its scale; None for no drift.
+    """Return the drift's rate: the change of energy/scale in a unit of time; None for no drift.
 
-    For a motion in the plane that has died away within the time it is the change over all of it.
+    For a motion in the plane that has come to rest within the time it is the mean over all of it.
     """
     run, trail, orbit = motion.run, motion.precise, motion.orbit
     if orbit.kind == "driven" or orbit.period is None or is_too_short(motion):
@@ -219,12 +220,12 @@ def find_drift(motion: RunMotion) -> Fraction | None:
     rate = _drift_rate(errors, trail)
     if rate is None:
         return None
-    longer = motion.run.with_steps(_LONGER * trail.steps)
+    longer = motion.run.with_steps(_LENGTH_FACTOR * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
         longer_trail = follow_precisely(longer, motion.digits)
-        if motion.stays(longer_trail):  # else it has drifted away
+        if motion.stays(longer_trail):  # a run that leaves its bounds has drifted away
             longer_rate = _drift_rate(_energy_errors(motion, longer_trail), longer_trail)
-            if longer_rate is None or longer_rate / rate < 1 / _SLOWER:
+            if longer_rate is None or longer_rate / rate < 1 / _MAX_SLOWDOWN:
                 return None
     return Fraction(rate)
 
@@ -232,23 +233,25 @@ def find_drift(motion: RunMotion) -> Fraction | None:
 def is_too_short(motion: RunMotion) -> bool:
     """Return True if the energy has swung too few times to distinguish a swing from a drift.
 
-    Of an orbit that does not come back within the time there is only that one way.
+    An orbit that does not come back within the time, `open`, has not swung once.
     """
     orbit = motion.orbit
     if orbit.period is None:
         return orbit.kind == "open"
-    return _LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
+    return (
+        _LENGTH_FACTOR * motion.precise.steps * motion.run.step_size < _LEAST_PERIODS * orbit.period
+    )
 
 
 def has_died(motion: RunMotion, trail: RunTrail, period: Fraction) -> bool:
-    """Return True if the run ends by moving at most a hundredth of the exact orbit's reach.
+    """Return True if the run, continued for a period, moves less than a hundredth of the reach.
 
-    The end is followed step by step, since a trail may meet a periodic orbit at one point of it
-    only.
+    The period is followed step by step, since a trail may meet a periodic orbit always at the same
+    point.
     """
-    steps = max(2, min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size)))
-    # A few steps decide most runs; they are among those of the full check.
-    lengths = (_FEW, steps) if _FEW < steps <= MOST_SECTIONS else (steps,)
+    steps = max(2, min(_MAX_STEPS_AT_END, ceil(period / motion.run.step_size)))
+    # A few steps decide most runs; the full check contains them.
+    lengths = (_FEW_STEPS, steps) if _FEW_STEPS < steps <= MOST_SECTIONS else (steps,)
     return all(is_at_rest(motion, trail.onwards(trail.point(-1), n)) for n in lengths)
 
 
@@ -261,7 +264,7 @@ def is_at_rest(motion: RunMotion, trail: RunTrail) -> bool:
 
 
 def _energy_errors(motion: RunMotion, trail: RunTrail) -> list[float]:
-    """Return (H − H(z₀)) / scale at the trail's points; empty if it is not known."""
+    """Return (H − H(z₀)) / scale at the trail's points; empty if one of them is not known."""
     errors = motion.energy_errors(trail)
     values = [float(x) for x in errors if x is not None]
     return values if motion.orbit.scale and len(values) == len(errors) else []
@@ -277,9 +280,9 @@ def _drift_rate(errors: Sequence[float], trail: RunTrail) -> float | None:
     steps = [b - a for a, b in pairwise(means)]
     change = means[-1] - means[0]
     # A drift is monotone over all stretches; a swing turns round in some of them.
-    if not (all(s > 0 for s in steps) or all(s < 0 for s in steps)) or abs(change) < _SEEN:
+    if not (all(s > 0 for s in steps) or all(s < 0 for s in steps)) or abs(change) < _LEAST_DRIFT:
         return None
-    if abs(change) < _SURE * _standard_error(errors, length):
+    if abs(change) < _STANDARD_ERRORS * _standard_error(errors, length):
         return None
     stretch = length * trail.every * float(trail.run.step_size)
     return float(change / (stretch * (_STRETCHES - 1)))

@@ -1,10 +1,11 @@
 """The stability interval of a named scheme; for printed coefficients that of exact ones near them.
 
-Where |tr M| touches 2 within the interval, as with the longest intervals that a splitting can have,
-rounded coefficients open a gap there that is as narrow as their last digits. In such a gap of exact
-ones M = ±I, so that both entries off the diagonal vanish. `verify.schemes.printed.solutions` looks
-for coefficients near the printed ones for which that is so in each gap, and which satisfy the
-conditions of the order. An end is given to the digits that the coefficients determine.
+M is the matrix of a step on the harmonic oscillator, a function of y = hω. The longest intervals
+that a splitting can have contain points y at which |tr M| touches 2 and M = ±I, so that both
+entries off the diagonal vanish. With rounded coefficients each such point becomes a gap, about as
+narrow as their last digits. `verify.schemes.printed.solutions` looks for coefficients near the
+printed ones with M = ±I in each gap, which satisfy the order conditions too. The end of the
+interval is returned to the digits that the coefficients determine.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,11 +34,11 @@ from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 from verify.studies.stability.linear_stability import LinearStability, NearbyLimit, stability_of_map
 
-_NARROW = Fraction(1, 1000)  # wider gaps end the interval; narrower ones may close
-_FREE = Fraction(1, 64)  # in place of a unit of y
+_NARROW = Fraction(1, 1000)  # relative to y: a wider gap ends the interval, a narrower may close
+_GAP_UNIT = Fraction(1, 64)  # a gap's y is free to move by this, as a coefficient by its last unit
 _DIGITS = 40
-_LEFT = prose("to the digits that the coefficients leave")
-_BEYOND = 2  # orders beyond the claimed one whose conditions are solved together with gaps
+_DIGITS_NOTE = prose("to the digits that the coefficients leave")
+_EXTRA_ORDERS = 2  # order conditions beyond the claimed order are solved together with the gaps
 
 
 def linear_stability(name: str) -> LinearStability:
@@ -55,7 +56,9 @@ def linear_stability(name: str) -> LinearStability:
     limits = (_find_limit(scheme, stability, sizes, table) for table in sizes.tables)
     first = sizes.tables[0]
     whole = first.printed.values
-    limit = next(filter(None, limits), None) or _limit_with_radius(first, whole, _LEFT, Fraction(0))
+    limit = next(filter(None, limits), None) or _limit_with_radius(
+        first, whole, _DIGITS_NOTE, Fraction(0)
+    )
     return stability if limit is None else replace(stability, interval=limit)
 
 
@@ -70,7 +73,7 @@ def _stability_of_scheme(scheme: Scheme, narrow: Fraction = Fraction(0)) -> Line
 def _stability_of_formulas(scheme: Scheme, stability: LinearStability) -> LinearStability:
     """Return the interval to the digits that the decimals in a user's formulas determine.
 
-    It is returned as it is where no exact numbers near the decimals make det M = 1.
+    It is returned unchanged if no exact numbers near the decimals make det M = 1.
     """
     oscillator, formulas = _oscillator(), tuple(scheme.formulas.items())
     neighbours = formulas_moved_by_units(formulas, oscillator)
@@ -87,7 +90,7 @@ def _stability_of_formulas(scheme: Scheme, stability: LinearStability) -> Linear
     # First order in each decimal: the sum of the changes by one unit each.
     radius = sum((abs(x - values[0]) for x in values), Fraction(1, 10 ** (_DIGITS - 2)))
     note = (
-        _LEFT
+        _DIGITS_NOTE
         if stability.delta_j == 0
         else prose("det M = 1 with exact numbers near the printed ones: ", nearby.explanation)
     )
@@ -103,13 +106,12 @@ def _end_of_formulas(formulas: Mapping[str, str]) -> Fraction | None:
 def _find_limit(
     scheme: Scheme, stability: LinearStability, sizes: PrintedParts, table: PrintedTable
 ) -> NearbyLimit | None:
-    """Return the end for exact coefficients.
-
-    None if none near the printed ones close the gaps.
-    """
-    # Gaps of the printed coefficients narrower than `_NARROW` are where |tr M| may only touch 2 for
-    # exact ones.
-    nearby_order, gaps = sizes(scheme.order + _BEYOND), _stability_of_scheme(scheme, _NARROW).gaps
+    """Return the end for exact coefficients; None if none near the printed ones close the gaps."""
+    # In a gap narrower than `_NARROW` |tr M| may only touch 2 with exact coefficients.
+    nearby_order, gaps = (
+        sizes(scheme.order + _EXTRA_ORDERS),
+        _stability_of_scheme(scheme, _NARROW).gaps,
+    )
     nearby = _close_gaps(table, nearby_order.order if nearby_order else 0, gaps)
     if nearby is None or nearby.distance > WITHIN:
         return None
@@ -117,7 +119,7 @@ def _find_limit(
         f"exact coefficients within {float(nearby.distance):.2g} units of the last digits close "
         "gaps of those printed, of which the first is at hω = ", Number(stability.decimal(12)),
     )  # fmt: skip
-    return _limit_with_radius(table, nearby.numbers, note if gaps else _LEFT)
+    return _limit_with_radius(table, nearby.numbers, note if gaps else _DIGITS_NOTE)
 
 
 def _limit_with_radius(
@@ -147,8 +149,8 @@ def _find_end(
 def _close_gaps(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> NearbySolution | None:
     """Find numbers near the printed ones that have the order, with M = ±I in each gap."""
     names = [f"y_{k}" for k in range(len(gaps))]
-    # The places y of the gaps are unknowns too, each free to move by `_FREE`.
-    free = dict.fromkeys(names, _FREE)
+    # The gaps' y are unknowns too, each with `_GAP_UNIT` as its unit.
+    free = dict.fromkeys(names, _GAP_UNIT)
     texts = {name: decimal(y, 12) for name, y in zip(names, gaps, strict=True)}
     numbers = AnyNumbers(
         {**table.printed.numbers, **texts},
@@ -158,7 +160,7 @@ def _close_gaps(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Ne
     conditions, count = table.condition_set(max(order, 1)), len(table.sizes)
     indices = conditions.up_to(order)
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+    def residuals(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         values = conditions.residuals(entries[:count], one, bound)
         off = (_off_diagonal(table, entries[:count], y, one, bound) for y in entries[count:])
         return [*(values[k] for k in indices), *(x for pair in off for x in pair)]
@@ -167,14 +169,17 @@ def _close_gaps(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Ne
     equations += [NamedEquation(f"{x} = 0 at {name}", 1) for name in names for x in "bc"]
     entries = (*table.sizes, *map(symbol, names))
     with working_precision(BITS):
-        nearby = Neighbourhood(numbers, ConditionSet(entries, tuple(equations), residues))
+        nearby = Neighbourhood(numbers, ConditionSet(entries, tuple(equations), residuals))
         return nearest(nearby, range(len(equations)))
 
 
 def _off_diagonal(
     table: PrintedTable, sizes: Sequence[E], y: E, one: E, bound: bool
 ) -> tuple[E, E]:
-    """Return ∂p'/∂q and ∂q'/∂p of a step of size y on the harmonic oscillator."""
+    """Return ∂p'/∂q and ∂q'/∂p of a step of size y on the harmonic oscillator.
+
+    `bound`: with all terms positive, as a bound of their sizes.
+    """
     # Rows of M: a drift adds size·y of p to q, a kick subtracts size·y of q from p.
     of_p, of_q = (one, one * 0), (one * 0, one)
     for (kind, _), size in zip(table.parts, sizes, strict=True):

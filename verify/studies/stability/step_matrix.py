@@ -1,15 +1,15 @@
 """The exact matrix of a scheme's step on a linear system, and a test if its powers stay bounded.
 
-A scheme's step is made of few operations (`verify.schemes.steps.step_algebra`). Here a value is a
-row: a linear function of z, and, inside of equations, of their unknowns too. So a step of size h, a
-rational, is a 2n × 2n matrix M of rationals.
+A scheme's step is made of few operations (`verify.schemes.steps.step_algebra`). Here each value is
+a row: a linear function of z, and, inside of equations, of their unknowns too. So a step of
+rational size h is a 2n × 2n matrix M of rationals.
 
-Powers of M stay bounded exactly where no eigenvalue is greater than 1 in size and those of size 1
-have no Jordan block. With c its characteristic polynomial and c* that of the inverses, an
-eigenvalue of size 1 is a root of both, since its inverse is its conjugate: of r = gcd(c, c*). The
-rest of c has no root of size 1, and balls decide where each of its roots lies. The roots of r come
-in pairs x, 1/x, apart from ±1; a pair is of size 1 exactly where x + 1/x is real and in [−2, 2],
-which is decided by the real roots of a polynomial with integer coefficients.
+Powers of M stay bounded exactly if no eigenvalue is greater than 1 in size and those of size 1 have
+no Jordan block. Let c be the characteristic polynomial and c* that of the inverses. The inverse of
+an eigenvalue of size 1 is its conjugate, so that it is a root of both, and of r = gcd(c, c*). The
+rest of c has no root of size 1: balls decide if each of its roots is inside the unit circle. The
+roots of r come in pairs x, 1/x, apart from ±1; a pair is of size 1 exactly if x + 1/x is real and
+in [−2, 2], which is decided by the real roots of a polynomial with integer coefficients.
 """
 
 from collections.abc import Callable, Sequence
@@ -135,11 +135,11 @@ def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
 
     None if balls do not decide a size.
     """
-    # The roots of the reversed polynomial are the inverses.
     c = matrix.charpoly()
+    # The roots of the reversed polynomial are the inverses.
     on_circle = c.gcd(flint.fmpq_poly(list(reversed(c.coeffs()))))
     off_circle = c
-    while (common := off_circle.gcd(on_circle)).degree() > 0:  # of whatever multiplicity
+    while (common := off_circle.gcd(on_circle)).degree() > 0:  # again for multiple roots
         off_circle = off_circle // common
     inside = _all_inside(off_circle)
     if inside is False or not _all_of_size_one(on_circle):
@@ -148,7 +148,7 @@ def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
 
 
 def _is_root(polynomial: flint.fmpq_poly, matrix: flint.fmpq_mat) -> bool:
-    """Return True if the polynomial is 0 at the matrix: its simple roots have no Jordan blocks."""
+    """Return True if the polynomial is 0 at the matrix: a simple root then has no Jordan block."""
     identity = matrix * 0
     for k in range(matrix.nrows()):
         identity[k, k] = flint.fmpq(1)
@@ -187,8 +187,8 @@ def _all_of_size_one(polynomial: flint.fmpq_poly) -> bool:
             quotient = quotient // flint.fmpq_poly([-root, 1])
     if quotient.degree() < 1:
         return True
-    # A pair is of size 1 exactly where x + 1/x is real and in [−2, 2]: then 2 − y and y − 2 put in
-    # for x + 1/x have as many positive roots as g has roots, with multiplicity one each.
+    # A pair is of size 1 exactly if s = x + 1/x is real and in [−2, 2]: if all are, g(2 − s) and
+    # g(s − 2) have as many positive roots as g, which is squarefree, has roots.
     sums = _polynomial_of_sums(quotient)
     below, above = (sums(flint.fmpq_poly(line)).numer() for line in ([2, -1], [-2, 1]))
     return len(positive_roots([below])) == len(positive_roots([above])) == sums.degree()

@@ -1,9 +1,9 @@
 """Trails: states along a run, by which the step at which something happens is found.
 
-A trail has the state after every n-th step, n = 1 in short runs and a prime number in long ones, as
-a scheme that comes back after a few steps would be seen at the same place again and again. Where
-something happens between two of them, that stretch is run again from the first with shorter ones,
-until it is one step.
+A trail has the state after every n-th step, n = 1 in short runs and mostly a prime number in long
+ones: an orbit that comes back after a few steps would else be seen at the same state again and
+again. If something happens between two states of a trail, the stretch between them is run again
+from the first of them as a trail with smaller n, until n = 1.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,9 +21,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import worth_compiling
 
-_LEAST_SECTIONS, MOST_SECTIONS = 128, 512  # of a trail
-_BETWEEN = 64  # steps between two of them, where that makes so many
-_FEWEST = 5  # steps between two of them, where not every step is kept
+_LEAST_SECTIONS, MOST_SECTIONS = 128, 512  # stretches of a trail that does not keep every step
+_USUAL_LENGTH = 64  # steps of a stretch, if these limits allow it
+_LEAST_LENGTH = 5  # steps of a stretch
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
@@ -63,7 +63,7 @@ class StabilityRun:
 
 
 class TrailPoint(NamedTuple):
-    """The state after so many steps, as the exact numbers that it has, in gmpy2's rationals."""
+    """The state after `step` steps, exactly, in gmpy2's rationals."""
 
     step: int
     state: tuple[Any, ...]
@@ -71,11 +71,12 @@ class TrailPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class RunTrail:
-    """States of a run in an arithmetic, at its start and after every so many steps, the last ones
-    perhaps fewer; `done` of its steps stayed in the arithmetic's range.
+    """States of a run in an arithmetic, at its start and after each stretch.
 
-    `columns` has the numbers of each coordinate as the arithmetic has them, or as gmpy2's
-    rationals: any two of them are compared exactly, ten times as fast as Fractions are.
+    `every`: the number of steps of a stretch; the last one may be shorter. `done`: the number of
+    steps that stayed in the arithmetic's range. `columns`: the numbers of each coordinate, the
+    arithmetic's own or gmpy2's rationals; any two of them are compared exactly, ten times as fast
+    as Fractions.
     """
 
     run: StabilityRun
@@ -106,7 +107,7 @@ class RunTrail:
         return self.done == self.steps
 
     def onwards(self, point: TrailPoint, steps: int) -> "RunTrail":
-        """Follow so many steps from one of its points more closely."""
+        """Return a trail of so many steps from one of its points, with shorter stretches."""
         state = tuple(map(fraction, point.state))
         return follow(self.run.onwards(state, point.step, steps), self.arithmetic)
 
@@ -119,7 +120,7 @@ def follow(run: StabilityRun, arithmetic: Arithmetic) -> RunTrail:
     columns, later = [], zip(*outcome.states, strict=True)
     for first in run.state:
         numbers = next(later, ())
-        if arithmetic.absolute:  # of fixed point, which gmpy2 does not know
+        if arithmetic.absolute:  # gmpy2 cannot compare fixed-point numbers
             numbers = tuple(quotient(arithmetic.exact(x)) for x in numbers)
         columns.append((quotient(first), *numbers))
     return RunTrail(run, arithmetic, kernel_run.section, tuple(columns), outcome.done)
@@ -132,15 +133,15 @@ def _sections(steps: int) -> int:
         return steps
     # A prime number of steps between states does not resonate with a scheme that returns after a
     # few steps.
-    target = min(MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _BETWEEN))
+    target = min(MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _USUAL_LENGTH))
     lengths = ((sections, -(-steps // sections)) for sections in range(target, 0, -1))
-    return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), target)
+    return next((k for k, length in lengths if length >= _LEAST_LENGTH and isprime(length)), target)
 
 
 def follow_precisely(run: StabilityRun, digits: int) -> RunTrail:
-    """Follow the run to so many digits, compiled where that repays.
+    """Follow the run with so many digits, in a compiled arithmetic if that is worth the time.
 
-    Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
+    Without a compiler only the first 300 000 steps are done; the trail's `steps` is their number.
     """
     *faster, last = number_systems.automatic()
     for system in faster:
@@ -155,10 +156,10 @@ def follow_precisely(run: StabilityRun, digits: int) -> RunTrail:
 
 
 def find_first_step(trail: RunTrail, happens: Callable[[TrailPoint], bool]) -> int | None:
-    """Find the first step after which it happens, at the trail's points and then between them.
+    """Find the first step after which `happens` is True, at the trail's points, then between them.
 
-    A run that leaves its range does so at the step after the last that is done. None if neither
-    is seen.
+    If none is found in a run that leaves the arithmetic's range, it is the step after the last one
+    done; else None.
     """
     before = trail.points[0]
     for point in trail.points[1:]:
@@ -177,7 +178,7 @@ def find_first_step(trail: RunTrail, happens: Callable[[TrailPoint], bool]) -> i
 def _find_first_step_from(
     trail: RunTrail, before: TrailPoint, steps: int, happens: Callable[[TrailPoint], bool]
 ) -> int | None:
-    """Find the step within so many steps from a point on the way."""
+    """Find that step within `steps` steps from the point `before`."""
     step = find_first_step(trail.onwards(before, steps), happens)
     return None if step is None else before.step + step
 
@@ -185,7 +186,10 @@ def _find_first_step_from(
 def find_first_apart(
     trail: RunTrail, other_trail: RunTrail, apart: Callable[[TrailPoint, TrailPoint], bool]
 ) -> int | None:
-    """Find the first step after which two trails of one run are apart; None if none is seen."""
+    """Find the first step after which two trails of one run are apart; None if there is none.
+
+    It is looked for at the trails' points and then between them.
+    """
     offset = 0
     while True:
         pairs = list(zip(trail.points, other_trail.points, strict=False))

@@ -6,25 +6,25 @@ scheme's in float64, which adds float64's range. The first of them that misbehav
 blame:
 
 - the exact solution leaves every bound: `escapes`;
-- the scheme leaves the exact orbit's bounds in high precision: `unstable: scheme`;
+- the scheme leaves its bounds in high precision: `unstable: scheme`;
 - float64 leaves them, or parts from the scheme in high precision, and so do 53 bits with any
   exponent: `unstable: arithmetic`;
 - float64 alone does: `overflow` or `underflow`.
 
-High precision is trusted where twice as many digits agree. A bounded run is `stable`, or `drifts`
-(see `verify.studies.stability.run_motion`). `verify.studies.stability.run_motion` defines the
-bounds, and when two runs are apart.
+`verify.studies.stability.run_motion` defines the bounds, when two runs are apart, and when a
+bounded run drifts: it is `drifts`, else `stable`. In the plane, if float64 parts from the scheme in
+high precision, that is confirmed by twice as many digits.
 
-In n degrees of freedom the motion may be sensitive, chaotic or near an unstable orbit, where
-float64 parts from the scheme in high precision, and then no scheme is to blame, and no arithmetic:
+In n degrees of freedom the motion may be sensitive: chaotic, or near an unstable orbit. If float64
+parts from the scheme in high precision, neighbours show what is to blame:
 
-- the exact motion parts from its neighbours exponentially: `sensitive`;
+- the exact motion parts from its neighbours exponentially: `sensitive`, nothing is to blame;
 - it does not, and the scheme's own map does, in high precision: `unstable: scheme`;
 - neither does: `unstable: arithmetic`;
-- where the time is too short to decide: `undecided`.
+- the time is too short to decide: `undecided`.
 
-A run that leaves its bounds in high precision is `unstable: scheme`; of a sensitive motion only
-where it has lost its energy before: one that keeps it, and leaves, is `sensitive`.
+A run that leaves its bounds in high precision is `unstable: scheme`, but `sensitive` if the exact
+motion is sensitive and the run has kept its energy until then.
 """
 
 from dataclasses import dataclass
@@ -49,12 +49,12 @@ from verify.studies.stability.trail import (
 
 _MOST_DIGITS = 400
 _FLOAT_BITS = 53
-_NEXT = Fraction(1, 10**14)
+_NEIGHBOUR_DISTANCE = Fraction(1, 10**14)  # relative to the reach
 _FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # steps that are examined for effects of float64's range
 _SMALL = Fraction(1, 10**75)  # the fourth power of a smaller number may vanish in float64
-_LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
-_KEPT = 1  # energy scales: what has not lost more has kept its energy
+_LEAST_LOSS = Fraction(1, 2**20)  # by underflow, relative to the greatest |q| or |p|
+_MAX_ENERGY_ERROR = 1  # energy scales; a run with no greater error has kept its energy
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def judge(motion: RunMotion) -> RunJudgement:
     orbit = motion.orbit
     if orbit.kind == "escapes":
         return RunJudgement("escapes", prose("the exact solution ", orbit.summary))
-    # A run that stays is judged even where the exact orbit was followed only to a part of the time.
+    # A run that stays is judged even if the exact orbit was followed for a part of the time only.
     stays = orbit.kind != "not followed" and motion.stays(motion.precise)
     if not stays and orbit.kind in ("unknown", "not followed"):
         unknown = "the exact solution, to be held against, is not known: "
@@ -102,7 +102,7 @@ def _judge_leaving(motion: RunMotion) -> RunJudgement:
     detail = prose(f"the scheme leaves the bounds {place_text}")
     errors = motion.energy_errors(finer_trail)[: sum(x.step < step for x in finer_trail.points)]
     worst = fraction(max((abs(x) for x in errors if x is not None), default=0))
-    if not motion.orbit.is_sensitive or worst > _KEPT:
+    if not motion.orbit.is_sensitive or worst > _MAX_ENERGY_ERROR:
         return RunJudgement("unstable: scheme", detail, step=step)
     detail += prose(", its energy kept; the exact solution ", motion.orbit.summary)
     return RunJudgement("sensitive", detail, step=step, energy_error=worst)
@@ -127,10 +127,7 @@ def _describe_end(motion: RunMotion, finer_trail: RunTrail, step: int, place_tex
 def _describe_parting(
     motion: RunMotion, precise: RunTrail, digits_text: str
 ) -> tuple[Prose, int | None]:
-    """Say that float64 parts from the scheme in high precision.
-
-    Return the sentence and the step.
-    """
+    """Return the sentence that float64 parts from the scheme in high precision, and the step."""
     here = motion.float64_as_far
     step = find_first_apart(here, precise, motion.are_apart)
     when = f"at step {step}" if step is not None else f"before step {here.done + 1}"
@@ -138,7 +135,7 @@ def _describe_parting(
 
 
 def _judge_by_neighbours(motion: RunMotion, exact_motion: ExactMotion) -> RunJudgement:
-    """Judge a run that float64 and high precision part in, as exact neighbours may, too."""
+    """Judge a run in which float64 and high precision part, by whose neighbours part too."""
     detail, step = _describe_parting(motion, motion.precise, str(motion.digits))
     kind: Kind = "unstable: arithmetic"
     if exact_motion.is_sensitive is None:
@@ -176,12 +173,9 @@ def _judge_by_digits(motion: RunMotion) -> RunJudgement:
 
 
 def _describe_sensitivity(motion: RunMotion, digits: int, precise: RunTrail) -> Prose:
-    """Say so if a neighbour parts from the run without rounding, too.
-
-    Driven ones may be chaotic.
-    """
+    """Describe the parting of a neighbour in high precision, which shows chaos; empty if none."""
     p, q = motion.run.state
-    state = p, q + _NEXT * (motion.orbit.reach[1] or 1)
+    state = p, q + _NEIGHBOUR_DISTANCE * (motion.orbit.reach[1] or 1)
     neighbour = follow_precisely(motion.run.onwards(state, 0, precise.steps), digits)
     step = find_first_apart(neighbour, precise, motion.are_apart)
     if step is None:
@@ -207,10 +201,7 @@ def _confirm_run(motion: RunMotion) -> tuple[int, RunTrail] | None:
 
 
 def _is_range_to_blame(motion: RunMotion) -> bool:
-    """Return True if unlimited exponents agree with high precision, and float64 does not.
-
-    In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
-    """
+    """Return True if 53 and 45 bits with wide exponents agree with high precision, not float64."""
     steps = min(motion.precise.steps, _RANGE_STEPS, motion.float64_as_far.done + 1)
     run = motion.run.with_steps(steps)
     precise = follow(run, motion.precise.arithmetic)
@@ -236,9 +227,9 @@ def _judge_out_of_range(motion: RunMotion, here: RunTrail) -> RunJudgement:
 
 
 def _describe_underflow(motion: RunMotion) -> Prose:
-    """Describe what underflow has taken of a bounded run; empty if it has taken nothing.
+    """Describe the loss of a bounded run by underflow; empty if there is none to speak of.
 
-    p or q as a whole, either of which may be small beside the other one.
+    The loss of q and of p is relative to each of them, since one may be small beside the other.
     """
     sizes = (abs(x) for x in (*chain(*motion.float64.columns), *motion.orbit.reach) if x)
     # Nothing as small as this has occurred, so that no fourth power can have vanished.
@@ -250,7 +241,7 @@ def _describe_underflow(motion: RunMotion) -> Prose:
         true, remaining = ([point.state[k] for point in trail.points] for trail in (wide, narrow))
         size = max(map(abs, true))
         gap = max(abs(x - y) for x, y in zip(true, remaining, strict=False))
-        if gap > _LOST * size:
+        if gap > _LEAST_LOSS * size:
             share = "all" if not any(remaining) else Number(f"{float(gap / size):.1e}")
             sentence_end = f" of {name} vanishes in float64; 53 bits with wider exponents keep it"
             return prose(share, sentence_end)

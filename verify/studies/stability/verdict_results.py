@@ -33,10 +33,11 @@ from verify.studies.stability.scheme_interval import linear_stability
 from verify.studies.stability.trail import StabilityRun, State
 from verify.studies.stability.verdict_on_run import RunJudgement, judge
 
-_FINER = Fraction(1001, 1000)  # how near the largest step is found
-_LADDER = Fraction(119, 100)  # about 2^(1/4), the ratio of the step sizes that are tried first
-_BELOW, _ABOVE = 8, 8  # they range from so many times below the linear limit to so many above
-_MOST_STEPS = 200_000  # of the smallest step size that is tried
+_FINAL_RATIO = Fraction(1001, 1000)  # bisection ends at this ratio of the two step sizes
+# The step sizes tried first are a ladder from an 8th of the linear limit to 8 times that.
+_LADDER_RATIO = Fraction(119, 100)  # about 2^(1/4)
+_DIVISOR_BELOW, _FACTOR_ABOVE = 8, 8
+_MAX_STEPS = 200_000  # below the ladder, step sizes are tried that need no more steps
 
 
 @lru_cache(maxsize=256)
@@ -94,7 +95,7 @@ def _theory_fields(motion: RunMotion, judgement: RunJudgement) -> dict[str, Any]
 def _compare_with_theory(
     judgement: RunJudgement, h_omega: Fraction, limit: Fraction | None
 ) -> Prose:
-    """Compare a scheme that is to blame with its linear theory."""
+    """Return the sentence that compares hω with linear theory, of a scheme that is to blame."""
     if judgement.kind != "unstable: scheme" or limit is None or not h_omega:
         return Prose()
     if limit == 0:
@@ -114,9 +115,10 @@ def _linear_step(scheme: str, omega: Fraction) -> Fraction | None:
 class _RunsFromState:
     """The exact motion from one state for some time, and the limits that runs from there must keep.
 
-    In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
-    What a run must not exceed beside the motion's bounds: |H − H(z₀)| in parts of the orbit's
-    energy scale, and the greatest |entry| of W, which in the plane is |Λ|.
+    In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs. A
+    run must keep within the motion's bounds, and not exceed `energy_error`, of |H − H(z₀)| relative
+    to the orbit's energy scale, or `symplectic_defect`, of the greatest |entry| of W, in the plane
+    |Λ|.
     """
 
     hamiltonian: Hamiltonian
@@ -176,9 +178,9 @@ def largest_step(
 ) -> LargestStepResult:
     """Find the largest h with bounded motion in float64 from (p, q) for the length `time`.
 
-    If they are given, the run must also have no greater `energy_error`, in parts of the orbit's
-    energy scale, and no greater |entry| of W than `symplectic_defect`. Where H depends on time the
-    run starts at t0.
+    Unless they are None, the run must also have no greater `energy_error`, relative to the orbit's
+    energy scale, and no greater |entry| of W than `symplectic_defect`. If H depends on time the run
+    starts at t0.
 
     Step sizes are tried from small ones upwards until the first that is not bounded, and the gap
     before it is bisected to a thousandth; beyond it there may be other steps with bounded motion,
@@ -209,7 +211,7 @@ def largest_step(
         outcome = "bounded with every" if bad is None else "not bounded with any"
         detail = Prose() if good and bad else prose(f"{outcome} step size looked at")
     # Bisection on rounded step sizes, so that the result is printed exactly as it was tested.
-    while good and bad and bad / good > _FINER:
+    while good and bad and bad / good > _FINAL_RATIO:
         middle = _round_step((good + bad) / 2)
         good, bad = (middle, bad) if stays(middle) else (good, middle)
     return LargestStepResult(
@@ -231,22 +233,21 @@ def largest_step(
 def _find_bracket(
     stays: Callable[[Fraction], bool], middle: Fraction, time: Fraction
 ) -> tuple[Fraction | None, Fraction | None]:
-    """Return a step size with bounded motion and the next one without, where there are such."""
-    # From small steps upwards: beyond the limit a resonance may be bounded again, and is not looked
-    # for.
-    h = _round_step(middle / _BELOW)
+    """Return a step size with bounded motion and the next one tried, without; None for either."""
+    # From small steps upwards: beyond the limit a resonance may have bounded motion again.
+    h = _round_step(middle / _DIVISOR_BELOW)
     if not stays(h):
         bad = h
         # Even the smallest step leaves the bounds: halve it, as long as a run is affordable.
-        while time / h <= _MOST_STEPS:
+        while time / h <= _MAX_STEPS:
             h = _round_step(h / 2)
             if stays(h):
                 return h, bad
             bad = h
         return None, bad
     good = h
-    while h < min(middle * _ABOVE, time):
-        h = _round_step(h * _LADDER)
+    while h < min(middle * _FACTOR_ABOVE, time):
+        h = _round_step(h * _LADDER_RATIO)
         if not stays(h):
             return good, h
         good = h

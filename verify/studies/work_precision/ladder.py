@@ -1,10 +1,11 @@
 """A scheme's ladder of step sizes: the errors of its runs, and the compiled loop that made them.
 
 The error is that of the very loop that is timed, which steps the state and nothing else: its last
-state is a tuple of rationals, and is compared with the exact solution in rationals. The error of a
-run of the same scheme at high precision from the exact inputs is its truncation part; the
-difference of the two runs is the rounding. Λ comes from a second float64 run, which computes it
-beside the state. Errors are computed before anything is timed, in this process or in another.
+state, as a tuple of rationals, is compared with the exact solution. A second run of the same
+scheme, in high precision from the exact inputs, separates the parts: its error is the truncation
+part, and the difference of the two runs' states is the rounding part. Λ comes from a further
+float64 run, which computes it beside the state. Errors are computed before anything is timed, in
+this process or in another.
 
 The cost of a step is the number of operations that its loop contains.
 """
@@ -44,14 +45,14 @@ from verify.studies.work_precision.problem import (
     reference,
 )
 
-ROUNDING_SHARE = Fraction(1, 20)  # of the error: a larger rounding part limits the point
-EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
-# The observables of a run, as a point has them.
+ROUNDING_SHARE = Fraction(1, 20)  # rounding limits a point if it is more of the error than this
+EXACT_DIGITS = 33  # digits of the run that stands for exact arithmetic
+# A run's observables, and their fields in a `WorkPoint`.
 _FIELDS = {
     "lambda": "lam", "lambda_plain": "lam_plain", "symplectic_defect": "symplectic_defect",
 }  # fmt: skip
-_CALL = "call "  # before a function's name, among the kinds of operations
-Advance = Callable[[int], None]  # called with a number of points just done
+_CALL_PREFIX = "call "  # counted operations are called by their kind, functions by this and name
+Advance = Callable[[int], None]  # called with the number of points just done
 
 
 class SchemeLadder:
@@ -61,9 +62,9 @@ class SchemeLadder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = step_map_of(problem.hamiltonian, scheme).preserves_area
-        # What measures the loss of area, or of the symplectic form, the sharper one last.
+        # Observables of the loss of area, or of the symplectic form; the most accurate one is last.
         self.defect_names = accumulated_observables(problem.hamiltonian)
-        # Compiled anew: code cached by an earlier run would only be loaded, and not timed.
+        # Compiled anew: code that an earlier run has cached would be loaded, not compiled.
         self.arithmetic: Arithmetic = float64.compiled_at_once(anew=True)
         step_map = step_map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         start_time = time.perf_counter()
@@ -86,7 +87,7 @@ class SchemeLadder:
         return ChunkedLoop(self._kernel_run(h, frozenset()), self.kernel, self.arithmetic, (), 0)
 
     def call(self, h: Fraction, *, blank: bool = False) -> Callable[[], object]:
-        """Return a call of the loop over all steps, or of none, which times the call itself."""
+        """Return a call of the loop over all steps; `blank`: over none, to time the call itself."""
         from verify.arithmetic.compiled.doubles import prepared_call
 
         loop = self._loop(h)
@@ -94,7 +95,7 @@ class SchemeLadder:
         return prepared_call(self.kernel.function, count, *loop.fixed, *loop.state)
 
     def point(self, h: Fraction) -> WorkPoint:
-        """Return the run with this step size, not yet timed."""
+        """Return the errors of the run with this step size, not yet timed."""
         loop = self._loop(h)
         run_alone(loop.run_to_end())
         steps = loop.run.steps
@@ -143,9 +144,9 @@ class SchemeLadder:
         return run_alone(measure(kernel_run, choose(kernel_run, EXACT_DIGITS), EXACT_DIGITS)).bounds
 
     def _area_fields(self, h: Fraction, precise_bounds: Bounds) -> dict[str, Any]:
-        """Return a point's fields of Λ, or of W in n degrees of freedom, and of their limits.
+        """Return a point's fields of Λ, or of W in n degrees of freedom, and of what limits them.
 
-        In the plane there is Λ by the plain product, too.
+        In the plane Λ by the plain product is one of them.
         """
         plain = "lambda_plain"
         observables = {plain} if carries(self.problem.hamiltonian, plain) else set[str]()
@@ -162,7 +163,9 @@ class SchemeLadder:
             for name in observables
             if run is not None
         }
-        if self.preserves_area:  # proved; what the product shows is rounding
+        if (
+            self.preserves_area
+        ):  # Λ, or W, is proved to be 0, so that all of the product is rounding
             zeros = dict.fromkeys(
                 (_FIELDS[name] for name in self.defect_names), Value(value="0", bound="0")
             )
@@ -180,9 +183,9 @@ class SchemeLadder:
 def decide_limit(
     error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fraction]
 ) -> LimitedBy:
-    """Decide if a point is limited by rounding, where it may exceed its share, or by truncation.
+    """Return "truncation" if rounding is certainly less than its share of the error.
 
-    Both come with their bounds: rounding counts as small only where it certainly is.
+    Otherwise return "rounding". Both arguments are numbers with their bounds.
     """
     most, least = rounding[0] + rounding[1], error[0] - error[1]
     return "truncation" if most <= ROUNDING_SHARE * least else "rounding"
@@ -197,8 +200,8 @@ def build_failed_point(scheme: str, **fields: Any) -> WorkPoint:  # Any: the mod
 class SchemeErrors:
     """The errors of schemes.
 
-    `solution`: the exact one at the time; `points`: not yet timed, by scheme and step size;
-    `seconds`: the time that all of it took.
+    `solution`: the exact one at the final time; `points`: by scheme and step size, not yet timed;
+    `seconds`: the time that computing all of them took.
     """
 
     solution: ExactSolution
@@ -214,7 +217,7 @@ def find_errors(
 ) -> SchemeErrors:
     """Compute the errors of each scheme with each step size.
 
-    Raises InputError if the exact solution does not reach the time.
+    Raises InputError if the exact solution does not reach the final time.
     """
     start_time = time.perf_counter()
     try:
@@ -240,7 +243,7 @@ def count_cost(kernel: Kernel, scheme: Scheme) -> CostResult:
     """
     lowering, roots = kernel.lowering, [kernel.outputs[f"d{name}"] for name in kernel.coordinates]
     turn: Counter[str] = Counter()
-    # One turn of the loops that solve equations is counted apart, as their number varies.
+    # One turn of each loop that solves equations is counted apart, as the number of turns varies.
     for loop in lowering.loops(lowering.live(roots)):
         turn += _count_operations(lowering.inner(loop), loop.updates) + Counter(
             add=len(loop.updates)
@@ -256,13 +259,17 @@ def _count_operations(lowering: Lowering, roots: Sequence[int]) -> "Counter[str]
     program = lowering.program
     inside = [index for index in lowering.live(roots) if not program.static[index]]
     functions = [name for index in inside if (name := lowering.function(index))]
-    return Counter(program.ops[i].kind for i in inside) + Counter(f"{_CALL}{f}" for f in functions)
+    return Counter(program.ops[i].kind for i in inside) + Counter(
+        f"{_CALL_PREFIX}{f}" for f in functions
+    )
 
 
 def _build_cost(
     operations: "Counter[str]", gradient: dict[str, int] | None, turn: CostResult | None
 ) -> CostResult:
-    functions = {n.removeprefix(_CALL): k for n, k in operations.items() if n.startswith(_CALL)}
+    functions = {
+        n.removeprefix(_CALL_PREFIX): k for n, k in operations.items() if n.startswith(_CALL_PREFIX)
+    }
     return CostResult(
         additions=operations["add"] + operations["sub"],
         multiplications=operations["mul"],

@@ -1,9 +1,9 @@
 """Error against run time: each scheme over a ladder of step sizes, peers, number systems.
 
-Errors first, as `verify.studies.work_precision.ladder` defines them, then one interleaved timing of
-all points together (`verify.studies.work_precision.timing`), so that their run times can be
-compared; nothing else of this program runs meanwhile. `verify.studies.work_precision.work_lines`
-has the orders and comparisons.
+The errors, as `verify.studies.work_precision.ladder` defines them, are computed first. Then all
+points are timed together, interleaved (`verify.studies.work_precision.timing`), so that their run
+times can be compared; nothing else of this program runs meanwhile.
+`verify.studies.work_precision.work_lines` fits orders and compares lines.
 """
 
 from collections.abc import Callable, Sequence
@@ -48,7 +48,7 @@ from verify.studies.work_precision.work_lines import build_line, compare_all, lo
 
 @dataclass
 class _Timing:
-    """A point with the calls to time: that of its loop, and one that does nothing."""
+    """A point with the calls to time: that of its loop, and one that makes no step."""
 
     point: WorkPoint
     call: Callable[[], object] | None
@@ -72,8 +72,8 @@ def work_precision(
 ) -> WorkPrecisionResult:
     """Measure errors and run times of each scheme with each step size, of peers and number systems.
 
-    Run times are the least and the median of `repeats` rounds, in seconds. The number systems, with
-    each of so many `digits`, are measured on one scheme at one step size. `peers` are measured over
+    Run times are the least and the median of `repeats` rounds, in seconds. The number systems are
+    measured on one scheme at one step size, with each number of `digits`. `peers` are measured over
     their tolerances; `peers_left_out` has the others, each with the reason. `errors`: those of the
     schemes, as `find_errors` returns them. `advance` is called with the number of points of peers
     just done.
@@ -128,7 +128,7 @@ def work_precision(
 
 
 def _wake_compiler() -> None:
-    """Compile once: a process's first compilation takes longer, which no scheme should pay."""
+    """Compile a function: a process's first compilation takes longer, and is no scheme's."""
     source = "def same(steps, x):\n    for k in range(steps):\n        x = x\n    return steps, x\n"
     float64.compiled_at_once(anew=True).compile(source, "same", {})(1, 1.0)
 
@@ -140,7 +140,10 @@ def _scheme_point(ladder: SchemeLadder, h: Fraction, point: WorkPoint) -> _Timin
 
 
 def _time_calls(groups: list[list[_Timing]], repeats: int) -> float:
-    """Put the run times into the points; return the time of an empty call."""
+    """Store the run times in the points, less those of blank calls; return that of an empty call.
+
+    Times are in seconds.
+    """
     timings = [t for group in groups for t in group if t.call]
     blanks = list({_identity_of(t.blank): t.blank for t in timings}.values())
     calls = [*(t.call for t in timings if t.call), *blanks, do_nothing]

@@ -16,11 +16,12 @@ from verify.scenes.results.bounded_value import Value
 from verify.structures import AREA, SYMPLECTIC
 from verify.studies.work_precision.peers import InitialValueProblem
 
-SHOWN = 12  # digits of an error at most
-# Of the exact solution: float64 has 16; in n degrees most have no closed form, and each more costs.
+SHOWN = 12  # the most printed digits of an error
+# Digits of the exact solution, more than float64's 16. In n degrees of freedom most solutions have
+# no closed form, and each further digit takes time.
 _REFERENCE_DIGITS = {AREA: 33, SYMPLECTIC: 20}
-_BITS = 400  # of the ball arithmetic that encloses H
-_ROOT_BITS = 160  # of the root of a squared distance
+_ENERGY_BITS = 400  # the precision of the balls that enclose H
+_ROOT_BITS = 160  # the precision of a distance, the root of a sum of squares
 State = tuple[Fraction, ...]  # p1 … pn, q1 … qn
 
 
@@ -33,7 +34,7 @@ def reference(
 
 @dataclass(frozen=True)
 class ReferenceProblem(InitialValueProblem):
-    """An initial value problem with its exact solution at the time."""
+    """An initial value problem with its exact solution at its final time."""
 
     solution: ExactSolution
 
@@ -75,19 +76,19 @@ class ReferenceProblem(InitialValueProblem):
         """Return |state − z(T)| with its bound; with h, the distance from z(N·h)."""
         solution = self.solution if h is None else self.solution_after(h)
         difference, root_error = distance(state, tuple(solution.point.values()))
-        return difference, root_error + len(state) * solution.bound  # of each coordinate
+        return difference, root_error + len(state) * solution.bound  # the bound is of a coordinate
 
     def energy_error(self, state: State) -> Value | None:
         """Return |H(state) − H(z₀)|.
 
-        None if H is not defined there or out of reach, and if it depends on time, as the
+        None if H is not defined or too large at one of the two, and if it depends on time, as the
         motion then does not keep it.
         """
         if self.hamiltonian.time_dependent:
             return None
         ring, energy = self._energy
         ends = [
-            enclose(ring, energy, dict(zip(self.point, end, strict=True)), _BITS)
+            enclose(ring, energy, dict(zip(self.point, end, strict=True)), _ENERGY_BITS)
             for end in (state, self.start)
         ]
         usable = [x for x in ends if x is not None and is_representable(x)]
@@ -98,12 +99,12 @@ class ReferenceProblem(InitialValueProblem):
 
 
 def size(state: State) -> Fraction:
-    """Return |state|, Euclidean."""
+    """Return the Euclidean norm of a state."""
     return distance(state, (Fraction(0),) * len(state))[0]
 
 
 def distance(x: State, y: State) -> tuple[Fraction, Fraction]:
-    """Return |x − y|, Euclidean, with the bound of its root."""
+    """Return the Euclidean |x − y|, with a bound of the root's error."""
     square = sum(((a - b) ** 2 for a, b in zip(x, y, strict=True)), Fraction(0))
     if square == 0:
         return square, square

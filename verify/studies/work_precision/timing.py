@@ -1,9 +1,8 @@
 """Run times: repeated in rounds, the timer's and the call's own time subtracted.
 
-The rounds go over all that is timed before any of it is timed again, so that a slow moment of the
-machine falls on all alike. A call that is short is repeated within one timing until that is well
-above the timer's resolution. Where the system can tell it, the time is the processor time of this
-thread, so that what other programs take of the processor does not count.
+A round times each call once, so that a slow moment of the machine falls on all alike. A short call
+is repeated within one timing until that is well above the timer's resolution. If the system
+provides it, the time is the processor time of this thread, which does not count other programs.
 """
 
 import gc
@@ -16,10 +15,10 @@ from statistics import median
 from typing import Literal
 
 Call = Callable[[], object]
-_LEAST = 0.004  # seconds of one timing
-_RESOLVED = 1e-6  # a clock this fine will do
-_MOST_CALLS = 1 << 20
-_FINEST = 1e-9  # seconds
+_LEAST_SECONDS = 0.004  # of one timing
+_COARSEST_RESOLUTION = 1e-6  # seconds; the thread's clock is used if it is finer
+_MAX_CALLS = 1 << 20
+_CLOCK_UNIT = 1e-9  # seconds; the clocks count nanoseconds
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class RunTime:
 @cache
 def choose_clock() -> tuple[Callable[[], int], str]:
     """Return the clock in nanoseconds, and its description."""
-    if hasattr(time, "thread_time_ns") and _resolution("thread_time") < _RESOLVED:
+    if hasattr(time, "thread_time_ns") and _resolution("thread_time") < _COARSEST_RESOLUTION:
         return time.thread_time_ns, "processor time of the thread"
     return time.perf_counter_ns, "time on the clock"
 
@@ -43,7 +42,7 @@ def _resolution(name: Literal["thread_time"]) -> float:
 
 
 def time_interleaved(calls: Sequence[Call], rounds: int) -> list[RunTime]:
-    """Time each call once in each round; every call is made once before, as a warm-up."""
+    """Time each call once in each round; the first round is preceded by a warm-up of each call."""
     # A collection of garbage in the midst of a timing would be counted with it.
     collecting = gc.isenabled()
     gc.disable()
@@ -63,12 +62,12 @@ def time_interleaved(calls: Sequence[Call], rounds: int) -> list[RunTime]:
 
 
 def subtract_blank(time: RunTime, blank: RunTime) -> RunTime:
-    """Subtract the least time of the blank call; never go below the clock's resolution."""
-    return RunTime(*(max(_FINEST, x - blank.least) for x in (time.least, time.median)))
+    """Subtract the least time of the blank call; never go below the clock's unit."""
+    return RunTime(*(max(_CLOCK_UNIT, x - blank.least) for x in (time.least, time.median)))
 
 
 def subtract_or_none(time: RunTime, blank: RunTime) -> RunTime | None:
-    """Return the same, or None if the rest is below the blank call's time, and so noise."""
+    """Return `subtract_blank`, or None if the rest is below the blank call's time, and so noise."""
     net_time = subtract_blank(time, blank)
     return None if net_time.median < blank.least else net_time
 
@@ -83,11 +82,11 @@ def _count(call: Call) -> tuple[int, float]:
     count = 1
     while True:
         seconds = _seconds(call, count)
-        if seconds * count >= _LEAST or count == _MOST_CALLS:
+        if seconds * count >= _LEAST_SECONDS or count == _MAX_CALLS:
             return count, seconds
-        # Not all at once: a first timing may be slow by chance.
-        room = int(_LEAST / max(seconds, 1e-7 / count) / 2)
-        count = min(_MOST_CALLS, max(2 * count, room))
+        # Half of what this timing suggests: it may be slow by chance.
+        room = int(_LEAST_SECONDS / max(seconds, 1e-7 / count) / 2)
+        count = min(_MAX_CALLS, max(2 * count, room))
 
 
 def _seconds(call: Call, count: int) -> float:

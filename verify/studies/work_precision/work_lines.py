@@ -1,14 +1,14 @@
 """Orders and comparisons at equal run time, from the points of error against run time.
 
-Order: the least-squares slope of lg error over lg h, over the points that truncation limits, from
-the smallest step up to where the slopes between neighbours leave that of the two smallest by more
-than `SETTLED`: beyond, the leading term is not yet the error.
+Order: the least-squares slope of lg error over lg h, over points that truncation limits: those from
+the smallest step size up to the first at which the slope between neighbours differs from that of
+the two smallest by more than `SETTLED`. Beyond it the error is not yet the leading term.
 
-Equal run time: between two of its points a scheme is followed along the straight line on
+Equal run time: between two of its points a scheme's error is interpolated by a straight line on
 logarithmic axes, over the run times that both schemes cover.
 
-A run whose error is larger than the orbit itself takes no part in either, as it tells nothing of
-the scheme's quality.
+A run whose error is larger than the orbit itself takes no part in either: it tells nothing of the
+scheme's quality.
 """
 
 from collections.abc import Iterable, Sequence
@@ -29,16 +29,16 @@ from verify.scenes.results.work_precision import (
 from verify.schemes.scheme import Scheme
 from verify.structures import AREA, SYMPLECTIC, Structure
 
-SETTLED = 0.1
-ALIKE = 1.1  # a ratio within this both ways is within what run times are known to
-FEWEST = 3  # points of a slope
-_ANY = "Infinity"  # the size of an orbit that no error is too large for
-_NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
-_PHRASES = {  # of the structure, of two schemes that keep it, and of one
+SETTLED = 0.1  # the greatest difference of slopes in the asymptotic range
+ALIKE = 1.1  # a ratio between 1/ALIKE and this is within the error of run times
+FEWEST = 3  # the least number of points of a slope
+_NO_LIMIT = "Infinity"  # an orbit's size; no error is larger
+_NO_SLOPE = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
+_PHRASES = {  # for: the structure; two schemes that keep it; one that does
     AREA: ("In area", "preserve area exactly", "In area {} makes no error"),
     SYMPLECTIC: ("Of the symplectic form", "are symplectic", "{} is symplectic"),
 }
-Place = tuple[float, float]  # lg of one quantity and of another
+LogPoint = tuple[float, float]  # lg of a quantity and of another; sorted by the first
 
 
 def build_line(
@@ -47,18 +47,18 @@ def build_line(
     preserves_area: bool | None,
     cost: CostResult | None,
     compile_seconds: float,
-    scale: str = _ANY,
+    scale: str = _NO_LIMIT,
     structure: Structure = AREA,
 ) -> WorkLine:
-    """Build a scheme's line, or with only a name a peer's; `scale` is the orbit's size."""
+    """Build a scheme's line, or a peer's if `scheme` is a name; `scale` is the orbit's size."""
     peer, keeps_area = isinstance(scheme, str), bool(preserves_area)
     return WorkLine(
         name=points[0].scheme,
         peer=peer,
         order=None if isinstance(scheme, str) else scheme.order,
         area_preserving=keeps_area,
-        error_slope=_NOTHING if peer else error_slope(points, scale),
-        lambda_slope=_NOTHING if peer else lambda_slope(points, keeps_area, scale, structure),
+        error_slope=_NO_SLOPE if peer else error_slope(points, scale),
+        lambda_slope=_NO_SLOPE if peer else lambda_slope(points, keeps_area, scale, structure),
         cost=cost,
         compile_seconds=compile_seconds,
         points=tuple(points),
@@ -68,7 +68,7 @@ def build_line(
 # -- orders ---------------------------------------------------------------------------------------
 
 
-def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
+def error_slope(points: Sequence[WorkPoint], scale: str = _NO_LIMIT) -> SlopeResult:
     """Fit the order of the error in h; `scale` is the orbit's size."""
     limited_points = [x for x in points if x.limited_by == "truncation"]
     return _order_within_orbit(
@@ -79,7 +79,7 @@ def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
 def lambda_slope(
     points: Sequence[WorkPoint],
     preserves_area: bool,
-    scale: str = _ANY,
+    scale: str = _NO_LIMIT,
     structure: Structure = AREA,
 ) -> SlopeResult:
     """Fit the order of |Λ| in h; in n degrees of freedom that of max |W|."""
@@ -95,7 +95,7 @@ def lambda_slope(
 def _order_within_orbit(
     limited_points: Sequence[WorkPoint], points: Sequence[tuple[WorkPoint, Value | None]]
 ) -> SlopeResult:
-    """Fit the order over the points within the orbit, with a reason that counts the others."""
+    """Fit the order over `points`, those within the orbit; the reason counts the others."""
     slope, outside = fit_slope(points), len(limited_points) - len(points)
     if not outside:
         return slope
@@ -112,32 +112,35 @@ def select_within_orbit(points: Iterable[WorkPoint], scale: str) -> list[WorkPoi
 def fit_slope(points: Sequence[tuple[WorkPoint, Value | None]]) -> SlopeResult:
     """Fit the slope of lg of the values over lg h, over the smallest steps; see the module."""
     # Sorted by lg h, so that the smallest steps, where the leading term rules, come first.
-    places = sorted(
+    log_points = sorted(
         (log10_of(point.step_size), log10_of(value.value))
         for point, value in points
         if point.step_size and value and Decimal(value.value)
     )
-    asymptotic = _select_asymptotic(places)
+    asymptotic = _select_asymptotic(log_points)
     if len(asymptotic) < FEWEST:
-        count = len(places)
+        count = len(log_points)
         few = f"{count} point{' is' if count == 1 else 's are'} limited by truncation"
-        if len(places) >= FEWEST:
+        if len(log_points) >= FEWEST:
             few += f", and the slopes of only the {len(asymptotic)} smallest have settled"
         return SlopeResult(value=None, standard_error=None, points=len(asymptotic), reason=few)
     value, error = slope(asymptotic)
     reason = ""
-    if len(asymptotic) < len(places):
-        reason = f"of {len(places)}: at larger h it has not settled"
+    if len(asymptotic) < len(log_points):
+        reason = f"of {len(log_points)}: at larger h it has not settled"
     return SlopeResult(
         value=f"{value:.3f}", standard_error=f"{error:.3f}", points=len(asymptotic), reason=reason
     )
 
 
-def _select_asymptotic(places: Sequence[Place]) -> list[Place]:
-    """Select the points from the smallest step up to where neighbours' slopes leave the first."""
-    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(places)]
+def _select_asymptotic(log_points: Sequence[LogPoint]) -> list[LogPoint]:
+    """Select the points up to the first neighbours' slope that differs from that of the first two.
+
+    The points are sorted by step size.
+    """
+    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(log_points)]
     count = next((k for k, s in enumerate(slopes) if abs(s - slopes[0]) > SETTLED), len(slopes))
-    return list(places[: count + 1])
+    return list(log_points[: count + 1])
 
 
 def log10_of(text: str) -> float:
@@ -161,7 +164,7 @@ def compare_lines(
     line: WorkLine, other_line: WorkLine, scale: str, structure: Structure = AREA
 ) -> ComparisonResult:
     """Compare two lines at equal run time; see the module's text."""
-    errors = _places(line, "error", scale), _places(other_line, "error", scale)
+    errors = _log_points(line, "error", scale), _log_points(other_line, "error", scale)
     span = _overlap(errors)
     seconds = first = last = error = area = None
     if span is None:
@@ -173,7 +176,10 @@ def compare_lines(
         seconds, first, last = (_two_digits(10**x) for x in (sum(span) / 2, *span))
         error = _compute_ratio(*errors, span)
         if not (line.area_preserving or other_line.area_preserving):
-            areas = _places(line, "area_error", scale), _places(other_line, "area_error", scale)
+            areas = (
+                _log_points(line, "area_error", scale),
+                _log_points(other_line, "area_error", scale),
+            )
             common_span = _overlap(areas)
             area = _compute_ratio(*areas, common_span) if common_span else None
         times = f"`{first}` to `{last}` s"
@@ -192,45 +198,52 @@ def compare_lines(
     )
 
 
-def _places(line: WorkLine, quantity: str, scale: str) -> list[Place]:
+def _log_points(line: WorkLine, quantity: str, scale: str) -> list[LogPoint]:
     """Return (lg run time, lg quantity) by run time."""
-    places = []
+    log_points = []
     for point in select_within_orbit(line.points, scale):
         value: Value | None = getattr(point, quantity)
         if value and Decimal(value.value) and point.seconds_median:
-            places.append((log10_of(repr(point.seconds_median)), log10_of(value.value)))
-    return sorted(places)
+            log_points.append((log10_of(repr(point.seconds_median)), log10_of(value.value)))
+    return sorted(log_points)
 
 
-def _overlap(lines: Sequence[list[Place]]) -> Place | None:
+def _overlap(lines: Sequence[list[LogPoint]]) -> LogPoint | None:
     if not all(lines):
         return None
-    first, last = max(places[0][0] for places in lines), min(places[-1][0] for places in lines)
+    first, last = (
+        max(log_points[0][0] for log_points in lines),
+        min(log_points[-1][0] for log_points in lines),
+    )
     return (first, last) if first < last else None
 
 
-def _compute_ratio(places: list[Place], other_places: list[Place], span: Place) -> RatioResult:
-    """Return other / one at the middle, and its range over all points and both ends of the span."""
+def _compute_ratio(
+    log_points: list[LogPoint], other_log_points: list[LogPoint], span: LogPoint
+) -> RatioResult:
+    """Return the ratio other/one at the middle, and its range over the span."""
     # The ratio of two broken lines is extreme at a point of either.
-    times = {*span, *(x for x, _ in (*places, *other_places) if span[0] <= x <= span[1])}
-    ratios = [10 ** (_interpolate(other_places, x) - _interpolate(places, x)) for x in times]
+    times = {*span, *(x for x, _ in (*log_points, *other_log_points) if span[0] <= x <= span[1])}
+    ratios = [
+        10 ** (_interpolate(other_log_points, x) - _interpolate(log_points, x)) for x in times
+    ]
     middle = sum(span) / 2
-    at_middle = 10 ** (_interpolate(other_places, middle) - _interpolate(places, middle))
+    at_middle = 10 ** (_interpolate(other_log_points, middle) - _interpolate(log_points, middle))
     return RatioResult(
         at=_two_digits(at_middle), least=_two_digits(min(ratios)), most=_two_digits(max(ratios))
     )
 
 
-def _interpolate(places: list[Place], x: float) -> float:
-    """Interpolate on the line through the points, between two of them."""
-    for (x0, y0), (x1, y1) in pairwise(places):
+def _interpolate(log_points: list[LogPoint], x: float) -> float:
+    """Interpolate between two of the points; beyond the ends return the end's value."""
+    for (x0, y0), (x1, y1) in pairwise(log_points):
         if x0 <= x <= x1 and x1 > x0:
             return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
-    return places[0][1] if x <= places[0][0] else places[-1][1]
+    return log_points[0][1] if x <= log_points[0][0] else log_points[-1][1]
 
 
 def _quoted_name(line: WorkLine) -> str:
-    """Return the line's name, quoted where it is the formulas of a user's scheme."""
+    """Return the line's name, quoted if it is the formulas of a user's scheme."""
     return f"`{line.name}`" if "=" in line.name else line.name
 
 

@@ -32,8 +32,8 @@ def test_lanes_that_never_ask_for_the_last_bit_are_caught(
 ) -> None:
     """Where all are taken to be sure, one in a thousand arguments or so is rounded otherwise; at
     156 bits one in some tens of thousands."""
-    monkeypatch.setattr(transcendentals, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(transcendentals, "_lost_of_circle", lambda count: 0)
+    monkeypatch.setattr(transcendentals, "error_of_one_orbit", lambda fraction: 0)
+    monkeypatch.setattr(transcendentals, "_circle_error", lambda count: 0)
     pair = Both(FUNCTIONS["circle"], width, IN_LANES[0])
     draws = Draws(5)
     rows = [(number(draws.bits(width - 12), width),) for _ in range(count)]
@@ -54,7 +54,7 @@ def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
             exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
             most = max(most, abs(x.raw - exact) - Fraction(1, 2))
     # An ulp is 2^14 of the units in which it is counted.
-    assert most * 2**14 <= transcendentals.lost_by_one(width - 16)
+    assert most * 2**14 <= transcendentals.error_of_one_orbit(width - 16)
 
 
 def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
@@ -67,15 +67,15 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
         x = pair.of_one((number(raw, width),))
         y = finer.of_one((number(raw << width, 2 * width),))
         exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
-        lost = Fraction(transcendentals.lost_by_one(width - 16), 2**14) * max(
+        lost = Fraction(transcendentals.error_of_one_orbit(width - 16), 2**14) * max(
             1, exact / 2 ** (width - 16)
         )
         assert exact - 1 - lost <= x.raw <= exact + lost
 
 
 def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(transcendentals, "lost_by_one", lambda fraction: 0)
-    monkeypatch.setattr(transcendentals, "_lost_of_exponential", lambda count: 0)
+    monkeypatch.setattr(transcendentals, "error_of_one_orbit", lambda fraction: 0)
+    monkeypatch.setattr(transcendentals, "_exponential_error", lambda count: 0)
     pair = Both(FUNCTIONS["exp"], 128, IN_LANES[0])
     draws = Draws(7)
     assert first_differing(pair, [(number(draws.bits(116), 128),) for _ in range(20_000)])
@@ -130,7 +130,7 @@ AVX2 = pytest.mark.skipif("avx2" not in IN_LANES, reason="this processor has no 
 def test_a_product_that_never_asks_for_all_columns_is_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(Numbers, "_lost", staticmethod(lambda first: 0))
+    monkeypatch.setattr(Numbers, "_omission_bound", staticmethod(lambda first: 0))
     pair = Both(OPERATIONS, 192, "avx2", {"limit": number(3 << 173, 192)})
     assert first_differing(pair, at_a_half(192, seed=1))
 

@@ -44,7 +44,7 @@ def near(step: str, most: int) -> st.SearchStrategy[Near]:
     return st.builds(Near, st.just(step), ks, tiny, st.integers(-2, 2))
 
 
-TURN, OCTAVE = table_series._ANGLES, table_series._OCTAVE  # table steps
+TURN, OCTAVE = table_series._STEPS_PER_TURN, table_series._STEPS_PER_OCTAVE  # table steps
 BEYOND = 2**15 * TURN // 6  # the range
 angles = near("angle", BEYOND) | near("angle", TURN * 5 // 4) | shapes
 powers = near("octave", OCTAVE * 70) | near("octave", 3 * OCTAVE) | shapes

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers import conformance
 from verify import arithmetic
-from verify.arithmetic.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic
+from verify.arithmetic.number_system import ESCAPE_BITS, MAX_EXPONENT, Arithmetic
 from verify.arithmetic.systems import fixed, float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.requested_run import run
@@ -117,7 +117,7 @@ def test_a_system_without_an_end_of_its_own_stops_where_it_should(name: str, sig
             continue
         inside = eval(made.guard.format(x="x"), {"x": x, **made.functions})  # noqa: S307 - our own
         assert inside == (beside < 0)
-        for exponent, ends in ((MOST_EXPONENT, beside < 0), (-MOST_EXPONENT, beside >= -1)):
+        for exponent, ends in ((MAX_EXPONENT, beside < 0), (-MAX_EXPONENT, beside >= -1)):
             far = made.number(sign * Fraction(2) ** (exponent + beside))
             assert made.finite(far) == ends
     assert made.finite(made.number(Fraction(1, 3)))

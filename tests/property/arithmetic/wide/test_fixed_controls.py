@@ -25,7 +25,7 @@ from verify.arithmetic.wide.table_series import Functions
 
 WIDTH = 256
 # Steps of the tables: of a turn, whose table is of a quarter, and of a factor 2.
-TURN, OCTAVE = table_series._ANGLES, table_series._OCTAVE
+TURN, OCTAVE = table_series._STEPS_PER_TURN, table_series._STEPS_PER_OCTAVE
 
 
 def fresh() -> Format:
@@ -83,8 +83,8 @@ def test_without_a_loss_every_check_passes(check: Callable[[Format], None]) -> N
 def test_products_that_are_called_are_those_that_are_inline(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(products, "_MOST_IN_KERNEL", 0)
-    monkeypatch.setattr(products, "_LEAST_CALLED", 1)
+    monkeypatch.setattr(products, "_MAX_KERNEL_COST", 0)
+    monkeypatch.setattr(products, "_MIN_CALLED_LIMBS", 1)
     for check in CHECKS:
         check(fresh())
 
@@ -242,7 +242,7 @@ def test_a_reduced_argument_without_its_further_bits_is_caught(
     def short(value: Any, shift: int) -> int:
         if shift == WIDTH:  # that many steps which are added
             return (
-                true(value / table_series._SURELY_POSITIVE, shift) * table_series._SURELY_POSITIVE
+                true(value / table_series._POSITIVE_OFFSET, shift) * table_series._POSITIVE_OFFSET
             )
         lost = WORD if shift == WIDTH + WORD else 0
         return true(value, shift - lost) << lost

@@ -120,7 +120,7 @@ def test_our_own_compiler_and_its_libraries_are_in_the_key() -> None:
     said = native.versions()
     for part in ("Python 3.", "llvmlite 0.", "LLVM (", *native._processor()):
         assert part in said
-    assert native._COMPILER.hexdigest() in said
+    assert native._COMPILER_HASH.hexdigest() in said
 
 
 def test_a_damaged_entry_is_compiled_anew_and_replaced(

@@ -52,7 +52,7 @@ def differing(text: str, steps: int, seed: int) -> int:
     """How many numbers of a cloud are not those of its points one by one."""
     draw = np.random.default_rng(seed)
     inputs = draw.uniform(0.1, 0.9, 2)
-    points = draw.uniform(-2, 2, (CARRIED, doubles.POINTS))
+    points = draw.uniform(-2, 2, (CARRIED, doubles.POINTS_PER_CALL))
     one = doubles.one_point(text, {})
     alone = [one(steps, *inputs, *point)[1:] for point in points.T.tolist()]
     doubles.on_points(text, {}, CARRIED)(steps, inputs, points)

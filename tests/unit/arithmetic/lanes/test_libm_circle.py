@@ -52,7 +52,7 @@ def in_lanes(x: np.ndarray, *wanted: str) -> np.ndarray:
     source = BOTH.format("".join(LINES[name] for name in wanted))
     run = doubles.on_points(source, {}, 3)
     found = []
-    for part in x.reshape(-1, doubles.POINTS):
+    for part in x.reshape(-1, doubles.POINTS_PER_CALL):
         points = np.array([part, np.zeros_like(part), np.zeros_like(part)])
         run(1, np.empty(0), points)
         found.append(points[1:])
@@ -94,12 +94,12 @@ APART = float.fromhex("0x1.ad1fb54442d18p+0")
 
 @pytest.mark.parametrize("wanted", [("sin", "cos"), ("sin",)])
 def test_a_sine_beside_a_cosine_is_that_of_the_sine_alone(wanted: tuple[str, ...]) -> None:
-    x = np.resize([APART, -APART], doubles.POINTS)
+    x = np.resize([APART, -APART], doubles.POINTS_PER_CALL)
     assert in_lanes(x, *wanted)[0].tolist() == by_libm(x)[0].tolist() == [*map(math.sin, x)]
 
 
 def test_extremes_have_the_bits_of_the_c_library() -> None:
-    x = np.resize(EXTREMES, 2 * doubles.POINTS)
+    x = np.resize(EXTREMES, 2 * doubles.POINTS_PER_CALL)
     assert same_bits(in_lanes(x, "sin", "cos"), by_libm(x)).all()
 
 
@@ -115,8 +115,8 @@ def test_with_less_room_lanes_are_right_where_the_library_is_not(
 ) -> None:
     """With room for their own error alone they give the nearest number, which it does not always
     give: its error must have room, too."""
-    monkeypatch.setattr(libm_circle, "SURE", 0.5 - WITHIN)
-    monkeypatch.setattr(libm_circle, "SURE_NEAR_0", 0.5 - WITHIN)
+    monkeypatch.setattr(libm_circle, "SURE_DISTANCE", 0.5 - WITHIN)
+    monkeypatch.setattr(libm_circle, "SURE_DISTANCE_NEAR_0", 0.5 - WITHIN)
     x = arguments(1 << 18, seed=3)
     own, libm = in_lanes(x, "sin", "cos"), by_libm(x)
     differ = ~same_bits(own, libm)
@@ -130,8 +130,8 @@ def test_with_less_room_lanes_are_right_where_the_library_is_not(
 
 
 def test_what_both_are_off_leaves_one_float64_alone() -> None:
-    assert 1 - libm_circle.SURE - WITHIN >= 0.518
-    assert 1 - libm_circle.SURE_NEAR_0 - WITHIN >= 0.548
+    assert 1 - libm_circle.SURE_DISTANCE - WITHIN >= 0.518
+    assert 1 - libm_circle.SURE_DISTANCE_NEAR_0 - WITHIN >= 0.548
 
 
 def units(value: Fraction, true: Fraction) -> Fraction:
@@ -248,7 +248,7 @@ def test_it_is_asked_for_few() -> None:
 
 def test_a_sine_near_0_has_its_own_room(monkeypatch: pytest.MonkeyPatch) -> None:
     """From π/4 on it is the cosine of r."""
-    monkeypatch.setattr(libm_circle, "SURE_NEAR_0", 1e-9)
+    monkeypatch.setattr(libm_circle, "SURE_DISTANCE_NEAR_0", 1e-9)
     for low, high, all_are in ((0.1, 0.78, True), (0.79, 0.855, True), (0.856, 2, False)):
         x = np.random.default_rng(9).uniform(low, high, 1_024)
         assert asked(x)["sin"].all() == all_are == asked(-x)["sin"].all()

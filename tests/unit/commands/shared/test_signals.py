@@ -35,6 +35,16 @@ def test_an_interruption_in_a_callback_is_heard(capsys: pytest.CaptureFixture[st
     assert capsys.readouterr() == ("", "")
 
 
+def test_a_signal_that_comes_while_it_is_sent_again_is_not_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As on a busy machine, where ten milliseconds may pass between two lines."""
+    monkeypatch.setattr("verify.commands.main._RESEND_DELAY", 0.0)
+    for _ in range(20):
+        with pytest.raises(KeyboardInterrupt):
+            signalled_in_a_callback(signal.SIGINT)
+
+
 def test_and_so_is_a_termination(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         signalled_in_a_callback(signal.SIGTERM)

@@ -8,9 +8,7 @@ import pytest
 import sympy
 
 from tests.helpers.maps import by_expressions
-from tests.unit.exploration.properties.test_properties import (
-    OF_TIME_ALONE,
-    PLANTED,
+from tests.helpers.planted.property_errors import (
     Patch,
     Plant,
     example_of,
@@ -18,6 +16,7 @@ from tests.unit.exploration.properties.test_properties import (
     take_every_turn,
     with_added,
 )
+from tests.unit.exploration.properties.test_properties import OF_TIME_ALONE, PLANTED
 from tests.unit.exploration.properties.test_properties_sharp import moved, tiny, with_power
 from verify.algebra.formula import symbol
 from verify.exploration import properties

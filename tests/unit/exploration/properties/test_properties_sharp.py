@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.unit.exploration.properties.test_properties import (
+from tests.helpers.planted.property_errors import (
     Patch,
     Plant,
     example_of,
@@ -234,5 +234,5 @@ def test_what_more_digits_solve_otherwise_is_not_held_against_the_scheme(
     sample = example_of("implicit-midpoint", formula).with_place((Fraction(-2), Fraction(-1, 5)))
     sample = replace(sample, step_size=Fraction(1, 10))
     assert properties.get("symplectic-schemes").holds(sample)
-    monkeypatch.setattr(reference_steps, "_DIGITS", 80)
+    monkeypatch.setattr(reference_steps, "_RUN_DIGITS", 80)
     assert not properties.get("symplectic-schemes").holds(sample)

@@ -51,4 +51,4 @@ def _ended(function: Any) -> Iterator[ForeignFunction]:
 def said(result: object) -> str:
     """What is said where no state came back."""
     assert isinstance(result, StepError), result
-    return str(result.said)
+    return str(result.clause)

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verify.integrators.foreign.lines import (
-    digits_of,
-    line_of,
-    number_of,
-    numbers_of,
-    read_digits,
+    format_line,
+    format_memory,
+    parse_line,
+    parse_memory,
+    parse_number,
 )
 from verify.integrators.user_code.step import StepError
 from verify.integrators.user_code.user_map import (
@@ -31,9 +31,9 @@ FLOATS = st.floats(-1e6, 1e6, allow_nan=False).map(Fraction)
 def test_what_is_written_is_read_back(x: Fraction, y: Fraction, name: str) -> None:
     kind = TYPES[name]
     made = [kind.round_number(x + y / 3**40), kind.round_number(y)]
-    assert read_digits(digits_of(made, kind), 2, kind) == made
+    assert parse_memory(format_memory(made, kind), 2, kind) == made
     assert [
-        kind.round_number(Fraction(x)) for x in numbers_of(line_of(made, kind), 2, kind)
+        kind.round_number(Fraction(x)) for x in parse_line(format_line(made, kind), 2, kind)
     ] == made
 
 
@@ -58,7 +58,7 @@ def test_a_rounded_number_is_the_nearest_of_its_bits(
     ],
 )  # fmt: skip
 def test_decimals_and_hexadecimal_floats_are_numbers(text: str, value: Fraction) -> None:
-    assert number_of(text) == value
+    assert parse_number(text) == value
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_decimals_and_hexadecimal_floats_are_numbers(text: str, value: Fraction)
 )
 def test_what_is_no_number_is_told(text: str) -> None:
     with pytest.raises(StepError, match="answers"):
-        number_of(text)
+        parse_number(text)
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_what_is_no_number_is_told(text: str) -> None:
 def test_another_count_of_numbers_is_told(line: str, kind: object) -> None:
     assert isinstance(kind, type(DOUBLE))
     with pytest.raises(StepError, match="wanted"):
-        numbers_of(line, 2, kind)
+        parse_line(line, 2, kind)
 
 
 # -- as C has them in memory ----------------------------------------------------------------------
@@ -85,7 +85,7 @@ def test_another_count_of_numbers_is_told(line: str, kind: object) -> None:
 def test_what_is_no_number_of_the_type_is_rounded(x: Fraction, y: Fraction) -> None:
     exact = x + y / 3**40
     for kind in (DOUBLE, LONG_DOUBLE, FLOAT128):
-        assert read_digits(digits_of([exact], kind), 1, kind) == [kind.round_number(exact)]
+        assert parse_memory(format_memory([exact], kind), 1, kind) == [kind.round_number(exact)]
 
 
 @pytest.mark.parametrize("power", [-1000, -1, 0, 1, 52])
@@ -97,21 +97,21 @@ def test_what_is_just_below_a_power_of_two_is_rounded_up_to_it(
     two = Fraction(2) ** power
     for more in (2, 3, 100):
         above = two * (1 - Fraction(1, 2 ** (kind.bits + more)))
-        assert read_digits(digits_of([above, -above], kind), 2, kind) == [two, -two]
+        assert parse_memory(format_memory([above, -above], kind), 2, kind) == [two, -two]
     last = two * (1 - Fraction(1, 2**kind.bits))  # the number before it
-    assert read_digits(digits_of([last, -last], kind), 2, kind) == [last, -last]
+    assert parse_memory(format_memory([last, -last], kind), 2, kind) == [last, -last]
 
 
 def test_a_long_double_is_that_of_c() -> None:
     """By ctypes, which knows it, though it gives it to Python as a double."""
     for x in (1.5, -0.1, 3e100, 2.0**-1000, 0.0):
         raw = bytes(ctypes.c_longdouble(x))[:10]
-        assert bytes.fromhex(digits_of([Fraction(x)], LONG_DOUBLE))[:10] == raw
+        assert bytes.fromhex(format_memory([Fraction(x)], LONG_DOUBLE))[:10] == raw
 
 
 def test_what_is_too_small_is_zero() -> None:
     for kind in (LONG_DOUBLE, FLOAT128):
-        assert read_digits(digits_of([Fraction(1, 2**17000)], kind), 1, kind) == [0]
+        assert parse_memory(format_memory([Fraction(1, 2**17000)], kind), 1, kind) == [0]
 
 
 @pytest.mark.parametrize(
@@ -128,4 +128,4 @@ def test_what_is_too_small_is_zero() -> None:
 )
 def test_what_is_not_finite_is_told(kind: NumberType, digits: str, shown: str) -> None:
     with pytest.raises(StepError, match=f"“{shown}”, which is not finite"):
-        read_digits(digits, 1, kind)
+        parse_memory(digits, 1, kind)

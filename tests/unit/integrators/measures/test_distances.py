@@ -9,11 +9,11 @@ import pytest
 from verify.integrators.measures.distances import (
     ErrorTail,
     PlaceOrder,
-    _row,
+    _errors_and_noise,
     _select_slowest,
     settle_power,
 )
-from verify.integrators.measures.error_powers import PowerStretch, Slopes, on_their_way
+from verify.integrators.measures.error_powers import PowerStretch, PowerStretches, rises_to_power
 from verify.integrators.measures.probes import DualProbe
 from verify.integrators.places.trial_places import TrialPlace
 
@@ -85,7 +85,7 @@ class TestASlopesLimit:
     ],
 )
 def test_slopes_are_on_their_way_to_a_power_where_each_is_larger_than_the_last(slopes, rise):
-    assert on_their_way(slopes, 3) is rise
+    assert rises_to_power(slopes, 3) is rise
 
 
 SIZES = (1.0, 0.75, 0.5, 0.25, 0.1875, 0.125)
@@ -101,14 +101,17 @@ def left(slopes, rows=ROWS, counts=(0,) * 6):
 
 def test_what_a_loop_leaves_is_told_from_the_step_size_at_which_it_begins():
     small = [(h, error * 1e-6 if h < 0.5 else error, noise) for h, error, noise in ROWS]
-    both, loose = Slopes((ABOVE, BELOW), True), Slopes((ABOVE,), True, (3.0, 1.0, 2.0))
+    both, loose = (
+        PowerStretches((ABOVE, BELOW), True),
+        PowerStretches((ABOVE,), True, (3.0, 1.0, 2.0)),
+    )
     assert left(both, small) == (6, ErrorTail(1, 0.25, small[3][1] / 2))
     assert left(loose, small) == (6, ErrorTail(None, 0.5, small[3][1] / 2))
-    assert left(Slopes((ABOVE,), True), small) == (6, None)
+    assert left(PowerStretches((ABOVE,), True), small) == (6, None)
     fewer = (9, 9, 9, 8, 8, 8)  # turns; and the error grows as one is left out
-    assert left(Slopes((BELOW,), True), [*ROWS[:2], (0.5, 1e-10, 1e-18), *ROWS[3:]], fewer) == (
-        None, ErrorTail(1, 0.25, ROWS[3][1] / 2),
-    )  # fmt: skip
+    rows = [*ROWS[:2], (0.5, 1e-10, 1e-18), *ROWS[3:]]
+    smallest = (None, ErrorTail(1, 0.25, ROWS[3][1] / 2))
+    assert left(PowerStretches((BELOW,), True), rows, fewer) == smallest
 
 
 def test_a_rounded_coefficient_moves_a_step_by_an_ulp_of_its_length_or_of_its_unit():
@@ -124,6 +127,6 @@ def test_a_rounded_coefficient_moves_a_step_by_an_ulp_of_its_length_or_of_its_un
     place = TrialPlace((ONE, ONE), Fraction(0), (4 * ONE, ONE), (ONE, ONE), ONE)
     ended, exact = [Fraction(5, 2), Fraction(9, 8)], [3 * ONE, ONE]
     step = SimpleNamespace(periods=())
-    errors, noise, moved = _row(step, Exact(), place, ONE, [ONE, ONE], ended, exact)
+    errors, noise, moved = _errors_and_noise(step, Exact(), place, ONE, [ONE, ONE], ended, exact)
     assert (errors, moved) == ([-0.5, 0.125], 0.5)
     assert noise == pytest.approx([2.0**-52 * (2 + 4 / 16), 2.0**-52 / 16], rel=1e-12, abs=0)

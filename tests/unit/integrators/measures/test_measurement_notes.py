@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verify.integrators.measures.measurement_notes import _change
+from verify.integrators.measures.measurement_notes import _smallest_change
 
 
 def omega(size: int) -> np.ndarray:
@@ -29,7 +29,9 @@ def symplectic(size: int, seed: int) -> np.ndarray:
 def test_of_a_multiple_of_the_identity_the_diagonal_has_to_change(size: int) -> None:
     """MᵀΩδ + δᵀΩM = −S with M = c 1 and S = (c² − 1) Ω: δ_pp + δ_qq = −(c² − 1)/c of each pair."""
     for c in (1 + 1e-3, 1 - 1e-5):
-        assert _change(c * np.eye(size)) == pytest.approx(abs(c * c - 1) / (2 * c), rel=1e-6)
+        assert _smallest_change(c * np.eye(size)) == pytest.approx(
+            abs(c * c - 1) / (2 * c), rel=1e-6
+        )
 
 
 @pytest.mark.parametrize("size", [2, 4, 6])
@@ -37,9 +39,9 @@ def test_of_a_multiple_of_the_identity_the_diagonal_has_to_change(size: int) -> 
 def test_a_rounded_symplectic_matrix_is_within_half_a_unit_of_one(size: int, seed: int) -> None:
     made = symplectic(size, seed)
     assert np.abs(made.T @ omega(size) @ made - omega(size)).max() < 1e-12
-    assert _change(made) < 1e-12
+    assert _smallest_change(made) < 1e-12
     for digits in (3, 6):
-        assert _change(np.round(made, digits)) <= 0.5 * 10.0**-digits * (1 + 1e-6)
+        assert _smallest_change(np.round(made, digits)) <= 0.5 * 10.0**-digits * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("size", [2, 4, 6])
@@ -49,7 +51,7 @@ def test_what_is_changed_by_so_much_is_symplectic_to_second_order(size: int, see
     made, random = symplectic(size, seed), np.random.default_rng(seed)
     off = made.copy()
     off[tuple(random.integers(0, size, 2))] += 1e-6
-    found = _change(off)
+    found = _smallest_change(off)
     assert 0 <= found <= 1e-6 * (1 + 1e-6)
     defect = np.abs(off.T @ omega(size) @ off - omega(size)).max()
     # Each entry of S moves by at most 2n products of an entry of M and one of δ, twice.

@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from tests.unit.integrators.test_in_time import DRIVEN, as_float, verlet_at
+from tests.helpers.programs.blind import blind
+from tests.unit.integrators.test_in_time import DRIVEN, verlet_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.clocks import _mean_time, _order_at
+from verify.integrators.clocks import _note_mean, _order_at
 from verify.integrators.measures.probes import probe_of
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.user_code.loading import callee_from
@@ -22,8 +23,8 @@ PLACES = [
 def probe(moment, how):
     """Of Störmer–Verlet that reads its force at that part of h."""
     step = verlet_at(moment, moment)
-    callee = callee_from(step if how == "duals" else as_float(step), ("p", "q"))
-    callee.step.moving = True
+    callee = callee_from(step if how == "duals" else blind(step), ("p", "q"))
+    callee.step.time_dependent = True
     return probe_of(callee.step, how)
 
 
@@ -31,9 +32,9 @@ def probe(moment, how):
 @pytest.mark.parametrize(("how", "near"), [("duals", 1e-6), ("floats", 5e-3)])
 def test_a_mean_as_near_to_the_middle_as_is_seen_is_no_mistake(how, near, sign):
     """And one twice as far is: it is told with three places."""
-    assert _mean_time(probe(0.5 + sign * 0.8 * near, how), EXACT, PLACES) == []
+    assert _note_mean(probe(0.5 + sign * 0.8 * near, how), EXACT, PLACES) == []
     off = sign * 1.6 * near
-    assert _mean_time(probe(0.5 + off, how), EXACT, PLACES) == [
+    assert _note_mean(probe(0.5 + off, how), EXACT, PLACES) == [
         f"H is read at about t {0.5 + off:+.3f} h in the mean: it can be of order 2 where that is "
         "t + h/2"
     ]
@@ -42,7 +43,7 @@ def test_a_mean_as_near_to_the_middle_as_is_seen_is_no_mistake(how, near, sign):
 @pytest.mark.parametrize("moment", [0, 0.25])
 @pytest.mark.parametrize("how", ["duals", "floats"])
 def test_a_mean_that_is_a_simple_part_of_the_step_is_told_as_one(how, moment):
-    (said,) = _mean_time(probe(moment, how), EXACT, PLACES)
+    (said,) = _note_mean(probe(moment, how), EXACT, PLACES)
     assert said.startswith(f"H is read at {'t + h/4' if moment else 't'} in the mean: ")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.integrators.measures.survey import _has_changed, unit_of_map
+from verify.integrators.measures.survey import _has_changed, find_map_unit
 from verify.integrators.user_code.loading import callee_from
 
 
@@ -30,5 +30,5 @@ def test_the_unit_of_a_map_is_its_own_length(unit: str) -> None:
     def turned(p: Any, q: Any) -> tuple[Any, Any]:
         return p + length * np.sin(q / length), q
 
-    found = unit_of_map(callee_from(turned, ("p", "q"), stepped=False).step)
+    found = find_map_unit(callee_from(turned, ("p", "q"), stepped=False).step)
     assert length / 8 <= float(found) <= 8 * length

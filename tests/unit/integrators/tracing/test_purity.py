@@ -95,4 +95,4 @@ def test_a_function_that_two_modules_have_is_named_by_the_first(
     special.sinc = np.sinc  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "scipy.special", special)
     monkeypatch.setattr(purity, "_pure_in", purity._pure_in.__wrapped__)  # without its cache
-    assert purity.pure_things()[id(np.sinc)][0] == "numpy.sinc"
+    assert purity.pure_objects()[id(np.sinc)][0] == "numpy.sinc"

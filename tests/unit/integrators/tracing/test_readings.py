@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.clocks import misread
+from verify.integrators.clocks import find_misreadings
 from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.readings import NoReadingsError, Readings
 from verify.integrators.tracing.trace import Node, Tape
@@ -54,13 +54,13 @@ def test_a_step_is_mended_at_its_readings_and_nowhere_else() -> None:
     readings = Readings(FORCED, *traced(midpoint))
     again = Readings(FORCED, *readings.with_due_times())
     assert [read.time for read in again.reads] == [read.due for read in readings.reads]
-    (said,) = misread(FORCED, *traced(midpoint), 1)
+    (said,) = find_misreadings(FORCED, *traced(midpoint), 1)
     assert "it is of order 2 with H read at t + h/2 in place of t + h" in said
-    assert misread(FORCED, *readings.with_due_times(), 2) == []
+    assert find_misreadings(FORCED, *readings.with_due_times(), 2) == []
 
 
 def test_what_has_that_order_anyhow_is_told_nothing() -> None:
-    assert misread(FORCED, *traced(midpoint), 2) == []
+    assert find_misreadings(FORCED, *traced(midpoint), 2) == []
 
 
 def test_two_times_in_one_factor_are_no_reading() -> None:

@@ -17,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.tracing.trace import Tape, expressions, in_order
 from verify.integrators.tracing.traced_map import _Peeler, shears_of, traced_map
-from verify.integrators.tracing.traced_number import UntraceableError, constant, reading
+from verify.integrators.tracing.traced_number import UntraceableError, constant, read_float
 from verify.integrators.tracing.traced_series import TracedSeries
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
@@ -99,7 +99,7 @@ def test_a_step_that_is_nearly_shears_is_none() -> None:
     ],
 )
 def test_a_float_is_read_as_what_it_is_written_for(value: float, read: Fraction | None) -> None:
-    assert reading(value) == read
+    assert read_float(value) == read
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,21 @@ import numpy as np
 import pytest
 from matplotlib.transforms import Bbox
 
-from tests.helpers.constructed.flows import FAILED, circle, exact, flow, image, outline, spiral
+from tests.helpers.constructed.flows import (
+    FAILED,
+    circle,
+    exact,
+    flow,
+    image,
+    in_degrees,
+    outline,
+    spiral,
+)
 from tests.unit.pages.test_page import scene
+from verify.errors import InputError
 from verify.pages.figures.flow_grid import grid_of
 from verify.pages.figures.label_place import choose_place
+from verify.pages.plotting import plot_flow
 from verify.pages.sections.scene import flow as section
 from verify.scenes.results.regions import FlowResult
 
@@ -69,6 +80,31 @@ def test_an_outline_that_is_drawn_out_is_said_to_be() -> None:
     caption = caption_of(flow(image(outlines=(outline(spiral()),))))
     assert re.search(r"After N = 100 steps by lie2 the outline is (9\.\d|10) times", caption)
     assert "times as long" not in caption_of(flow(image()))
+
+
+def test_each_plane_of_several_degrees_has_a_picture_and_the_table_the_areas_in_all() -> None:
+    (region,) = section.SECTION.view(scene(flows=(in_degrees(),)), "x").regions
+    first, second = region.plots
+    assert "as it is seen in (q1, p1)" in first.lead
+    assert "as it is seen in (q2, p2)" in second.lead
+    assert "+ is where all of it was before" in second.caption
+    assert (
+        "circle at (q1, p1) = (0, 0), scale 1, p2 = 0.5, q2 = 0.1"
+        in first.lead.replace("\xa0", " ").lower()
+    )
+    assert region.heads[2:5] == ("change of ∮ p·dq", "mean of W", "by planes")
+    assert "0.75" in region.rows[1].cells[4]
+    assert "0.25" in region.rows[1].cells[4]
+
+
+def test_the_plane_that_is_drawn_can_be_chosen() -> None:
+    result = in_degrees()
+    own, other = grid_of(result), grid_of(result, 2)
+    assert (own.axes, other.axes) == (("q1", "p1"), ("q2", "p2"))
+    assert other.before[0].tolist() == [[0.1, 0.5]]
+    assert {axes.get_xlabel() for axes in plot_flow(result, 2).axes} == {"q2"}
+    with pytest.raises(InputError, match="plane=3: must be 1 … 2"):
+        plot_flow(result, 3)
 
 
 def test_a_label_keeps_clear_of_what_is_drawn_and_of_other_labels() -> None:

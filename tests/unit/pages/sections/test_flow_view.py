@@ -1,26 +1,32 @@
-"""Regions carried by maps, and the paper's figures made again: said and drawn as the data are."""
+"""Regions carried by maps: said and drawn as the data are."""
 
 import re
 from typing import Any
 
 import pytest
 
-from tests.helpers.constructed.flows import EULER, FAILED, LONG, THREE, TWO, exact, flow, image
+from tests.helpers.constructed.flows import (
+    FAILED,
+    LONG,
+    THREE,
+    TWO,
+    exact,
+    flow,
+    image,
+    in_degrees,
+)
 from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_growth_view import text_of
-from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, claim, proof, report, run, scene
+from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, report, run, scene
 from verify.pages.figures.flow_figure import draw_flow
 from verify.pages.figures.flow_grid import grid_of
 from verify.pages.figures.sheet import page_style
 from verify.pages.page import render
+from verify.pages.sections.flow_finding import finding, findings
 from verify.pages.text.typography import number
 from verify.scenes.paper_sections import PaperFigure
-from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.regions import FlowImage, FlowResult
-from verify.scenes.results.report import Report
-from verify.scenes.results.run import SeriesPoint
-from verify.verdict import Verdict
 
 
 def page_of(*flows: FlowResult, **changes: Any) -> str:
@@ -82,18 +88,41 @@ def test_the_table_has_the_numbers_of_the_results_and_a_planted_one_is_seen() ->
     assert wrong_rows(THREE, page_of(planted)) == ["exact flow 5000"]
 
 
-def test_the_sentences_are_those_of_the_data() -> None:
-    text = text_of(page_of(TWO))
-    assert (
-        "The largest relative change of area is that by lie2 with h = 0.01, N = 300: "
-        "9.8765 × 10⁻⁴ ± 3.1 × 10⁻¹¹." in text
-    )
+IN_THE_PLANE = (
+    "The largest relative change of area is that by lie2 with h = 0.01, N = 300: "
+    "9.8765 × 10⁻⁴ ± 3.1 × 10⁻¹¹.",
     # 1.2345e-5 / 3.1e-11 = 398225.8…, the lesser of the two
-    assert "The probe’s own error is at least 390,000 times smaller" in text
-    assert "In all 2 images the mean of Λ over the region" in text
-    assert "The exact flow preserves area by Liouville’s theorem" in text
-    assert "lie2 up to 7.77 × 10⁻³ ± 5.6 × 10⁻⁶ (h = 0.01, N = 300)" in text
-    assert "less than the thousandth that a picture can show" in text
+    "The probe’s own error is at least 390,000 times smaller",
+    "In all 2 images the mean of Λ over the region",
+    "The exact flow preserves area by Liouville’s theorem",
+    "lie2 up to 7.77 × 10⁻³ ± 5.6 × 10⁻⁶ (h = 0.01, N = 300)",
+    "less than the thousandth that a picture can show",
+)
+OF_THE_INVARIANT = (
+    "The largest relative change of ∮ p·dq is that by lie2",
+    "The exact flow keeps ∮ p·dq by Poincaré’s theorem",
+    "mean of W over the region, computed without any curve, is the same",
+    "the projections to (q1, p1) and (q2, p2) enclose 0.75 and 0.25",
+    "less than the thousandth that a picture can show",
+)
+
+
+@pytest.mark.parametrize(
+    ("result", "sentences", "absent"),
+    [
+        (TWO, IN_THE_PLANE, ("∮", "mean of W")),
+        (in_degrees(), OF_THE_INVARIANT, ("Λ", "det J")),
+    ],
+    ids=["plane", "degrees"],
+)
+def test_the_sentences_are_those_of_the_data(
+    result: FlowResult, sentences: tuple[str, ...], absent: tuple[str, ...]
+) -> None:
+    text, said = text_of(page_of(result)), " ".join((*findings([result]), *finding(result)))
+    for sentence in sentences:
+        assert sentence in text
+    for words in absent:
+        assert words not in said
     assert "det J ≡ 1 is proved for" not in text
 
 
@@ -108,13 +137,30 @@ def test_a_scheme_that_preserves_area_does_so_by_proof() -> None:
     assert "keeps the area of the circle by proof (measured: 2 × 10⁻¹³ ± 8.8 × 10⁻¹²)" in text
 
 
-def test_measures_that_disagree_are_told_and_never_glossed_over() -> None:
-    text = text_of(page_of(flow(image(agree=False), image(steps=200))))
-    assert "differs from it in 1 of 2 images" in text
+@pytest.mark.parametrize(
+    ("result", "differs"),
+    [
+        (flow(image(agree=False), image(steps=200)),
+         "Λ over the region, computed without any area, differs from it in 1 of 2 images"),
+        (in_degrees(agree=False), "W over the region, computed without any curve, differs from it "
+         "in 1 of 1 images: one of the two is wrong there"),
+    ],
+    ids=["plane", "degrees"],
+)  # fmt: skip
+def test_measures_that_disagree_are_told_and_never_glossed_over(
+    result: FlowResult, differs: str
+) -> None:
+    text = text_of(page_of(result))
+    assert differs in text
     assert "the two measures disagree" in text
+    assert "is the same within the errors" not in text
+
+
+def test_of_one_image_both_measures_are_told_and_of_the_exact_flow_that_the_probe_is_wrong() -> (
+    None
+):
     of_one = text_of(page_of(flow(image(agree=False))))
     assert "which must be the same, is −1.234 × 10⁻⁵ ± 2.0 × 10⁻⁸: one of the two" in of_one
-    assert "is the same within the errors" not in text
     wrong = text_of(page_of(flow(exact(area_change="1e-06"))))
     assert "the probe is wrong there" in wrong
     assert "below its own error" not in wrong
@@ -196,90 +242,3 @@ def test_the_picture_has_words_and_the_names_of_its_axes() -> None:
     assert svg.get("aria-label", "").startswith("Circle at (q, p) = (0, 0), scale 1, carried by")
     texts = [e.text for e in svg.iter() if e.tag == "text"]
     assert {"q", "p", "lie2", "symplectic-euler"} <= set(texts)
-
-
-# -- the paper's figures --------------------------------------------------------------------------
-
-SERIES = tuple(
-    SeriesPoint(first=i, last=i, delta_j=("-1e-9", "1e-9"), lam=("0", "1e-9")) for i in range(1, 9)
-)
-
-
-def paper() -> Report:
-    """Three figures, of runs, a series and a flow, and one more series that is in none of them."""
-    lam = {h: Value(value=f"{h}e-05", bound="1e-10") for h in ("0.01", "0.02")}
-    mine = scene(
-        proofs=(proof(),),
-        runs=tuple(run(step_size=h, values={"lambda": value}) for h, value in lam.items()),
-        series=(
-            run(series=SERIES, source="Figure 2"), run(series=SERIES, q="2", source="Figure 9"),
-        ),
-        flows=(TWO.model_copy(update={"source": "Figure 3"}), THREE),
-    )  # fmt: skip
-    return report(
-        (mine,),
-        claims=(
-            claim(id="grows", statement="It grows."),
-            claim(id="kept", statement="It keeps area.", verdict=Verdict.REFUTED, evidence="by 42"),
-        ),
-        figures=(
-            PaperFigure(label="Figure 1", caption="Errors.", scene="mine", shows="runs",
-                        claims=("grows",), assumed="T = 20,000."),
-            PaperFigure(label="Figure 2", scene="mine", shows="series"),
-            PaperFigure(label="Figure 3", scene="mine", shows="flow", claims=("kept",)),
-        ),
-    )  # fmt: skip
-
-
-def article(page: str, anchor: str) -> str:
-    (found,) = re.findall(
-        rf'<article class="made-again \w+" id="{anchor}".*?</article>', page, re.DOTALL
-    )
-    return str(found)
-
-
-def test_every_figure_is_drawn_once_and_those_of_the_paper_in_their_order() -> None:
-    page = render(paper())
-    labels = [svg.get("aria-label") for svg in figures(page)]
-    assert len(labels) == len(set(labels)) == 5, "runs, two series, two flows"
-    assert re.findall(r'class="made-again \w+" id="([^"]*)"', page) == [
-        "figure-1", "figure-2", "figure-3",
-    ]  # fmt: skip
-    assert 'href="#figures"' in page
-    telling = 'href="#telling"'
-    assert telling in article(page, "figure-1"), "it stands on the first screen"
-    assert "<svg" in article(page, "figure-2")
-    assert "<svg" in article(page, "figure-3")
-    for anchor in ("figure-2", "figure-3"):
-        assert page.count(f'<p class="jump">Drawn in <a href="#{anchor}">') == 1, "in its scene"
-
-
-def test_a_figure_has_its_claims_with_their_verdicts_and_what_was_assumed() -> None:
-    page = render(paper())
-    first, second, third = (text_of(article(page, f"figure-{i}")) for i in (1, 2, 3))
-    assert "“Errors.”" in first
-    assert "What the paper draws from it ✓ PROVED It grows." in first
-    assert "Assumed. T = 20,000." in first
-    assert "The paper draws nothing from it that a number can decide." in second
-    assert "✗ REFUTED It keeps area." in third
-    assert 'href="#claim-kept"' in article(page, "figure-3")
-    assert "lie2 with h = 0.01, N = 300 changes the area of the circle by 9.8765 × 10⁻⁴" in third
-
-
-def test_the_page_with_figures_is_well_formed_and_its_links_lead_somewhere() -> None:
-    reader = Reader(render(paper()))
-    ids = reader.all("id")
-    assert len(ids) == len(set(ids))
-    assert all(t == "results.json" or t.removeprefix("#") in ids for t in reader.all("href"))
-
-
-def test_a_figure_of_which_nothing_was_computed_says_so() -> None:
-    alone = PaperFigure(label="Figure 7", scene="mine", shows="flow", claims=("unknown",))
-    gone = alone.model_copy(update={"label": "Figure 8", "scene": "other"})
-    page = render(report((scene(),), figures=(alone, gone)))
-    assert page.count("Nothing of it was computed.") == 2
-
-
-def test_a_report_without_figures_has_no_section_of_them() -> None:
-    assert 'id="figures"' not in page_of(TWO)
-    assert EULER["map"] in page_of(THREE)

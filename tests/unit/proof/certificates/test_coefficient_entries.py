@@ -186,7 +186,7 @@ def test_another_size_has_no_certificate(size: str, reason: str) -> None:
 
 
 def test_no_interval_is_made_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(written, "_HALVED", 0)
+    monkeypatch.setattr(written, "_MOST_HALVINGS", 0)
     with pytest.raises(InputError, match=r"sqrt\(2\) is in no interval that is found"):
         of_sizes("sqrt(2)")
 

@@ -227,7 +227,7 @@ def test_the_step_that_left_the_range_is_found_again(name: str, step: int) -> No
     ]
     assert places
     for place in places:
-        found = again(changed(of, place, lambda own: own + step), "run", place[1])
+        found = again(changed(of, place, lambda number: number + step), "run", place[1])
         columns = [x.column for x in found.differences]
         assert columns == ["failed_step"] or (step < 0 and columns == ["status"])
 

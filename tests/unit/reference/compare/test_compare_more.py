@@ -17,16 +17,10 @@ from tests.helpers.programs.submitted_programs import (
 )
 from tests.unit.reference.compare.test_compare import CORNER, ORIGIN, named, of, single
 from verify.reference.compare.comparison import compare
-from verify.reference.compare.published_data import Published, load
+from verify.reference.compare.published_data import Published
 from verify.reference.compare.run_mistakes import state_mistakes
 from verify.reference.compare.setting import OrbitPoints, Setting
 from verify.reference.compare.submitted_table import read
-from verify.reference.make.data_folder import PUBLISHED
-
-
-@pytest.fixture(scope="module")
-def ours() -> Published:
-    return load(PUBLISHED, "duffing")
 
 
 def leapfrog(q: Any, p: Any, order: Any, sign: int) -> Program:

@@ -94,20 +94,20 @@ def holds(cell: Rounded | None, value: Fraction) -> bool:
 
 
 @pytest.fixture(scope="module", params=[task(), heiles()], ids=["plane", "degrees"])
-def asked(request: pytest.FixtureRequest) -> OrbitTask:
+def orbit(request: pytest.FixtureRequest) -> OrbitTask:
     return request.param
 
 
 @pytest.fixture(scope="module")
-def cells(asked: OrbitTask) -> Cells:
+def cells(orbit: OrbitTask) -> Cells:
     """Every number by its step and name, and what it is by hand."""
-    by_hand = in_the_plane if asked.scheme == "lie2" else in_degrees
+    by_hand = in_the_plane if orbit.scheme == "lie2" else in_degrees
     numbers: Cells = {}
-    for point in points(asked):
+    for point in points(orbit):
         assert (point.status, point.kind) == ("finished", "enclosed")
         for name, value in by_hand(point.step).items():
-            own = getattr(point, name)
-            pairs = zip(own, value, strict=True) if isinstance(value, list) else [(own, value)]
+            cell = getattr(point, name)
+            pairs = zip(cell, value, strict=True) if isinstance(value, list) else [(cell, value)]
             numbers |= {(point.step, f"{name}{k}"): pair for k, pair in enumerate(pairs, start=1)}
     return numbers
 
@@ -118,8 +118,8 @@ def test_every_number_is_the_exact_one_rounded(cells: Cells) -> None:
         assert holds(cell, value), place
 
 
-def test_a_neighbouring_value_would_not_hold(asked: OrbitTask, cells: Cells) -> None:
-    off = Fraction(100, 10**asked.digits)
+def test_a_neighbouring_value_would_not_hold(orbit: OrbitTask, cells: Cells) -> None:
+    off = Fraction(100, 10**orbit.digits)
     for place, (cell, value) in cells.items():
         if value:
             assert not holds(cell, value * (1 + off)), place

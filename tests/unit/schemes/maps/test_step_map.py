@@ -351,7 +351,7 @@ def test_an_error_planted_in_a_lie_map_is_refuted_whatever_its_field_has_made(et
 def test_delta_j_of_two_degrees_is_the_determinants_however_many_terms_it_has(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("verify.schemes.maps.step_map._MOST_FACTORED", -1)
+    monkeypatch.setattr("verify.schemes.maps.step_map._MOST_FACTORED_TERMS", -1)
     text = "p1**2/2 + p2**2/2 + q1**4/4 + q1**2*q2 + q2**2/2"
     step_map = schemes.get("lie2").step_map(Hamiltonian.parse(text))
     assert step_map.delta_j_text == to_text(step_map.delta_j) != "0"

@@ -1,5 +1,4 @@
-"""The change of ∮ p·dq, in the plane, in time and in n degrees of freedom: exact values, Stokes'
-theorem, maps that keep it, and planted errors."""
+"""The change of ∮ p·dq: exact values, Stokes' theorem, maps that keep it, and planted errors."""
 
 from collections.abc import Callable
 from dataclasses import replace

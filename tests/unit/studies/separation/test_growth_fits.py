@@ -8,7 +8,13 @@ from statistics import mean, stdev
 
 import pytest
 
-from verify.studies.separation.growth_fits import find_crossover, fit_growth, select_log_spaced
+from verify.studies.separation.growth_fits import (
+    classify_motion,
+    find_crossover,
+    fit_growth,
+    fit_power_law,
+    select_log_spaced,
+)
 
 POINTS = 2048
 MARKS = [10 * k for k in range(1, POINTS + 1)]
@@ -85,6 +91,41 @@ def test_log_spaced_indices_are_spread_and_hold_both_ends() -> None:
     assert chosen == sorted(set(chosen))
     assert (chosen[0], chosen[-1], len(chosen)) == (0, 999, 10)
     assert select_log_spaced([3, 4], [30, 40], 10) == [3, 4]
+
+
+# -- powers of N, beside the motion's -------------------------------------------------------------
+
+STEPS = tuple(range(4, 2049, 4))
+
+
+@pytest.mark.parametrize(("power", "name"), [(0, "bounded"), (1, "N"), (2, "N²")])
+def test_a_power_is_found_under_an_oscillation(power: int, name: str) -> None:
+    sizes = [Fraction(n**power * (2 + math.sin(n))) for n in STEPS]
+    law = fit_power_law(STEPS, sizes, Fraction(0), "polynomial")
+    assert law.name == name
+    assert law.exponent == pytest.approx(power, abs=0.2)
+
+
+@pytest.mark.parametrize("power", [0.5, 1.5, 3])
+def test_what_is_near_no_whole_power_is_undecided(power: float) -> None:
+    sizes = [Fraction(n**power) for n in STEPS]
+    assert fit_power_law(STEPS, sizes, Fraction(0), "polynomial").name == "undecided"
+
+
+def test_nothing_is_fitted_to_noise_to_little_or_to_what_grows_exponentially() -> None:
+    sizes = [Fraction(n) for n in STEPS]
+    assert fit_power_law(STEPS, sizes, Fraction(10**6), "polynomial").exponent is None
+    assert fit_power_law(STEPS[:20], sizes[:20], Fraction(0), "polynomial").exponent is None
+    assert fit_power_law(STEPS, sizes, Fraction(0), "exponential").name == "exponential"
+    assert fit_power_law(STEPS, [Fraction(0)] * 512, Fraction(0), "exponential").name == "bounded"
+
+
+def test_a_power_of_the_tangent_map_is_not_taken_for_an_exponential() -> None:
+    linear = [Fraction(4 + n * n) for n in STEPS]
+    assert classify_motion(STEPS, linear) == "polynomial"
+    assert classify_motion(STEPS, [Fraction(4)] * len(STEPS)) == "undecided", "it has not grown"
+    squares = [Fraction(math.exp(n / 100)) for n in STEPS]
+    assert classify_motion(STEPS, squares) == "exponential"
 
 
 # -- crossovers -----------------------------------------------------------------------------------

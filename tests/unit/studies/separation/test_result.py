@@ -8,13 +8,15 @@ from typing import Any
 import pytest
 
 from verify.errors import InputError
+from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.requested_run import run
-from verify.scenes.results.separation import SeparationGrid, SeparationResult
+from verify.scenes.results.separation import SeparationGrid
 from verify.studies.separation.truncation_and_rounding import count_steps, separate, separate_grid
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+HENON = systems.get("henon-heiles").hamiltonian({})
 AT = {"q": "1.5", "p": "1/3", "step_size": "0.001"}
 SIZES = ["0.0005", "0.001", "0.002", "0.005"]
 
@@ -27,20 +29,32 @@ def test_a_result_survives_json_and_is_frozen() -> None:
         grid.points[0].steps = 3  # type: ignore[misc]
 
 
-def ended(found: SeparationResult) -> tuple[str, int | None, bool]:
-    return found.status, found.failed_step, found.plain is None
+LEAVING: dict[str, tuple[Hamiltonian, str, Any, Any, Any, int, int]] = {
+    "an escape": (Hamiltonian.parse("p**2/2 - q**4"), "lie2", "1.5", 0, 1, 90, 6),
+    "a start beyond float64": (PENDULUM, "lie2", "1e400", 0, 1, 9, 1),
+    "no real power": (Hamiltonian.parse("p**2/2 + q**(3/2)"), "lie2", "-1", 0, 1, 9, 1),
+    "henon-heiles": (HENON, "lie2", ["0.9", "0.9"], ["0.1", "0.2"], "0.05", 2000, 121),
+    "no solution": (
+        Hamiltonian.parse("p1**2/2 + p2**2/2 - q1**4/4 - q2**4"),
+        "implicit-midpoint", [3, 3], [3, 3], "0.5", 100, 1,
+    ),
+}  # fmt: skip
 
 
-def test_a_run_that_blows_up_has_one_clear_answer() -> None:
-    escaping = Hamiltonian.parse("p**2/2 - q**4")
-    found = separate(escaping, "lie2", q="1.5", p=0, step_size=1, steps=90)
-    other = run(escaping, "lie2", q="1.5", p=0, step_size=1, steps=90)
-    assert ended(found) == ("left range", other.failed_step, True)
-    assert ended(separate(PENDULUM, "lie2", q="1e400", p=0, step_size=1, steps=9)) == (
-        "left range", 1, True)  # fmt: skip
-    undefined = Hamiltonian.parse("p**2/2 + q**(3/2)")
-    assert ended(separate(undefined, "lie2", q="-1", p=0, step_size=1, steps=9)) == (
-        "left range", 1, True)  # fmt: skip
+@pytest.mark.parametrize(
+    ("hamiltonian", "scheme", "q", "p", "h", "steps", "failed_step"), LEAVING.values(), ids=LEAVING
+)
+def test_a_run_that_leaves_the_range_says_at_which_step_as_it_does_alone(
+    hamiltonian: Hamiltonian, scheme: str, q: Any, p: Any, h: Any, steps: int, failed_step: int
+) -> None:
+    at = {"q": q, "p": p, "step_size": h}
+    left = separate(hamiltonian, scheme, **at, steps=steps)
+    assert (left.status, left.failed_step, left.plain) == ("left range", failed_step, None)
+    observed = "lambda" if hamiltonian.planar else "symplectic_defect"
+    alone = run(hamiltonian, scheme, **at, steps=steps, observables=(observed,))
+    assert alone.failed_step == failed_step
+    if failed_step > 1:
+        assert separate(hamiltonian, scheme, **at, steps=failed_step - 1).status == "finished"
 
 
 def test_the_closed_form_is_left_out_where_a_determinant_is_negative() -> None:
@@ -50,20 +64,36 @@ def test_the_closed_form_is_left_out_where_a_determinant_is_negative() -> None:
     assert found.closed_form is None
 
 
+PLANE: dict[str, Any] = {"hamiltonian": DUFFING, **AT}
+DEGREES: dict[str, Any] = {
+    "hamiltonian": HENON, "q": ["0.3", "-0.1"], "p": ["0.1", "0.2"], "step_size": "0.1",
+}  # fmt: skip
+FIVE: dict[str, Any] = {
+    "hamiltonian": systems.get("fput").hamiltonian({"n": 5, "alpha": 1, "beta": 1}),
+    "q": [0] * 5, "p": [1] * 5, "step_size": "0.1",
+}  # fmt: skip
 BAD: dict[str, tuple[dict[str, Any], str]] = {
-    "h": ({"step_size": 0}, "step_size=0"),
-    "steps": ({"steps": 0}, "steps=0"),
-    "digits": ({"digits": 0}, "digits=0"),
-    "float64": ({"arithmetic": "float64"}, "arithmetic=float64: is what is examined"),
-    "arithmetic": ({"arithmetic": "decimal"}, "arithmetic=decimal: unknown"),
-    "q": ({"q": "nan"}, "q=nan"),
+    "h": (PLANE | {"step_size": 0}, "step_size=0"),
+    "steps": (PLANE | {"steps": 0}, "steps=0"),
+    "digits": (PLANE | {"digits": 0}, "digits=0"),
+    "float64": (PLANE | {"arithmetic": "float64"}, "arithmetic=float64: is what is examined"),
+    "arithmetic": (PLANE | {"arithmetic": "decimal"}, "arithmetic=decimal: unknown"),
+    "q": (PLANE | {"q": "nan"}, "q=nan"),
+    "degrees-h": (DEGREES | {"step_size": 0}, "step_size=0"),
+    "degrees-steps": (DEGREES | {"steps": 0}, "steps=0"),
+    "degrees-float64": (DEGREES | {"arithmetic": "float64"}, "is what is examined"),
+    "degrees-q": (DEGREES | {"q": ["0.3"]}, "has 1 of 2 numbers"),
+    "five-degrees": (FIVE, "is for up to 4 degrees of freedom"),
 }
 
 
-@pytest.mark.parametrize(("changes", "named"), BAD.values(), ids=BAD)
-def test_bad_input_is_named_before_anything_runs(changes: dict[str, Any], named: str) -> None:
-    with pytest.raises(InputError, match=re.escape(named)):
-        separate(DUFFING, "lie2", **{**AT, "steps": 10, **changes})
+@pytest.mark.parametrize(("arguments", "named"), BAD.values(), ids=BAD)
+def test_bad_input_is_named_in_one_line_before_anything_runs(
+    arguments: dict[str, Any], named: str
+) -> None:
+    with pytest.raises(InputError, match=re.escape(named)) as error:
+        separate(**{"scheme": "lie2", "steps": 10, **arguments})
+    assert "\n" not in str(error.value)
 
 
 GRIDS: dict[str, tuple[dict[str, Any], str]] = {

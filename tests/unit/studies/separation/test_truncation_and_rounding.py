@@ -1,6 +1,5 @@
-"""Truncation and rounding of Λ: bits of the real kernel, planted errors, what is exactly zero."""
+"""Truncation and rounding of Λ and of W: bits of the real kernel, planted errors, digits."""
 
-import math
 import re
 from collections.abc import Callable
 from fractions import Fraction
@@ -8,18 +7,17 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.sampled.separations import area_chains
+from tests.helpers.sampled.separations import area_chains, chain_of
 from tests.paths import vectors
+from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
-from verify.arithmetic.systems import fixed, mpfr
+from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import run_alone
-from verify.runs.requested_run import run
 from verify.studies.separation import mixed_kernel as separation_kernel
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
-from verify.studies.separation.determinants import WORKING, Determinants
-from verify.studies.separation.links import LinksOnDemand
+from verify.studies.separation.links import LinksOnDemand, separate_chains
 from verify.studies.separation.mixed_kernel import mixed_kernel
 from verify.studies.separation.mixed_run import MixedRun
 from verify.studies.separation.truncation_and_rounding import separate
@@ -27,16 +25,10 @@ from verify.studies.separation.truncation_and_rounding import separate
 VECTORS = vectors()
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
-HARMONIC = Hamiltonian.parse("p**2/2 + omega**2*q**2/2", {"omega": "7/3"})
+HENON = systems.get("henon-heiles").hamiltonian({})
+DRIVEN = systems.get("driven-henon-heiles").hamiltonian({"epsilon": "1/10", "omega": "7/5"})
 AT = {"q": "1.5", "p": "1/3", "step_size": "0.001"}
-
-
-def chain_of(
-    hamiltonian: Hamiltonian, scheme: str, steps: int = 300, name: str = "plain", **start: Any
-) -> Chain:
-    at = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000), **start}
-    found: Chain = getattr(area_chains(hamiltonian, scheme, at, steps, 17, "mpfr"), name)
-    return found
+AT_2: dict[str, Any] = {"q": ["0.3", "-0.1"], "p": ["0.1", "0.2"], "step_size": "0.1"}
 
 
 def finals(chain: Chain) -> dict[str, Fraction]:
@@ -71,14 +63,23 @@ def test_a_long_run_is_asked_for_enough_digits_at_once(
     assert scheme != "lie2" or formats == [("fixed", 140)]
 
 
-def test_the_working_value_is_what_run_reports_for_float64() -> None:
-    found = separate(DUFFING, "lie2", **AT, steps=2000)
-    reported = run(DUFFING, "lie2", **AT, steps=2000, observables=("lambda", "lambda_plain"))
-    assert found.plain is not None
-    error = Fraction(found.plain.parts.lambda_working.value) - Fraction(
-        reported.values["lambda_plain"].value
-    )
-    assert abs(error) <= Fraction(reported.values["lambda_plain"].bound)
+@pytest.mark.parametrize(
+    ("hamiltonian", "start", "steps", "way", "observable"),
+    [
+        (DUFFING, {"p": "1/3", "q": "3/2", "h": "1/1000"}, 2000, "plain", "lambda_plain"),
+        (HENON, {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}, 300,
+         "closed_form", "symplectic_defect"),
+    ],
+    ids=["plane", "degrees"],
+)  # fmt: skip
+def test_the_working_value_is_that_of_a_float64_run_bit_for_bit(
+    hamiltonian: Hamiltonian, start: dict[str, str], steps: int, way: str, observable: str
+) -> None:
+    at = {name: Fraction(x) for name, x in start.items()}
+    chains = getattr(run_alone(separate_chains(hamiltonian, "lie2", at, steps, 17)), way)
+    kernel_run = KernelRun(hamiltonian, "lie2", at, steps, frozenset({observable}), 0)
+    value = kernel_run.run(number_systems.get("float64", 17)).values[observable]
+    assert max(abs(chain.final("lambda_working")[0]) for chain in chains) == value
 
 
 @pytest.mark.left_to_ci
@@ -95,56 +96,57 @@ def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
             assert abs(x - y) <= dx + dy <= abs(x) / 10**16, name
 
 
-# -- what is exactly zero, and known so -----------------------------------------------------------
+# -- in n degrees of freedom ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["plain", "closed_form"])
-def test_a_map_of_determinant_1_has_no_truncation_nor_what_follows_from_it(name: str) -> None:
-    chain = chain_of(PENDULUM, "symplectic-euler", name=name, h=Fraction(5, 2))
-    for part in ("truncation", "input", "trajectory"):
-        assert chain.final(part) == (0, 0)
-    assert chain.kind == "enclosed"
-    value, bound = chain.final("determinant")
-    assert (value == 0) == (name == "closed_form"), "det − 1 is rounded, a ΔJ of 0 is not"
-    assert bound <= abs(value) / 10**15
+@pytest.mark.parametrize(
+    ("hamiltonian", "scheme", "steps", "t0"),
+    [
+        (HENON, "stormer-verlet", 60, 0),
+        (HENON, "implicit-midpoint", 60, 0),
+        (HENON, "gauss4", 60, 0),
+        (DRIVEN, "gauss4", 20, "1/3"),
+    ],
+    ids=["stormer-verlet", "implicit-midpoint", "gauss4", "driven-gauss4"],
+)
+def test_of_what_is_symplectic_by_proof_all_of_w_is_rounding(
+    hamiltonian: Hamiltonian, scheme: str, steps: int, t0: str | int
+) -> None:
+    result = separate(hamiltonian, scheme, **AT_2, steps=steps, t0=t0)
+    assert (result.status, result.arithmetic) == ("finished", "mpfr")
+    assert result.plain is not None
+    assert result.closed_form is not None
+    parts = result.plain.parts
+    for part in (parts.truncation, parts.input, parts.trajectory):
+        assert not any(map(any, part.exact))
+    assert any(map(any, parts.total.exact)), "float64 rounds its Jacobians"
+    assert 0 < abs(parts.total.largest) < 1e-13
+    assert not any(map(any, result.closed_form.parts.w_working.exact))
+    assert result.closed_form.error_kind == "enclosed"
+    assert "S ≡ 0" in str(result.tangent.meaning)
 
 
-def test_a_constant_delta_j_has_no_trajectory_part_and_a_closed_truncation() -> None:
-    chain = chain_of(HARMONIC, "lie2", steps=1000)
-    x = Fraction(7, 3) / 1000
-    exact = (1 + x**4 / 4) ** 1000 - 1
-    value, bound = chain.final("truncation")
-    assert abs(value - exact) <= bound < exact / 10**30
-    assert chain.final("trajectory") == (0, 0)
-    assert chain.final("input")[0] != 0, "7/3 and 1/1000 are rounded"
-    assert chain.kind == "enclosed"
-
-
-@pytest.mark.parametrize("q", [Fraction(3, 2), Fraction(1, 10)])
-def test_inputs_that_float64_has_exactly_have_no_input_part(q: Fraction) -> None:
-    chain = chain_of(DUFFING, "lie2", h=Fraction(1, 1024), p=Fraction(-1, 4), q=q)
-    assert (chain.final("input") == (0, 0)) == (q == Fraction(3, 2))
-    assert chain.final("input")[0] != 0 or q == Fraction(3, 2)
-
-
-def test_after_one_step_the_trajectory_has_no_part_yet() -> None:
-    assert chain_of(DUFFING, "lie2", steps=1).final("trajectory") == (0, 0)
-    assert chain_of(DUFFING, "lie2", steps=2).final("trajectory")[0] != 0
-
-
-def test_a_determinant_of_1_for_the_exact_parameter_alone_is_not_carried_over() -> None:
-    """3a − 1 vanishes at a = 1/3, and not at the float64 next to it."""
-    hamiltonian = Hamiltonian.parse("p**2/2 + (3*a - 1)*p*q**2", {"a": "1/3"})
-    chain = chain_of(hamiltonian, "lie2", steps=50)
-    assert chain.final("truncation") == (0, 0)
-    assert chain.final("input")[0] != 0
-
-
-def test_the_closed_forms_sum_loses_nothing_to_the_number_of_steps() -> None:
-    """Without what the two-sum keeps, 5000 additions lose some 30 times as much."""
-    chain = chain_of(DUFFING, "lie2", steps=5000, name="closed_form")
-    largest = max(abs(x) for x in chain.trail("lambda_working")[0])
-    assert max(abs(x) for x in chain.trail("product")[0]) <= 2 * math.ulp(float(largest))
+@pytest.mark.left_to_ci
+@pytest.mark.sample(2)
+@pytest.mark.parametrize(
+    ("system", "parameters", "scheme", "q", "p"),
+    [
+        ("kepler", {"mu": 1}, "lie2", ["2/5", "0"], ["0", "2"]),
+        ("magnetic", {"b": 1, "k": 1, "c": 1}, "lie4", ["0", "3/4"], ["1/2", "0"]),
+        ("fput", {"n": 4, "alpha": "1/4", "beta": "1/2"}, "rk4", ["0.1", "0", "0", "0"], ["0"] * 4),
+    ],
+)
+def test_named_systems_are_separated(
+    system: str, parameters: dict[str, Any], scheme: str, q: list[str], p: list[str]
+) -> None:
+    exact = systems.get(system).hamiltonian(parameters)
+    result = separate(exact, scheme, q=q, p=p, step_size="0.01", steps=15)
+    assert result.status == "finished"
+    assert result.closed_form is not None
+    parts = result.closed_form.parts
+    assert abs(parts.truncation.largest) > abs(parts.total.largest)
+    entry = parts.truncation.entry(0, 1)
+    assert -entry == parts.truncation.entry(1, 0)
 
 
 # -- planted errors -------------------------------------------------------------------------------
@@ -199,36 +201,6 @@ def test_a_planted_error_shows_in_its_own_part_alone(
 
 
 # -- bounds ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("made", [mpfr.at_bits(60), fixed.at_bits(112)], ids=["mpfr", "fixed"])
-@pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
-def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
-    hamiltonian: Hamiltonian, made: Arithmetic
-) -> None:
-    start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
-    kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
-    working = MixedRun(Determinants(), kernel_run, follow=True)
-    coarse, fine = (
-        run_alone(working.step_through(x, lambda _: None)) for x in (made, mpfr.at_bits(300))
-    )
-    for name in ("trajectory", "factors", "closed_factors"):
-        (x,), (y,) = getattr(coarse, name), getattr(fine, name)
-        assert x.kind == y.kind == "enclosed"
-        error = max(abs(a - b) for a, b in zip(x.trail, y.trail, strict=True))
-        assert 0 < error <= x.bound <= 10**5 * error, name
-
-
-def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
-    """Λ grows beyond ½ here, and the counted bound speaks of less."""
-    chain = chain_of(DUFFING, "lie1", steps=100, h=Fraction(1, 20))
-    assert max(map(abs, chain.links[2].trail)) > Fraction(1, 2)
-    assert chain.links[2].kind == chain.links[3].kind == "estimated"
-    start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 20)}
-    finer = area_chains(DUFFING, "lie1", start, 100, 40, "mpfr").plain
-    for name in QUANTITIES:
-        (x, dx), (y, dy) = chain.final(name), finer.final(name)
-        assert abs(x - y) <= dx + dy, name
 
 
 @pytest.mark.left_to_ci

@@ -2,13 +2,16 @@
 
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import verify
 from tests.helpers.constructed.scenes import load
 from verify.commands.shared.input import load_target
 from verify.errors import InputError
 from verify.execution.plan import plan_of
+from verify.scenes.scene import scene_from
 from verify.scenes.stability_sections import Stability, StabilityMap
 from verify.studies.kinds.stability import need_stability, stability_tasks
 from verify.studies.tasks_of_scenes import plan_scenes
@@ -109,6 +112,40 @@ def test_bad_cases_are_refused_in_one_line(
     with pytest.raises(InputError, match=message) as info:
         load(tmp_path, HEAD + CASES.replace(old, new))
     assert "\n" not in str(info.value)
+
+
+def largest(system: str, parameters: dict[str, Any], **section: Any) -> dict[str, Any]:
+    """A scene that asks for one largest step."""
+    scene = {"system": system, "parameters": parameters, "schemes": ["rk4"]}
+    return scene | {"largest_step": [{"time": 1} | section]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"energy_error": "0"}, "energy_error=0: must be greater than 0"),
+        ({"initial_value": {"q": 1, "p": 0}}, "p=0: has 1 of 2 numbers"),
+    ],
+)
+def test_a_bad_largest_step_in_two_degrees_is_refused(
+    changes: dict[str, Any], message: str
+) -> None:
+    section = {"initial_value": {"q": [0, "0.1"], "p": [0, 0]}, **changes}
+    with pytest.raises(InputError, match=message):
+        scene_from(largest("henon-heiles", {}, **section), "mine")
+
+
+def test_the_form_is_carried_in_up_to_four_degrees_of_freedom() -> None:
+    start = {"q": ["0.1"] * 5, "p": [0] * 5}
+    chain: Any = "fput", {"n": 5, "alpha": "1/4", "beta": 0}
+    with pytest.raises(InputError, match="up to 4 degrees of freedom"):
+        scene_from(largest(*chain, initial_value=start, symplectic_defect="0.1"), "mine")
+    scene_from(largest(*chain, initial_value=start), "mine")
+
+
+def test_a_start_of_another_length_is_refused_in_a_call_too() -> None:
+    with pytest.raises(InputError, match=r"^q=0: has 1 of 2 numbers"):
+        verify.stability("henon-heiles", "rk4", step_size="0.1", time=1, q=[0], p=[0, 0])
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def ends(motion: RunMotion, k: int) -> Sequence[Fraction]:
 def test_one_point_beyond_a_bound_is_enough_and_one_on_it_is_not(
     motion: RunMotion, k: int, end: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("verify.studies.stability.run_motion._ENERGY", 10**9)
+    monkeypatch.setattr("verify.studies.stability.run_motion._ENERGY_FACTOR", 10**9)
     for trail in (motion.float64, motion.precise):
         on, away = ends(motion, k)[end], (-1, 1)[end] * Fraction(1, 10**40)
         assert motion.stays(changed(trail, 20, k, on))
@@ -126,5 +126,5 @@ def test_a_motion_that_rests_for_a_few_steps_only_has_not_died(
     )
     trail, period = motion.precise, motion.orbit.period
     assert period is not None
-    assert run_motion.is_at_rest(motion, trail.onwards(trail.point(-1), run_motion._FEW))
+    assert run_motion.is_at_rest(motion, trail.onwards(trail.point(-1), run_motion._FEW_STEPS))
     assert run_motion.has_died(motion, trail, period) is died

@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
 from verify.arithmetic.exact import rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.run_domain import NumberOrList, point_of
 from verify.studies.stability import verdict_on_run as blame
 from verify.studies.stability.rounded_start import nearest_equilibrium
 from verify.studies.stability.run_motion import RunMotion
@@ -19,37 +21,43 @@ PENDULUM = "p**2/2 - cos(q)"
 CUBIC = "p**2/2 + q**2/2 - q**3/3"
 QUARTIC = "p**2/2 + q**4/4"
 EXPONENTIAL = "p**2/2 + exp(q) + exp(-q)"
+HENON_HEILES = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3"
+INVERTED = "(p1**2 + p2**2 - q1**2 - q2**2)/2"
+PLANE, DEGREES = ("1",), (["0", "0.1"], ["0.4", "0"])  # of energy 0.085, regular
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620")
 
 
 def case(
-    text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0"
+    text: str, scheme: str, h: str, steps: int, q: NumberOrList, p: NumberOrList = "0"
 ) -> StabilityRun:
-    at = q if isinstance(q, Fraction) else rational(q)
-    return StabilityRun(Hamiltonian.parse(text), scheme, rational(h), (rational(p), at), steps)
+    exact = Hamiltonian.parse(text)
+    state = tuple(point_of(exact, q, p).values())
+    return StabilityRun(exact, scheme, rational(h), state, steps)
 
 
-def judged(*given: object) -> RunJudgement:
-    return judge(RunMotion(case(*given)))  # type: ignore[arg-type]
+def judged(*run: Any) -> RunJudgement:
+    return judge(RunMotion(case(*run)))
 
 
 # -- the scheme -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("scheme", "below", "above"),
+    ("text", "scheme", "start", "steps", "below", "above"),
     [
-        ("stormer-verlet", "1.9", "2.05"),
-        ("symplectic-euler", "1.9", "2.05"),
-        ("lie4", "2.7", "2.9"),
-        ("lie3", "1.7", "1.8"),
+        (HARMONIC, "stormer-verlet", PLANE, 3000, "1.9", "2.05"),
+        (HARMONIC, "symplectic-euler", PLANE, 3000, "1.9", "2.05"),
+        (HARMONIC, "lie4", PLANE, 3000, "2.7", "2.9"),
+        (HARMONIC, "lie3", PLANE, 3000, "1.7", "1.8"),
+        (HENON_HEILES, "stormer-verlet", DEGREES, 28, "0.1", "2.1"),
     ],
+    ids=["stormer-verlet", "symplectic-euler", "lie4", "lie3", "degrees-stormer-verlet"],
 )
 def test_beyond_its_linear_limit_the_scheme_is_to_blame(
-    scheme: str, below: str, above: str
+    text: str, scheme: str, start: tuple[Any, ...], steps: int, below: str, above: str
 ) -> None:
-    assert judged(HARMONIC, scheme, above, 3000, "1").kind == "unstable: scheme"
-    assert judged(HARMONIC, scheme, below, 3000, "1").kind in ("stable", "drifts")
+    assert judged(text, scheme, above, steps, *start).kind == "unstable: scheme"
+    assert judged(text, scheme, below, steps, *start).kind in ("stable", "drifts")
 
 
 def test_the_step_at_which_the_scheme_leaves_is_that_of_exact_arithmetic() -> None:
@@ -66,9 +74,21 @@ def test_the_step_at_which_the_scheme_leaves_is_that_of_exact_arithmetic() -> No
     assert found.step == step
 
 
-def test_a_scheme_with_a_wrong_sign_is_to_blame_and_not_float64() -> None:
-    wrong = "p_next = p + h*q; q_next = q + h*p"
-    assert judged(HARMONIC, wrong, "0.01", 2000, "1").kind == "unstable: scheme"
+WRONG_SIGN = "p_next = p + h*q; q_next = q + h*p"
+
+
+@pytest.mark.parametrize(
+    ("text", "scheme", "h", "steps", "start"),
+    [(HARMONIC, WRONG_SIGN, "0.01", 2000, PLANE), (HENON_HEILES, "euler", "0.1", 600, DEGREES)],
+    ids=["plane", "degrees"],
+)
+def test_a_scheme_that_leaves_is_to_blame_and_not_before_it_has_left(
+    text: str, scheme: str, h: str, steps: int, start: tuple[Any, ...]
+) -> None:
+    left = judged(text, scheme, h, steps, *start)
+    assert left.kind == "unstable: scheme"
+    assert left.step is not None
+    assert judged(text, scheme, h, 100, *start).kind != "unstable: scheme"
 
 
 # -- rounding -------------------------------------------------------------------------------------
@@ -98,11 +118,21 @@ def test_the_equilibrium_that_is_near_is_found_and_no_other() -> None:
 # -- the exact solution ---------------------------------------------------------------------------
 
 
-def test_an_exact_solution_that_leaves_is_nobodys_fault() -> None:
-    found = judged(CUBIC, "stormer-verlet", "0.01", 1000, "3/2")
-    assert found.kind == "escapes"
-    assert found.detail == "the exact solution blows up at t = 3.14159"
-    assert judged(CUBIC, "stormer-verlet", "0.01", 100, "3/2").kind == "stable"
+@pytest.mark.parametrize(
+    ("text", "h", "steps", "fewer", "start", "detail"),
+    [
+        (CUBIC, "0.01", 1000, 100, ("3/2",), "blows up at t = 3.14159"),
+        (INVERTED, "0.1", 400, 10, (["1", "0"], ["0", "1"]),
+         "is 1e+06 times as far out as z0 at t = 40"),
+    ],
+    ids=["plane", "degrees"],
+)  # fmt: skip
+def test_an_exact_solution_that_leaves_is_nobodys_fault(
+    text: str, h: str, steps: int, fewer: int, start: tuple[Any, ...], detail: str
+) -> None:
+    left = judged(text, "stormer-verlet", h, steps, *start)
+    assert (left.kind, left.detail) == ("escapes", f"the exact solution {detail}")
+    assert judged(text, "stormer-verlet", h, fewer, *start).kind == "stable"
 
 
 def test_a_scheme_that_leaves_a_well_is_not_excused_by_the_escape_beyond_it() -> None:
@@ -165,11 +195,19 @@ def test_a_periodic_orbit_of_the_scheme_is_no_motion_that_died() -> None:
     assert judged(DUFFING, "stormer-verlet", "1", 1000, "1").kind == "stable"
 
 
-def test_a_motion_that_dies_drifts() -> None:
-    found = judged(HARMONIC, "lie3", "1", 2000, "1")
-    assert found.kind == "drifts"
-    assert found.rate is not None
-    assert found.rate < 0
+@pytest.mark.parametrize(
+    ("text", "scheme", "h", "steps", "start"),
+    [(HARMONIC, "lie3", "1", 2000, PLANE), (HENON_HEILES, "lie4", "0.1", 1000, DEGREES)],
+    ids=["plane", "degrees"],
+)
+def test_a_motion_that_loses_energy_on_and_on_drifts(
+    text: str, scheme: str, h: str, steps: int, start: tuple[Any, ...]
+) -> None:
+    """The first dies, the other is still near the exact one."""
+    lossy = judged(text, scheme, h, steps, *start)
+    assert lossy.kind == "drifts"
+    assert lossy.rate is not None
+    assert lossy.rate < 0
 
 
 # -- nothing --------------------------------------------------------------------------------------

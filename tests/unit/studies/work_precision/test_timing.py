@@ -60,9 +60,10 @@ def test_a_short_call_is_repeated_until_its_timing_is_long_enough(
     clock = Clock(monkeypatch)
     (found,) = time_interleaved([clock.call("a", 1000)], 1)
     assert found == RunTime(1e-6, 1e-6)
-    shorter = timing._LEAST / 4  # those before, which were too short
-    assert 1e-6 * len(clock.seen) >= timing._LEAST + shorter
-    assert timing._LEAST >= 1000 * timing._RESOLVED, "well above the timer's resolution"
+    shorter = timing._LEAST_SECONDS / 4  # those before, which were too short
+    assert 1e-6 * len(clock.seen) >= timing._LEAST_SECONDS + shorter
+    resolution = timing._COARSEST_RESOLUTION
+    assert 1000 * resolution <= timing._LEAST_SECONDS, "well above the timer's resolution"
 
 
 def test_what_a_blank_call_takes_is_subtracted_and_nothing_becomes_negative() -> None:

@@ -20,16 +20,16 @@ from verify.runs.requested_run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
-_ONE_IN = 2  # one in so many samples, and not those that are taken apart
+_TESTED_ONE_IN = 2  # `separated_parts_add_up` tests the others
 _DIGITS = 30
-_COMPILED = 997  # of so many samples one is run in a number system that compiles
+_COMPILING_ONE_IN = 997  # the samples for number systems that compile a kernel, which takes long
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
 def holds(sample: Sample) -> None:
     """Check one number system; W is computed from the tangent map of the run, not summed."""
-    only_if(sample.is_turn(_ONE_IN, after=1) and sample.short)
-    name = _turn(sample)
+    only_if(sample.is_turn(_TESTED_ONE_IN, after=1) and sample.short)
+    name = _select_number_system(sample)
     expected = _enclose_values(sample)
     outcome = _run(sample, name, number_systems.about(name).digits or _DIGITS)
     for quantity, value in outcome.values.items():
@@ -39,11 +39,11 @@ def holds(sample: Sample) -> None:
             raise Violation(f"{quantity} is {printed} in {name}, and truly {true}")
 
 
-def _turn(sample: Sample) -> str:
+def _select_number_system(sample: Sample) -> str:
     """Select the number system to test; those that compile each kernel get few samples."""
-    seldom = sample.turn % _COMPILED == 0
+    seldom = sample.turn % _COMPILING_ONE_IN == 0
     names = [n for n in number_systems.names() if number_systems.about(n).compiles == seldom]
-    return names[sample.turn // (_COMPILED if seldom else _ONE_IN) % len(names)]
+    return names[sample.turn // (_COMPILING_ONE_IN if seldom else _TESTED_ONE_IN) % len(names)]
 
 
 def _enclose_values(sample: Sample) -> dict[str, Ball]:

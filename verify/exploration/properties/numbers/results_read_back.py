@@ -13,7 +13,7 @@ from verify.scenes.toml_file import toml_data
 from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.maps.parts import parts_of
 
-_LONGEST = 15  # terms of a map
+_MAX_TERMS = 15  # of a map
 
 
 def holds(sample: Sample) -> None:
@@ -44,7 +44,7 @@ def _must_be_same(sample: Sample) -> None:
 
 def _must_be_same_map(sample: Sample) -> None:
     parts = parts_of(sample.step_map)
-    if parts is None or parts[-1].length > _LONGEST:
+    if parts is None or parts[-1].length > _MAX_TERMS:
         return
     closed, names = parts[-1], [f"{name}_next" for name in sample.point]
     texts = [to_text(closed.ring.expression(x)) for x in closed.elements]

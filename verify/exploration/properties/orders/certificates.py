@@ -1,8 +1,8 @@
 """The certificate of a proof is accepted by its checker, and refused with one number changed.
 
 The number is one of the leading coefficient, or of the first power of h in a coordinate's new
-value. One sample in
-a few is looked at, as the checker works with plain dictionaries.
+value. Only one sample in ten is checked, as the checker, which works with plain dictionaries, is
+slow.
 """
 
 import json
@@ -15,15 +15,15 @@ from verify.exploration.sample import Sample
 from verify.proof.certificates.certification import certify_for_one_h
 from verify.proof.certificates.checker import check
 
-_LONGEST = 20_000  # characters of a certificate that is checked here
+_MAX_CHARACTERS = 20_000  # of a certificate; longer ones take long to check
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=10) and sample.in_closed_form)
     with silent_at(InputError):  # such a map, or such functions, have no certificate
         data = certify_for_one_h(sample.proof, sample.potential)
-    only_if(len(json.dumps(data)) <= _LONGEST)
-    if sample.hamiltonian.planar:  # whose certificates have a form of their own
+    only_if(len(json.dumps(data)) <= _MAX_CHARACTERS)
+    if sample.hamiltonian.planar:  # certificates in the plane have another form
         _must_be_checked(data, data["leading"], {n: data[n] for n in ("p_next", "q_next")})
     else:
         leading = data["leading"][0][2] if data["leading"] else []
@@ -54,7 +54,7 @@ def _must_be_checked(
 
 
 def _refusal(data: dict[str, Any]) -> str:
-    """Return why the checker refuses the certificate; empty if it accepts it."""
+    """Return the reason why the checker refuses the certificate; "" if it accepts it."""
     try:
         check(data)
     except ValueError as error:

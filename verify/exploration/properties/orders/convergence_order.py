@@ -1,8 +1,8 @@
 """The error of one step against the exact flow shrinks as the proved order of convergence says.
 
-The flow is followed by extrapolation, which knows nothing of Taylor series in h; the step is
-enclosed by balls. Both step sizes are tiny, so that the order shows sharply. At some points the
-order is higher; where it is so at the initial value, it is not at one beside it.
+The flow is followed by extrapolation, which uses no Taylor series in h; the step is enclosed by
+balls. Both step sizes are tiny, so that the order shows sharply. At some points the order is
+higher; if it is so at the initial value, a neighbouring point is tried.
 """
 
 from collections.abc import Mapping
@@ -16,9 +16,9 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 
 _STEP = Fraction(1, 2**96)
-_BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
-_DIGITS_A_BIT = Fraction(30103, 100000)
-_TOLERANCE = Fraction(1, 10)  # of a whole order
+_BITS_PER_POWER, _SPARE_BITS, _LOST_BITS = 96, 200, 60
+_DIGITS_PER_BIT = Fraction(30103, 100000)
+_ORDER_TOLERANCE = Fraction(1, 10)
 _NEIGHBOUR_SHIFT = Fraction(3, 70)
 Point = Mapping[str, Fraction]
 
@@ -40,14 +40,14 @@ def holds(sample: Sample) -> None:
 def _must_reach(orders: Mapping[str, Ball | None], order: int) -> None:
     """Raise Violation if the order of an error is lower."""
     for name, ball in orders.items():
-        if ball is not None and ball < rational_ball(order - _TOLERANCE):
+        if ball is not None and ball < rational_ball(order - _ORDER_TOLERANCE):
             message = f"the step's error in {name} has order {float(ball.mid()):.2f}"
             raise Violation(f"{message}, and should have {order} at least")
 
 
 def _passes(orders: Mapping[str, Ball | None], order: int) -> bool:
     """Return True if the orders of the errors in all coordinates are higher."""
-    limit = rational_ball(order + _TOLERANCE)
+    limit = rational_ball(order + _ORDER_TOLERANCE)
     return all(ball is None or ball > limit for ball in orders.values())
 
 
@@ -68,19 +68,19 @@ def _power(large: Ball, small: Ball) -> Ball:
 
 def _error(sample: Sample, start: Point, order: int) -> dict[str, Ball]:
     """Return step minus flow in each coordinate, as balls; Silent if one of them is unknown."""
-    bits = _BITS_A_POWER * (order + 3) + _SPARE
+    bits = _BITS_PER_POWER * (order + 3) + _SPARE_BITS
     after = ball_steps(sample.step_map, start, 1, bits)[-1]
-    flow = sample.flow(int(bits * _DIGITS_A_BIT))
+    flow = sample.flow(int(bits * _DIGITS_PER_BIT))
     arithmetic = flow.arithmetic
     with silent_at(NoFlowError), arithmetic.context():
         end = flow.advance(flow.state(start), arithmetic.number(start["h"]))
     with working_precision(bits):
         return {
-            name: after.point[name] - _with_error(arithmetic.exact(x), bits - _LOST)
+            name: after.point[name] - _with_error(arithmetic.exact(x), bits - _LOST_BITS)
             for name, x in zip(sample.point, end, strict=False)
         }
 
 
 def _with_error(x: Fraction, bits: int) -> Ball:
-    """Enclose a value that the flow gives to so many bits."""
+    """Enclose a value of the flow that has that number of right bits."""
     return make_ball(x, (1 + abs(x)) / 2**bits)

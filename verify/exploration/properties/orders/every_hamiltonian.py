@@ -11,8 +11,8 @@ from verify.proof.proof_for_one_h import Proof
 from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-# Of a scheme that is proved for every H here; in 3 degrees such a proof takes seconds, once.
-_MOST_ORDER = {AREA: 4, SYMPLECTIC: 3}
+# The orders up to which a scheme is proved for every H; with 3 degrees this takes seconds, once.
+_MAX_ORDER = {AREA: 4, SYMPLECTIC: 3}
 
 
 @lru_cache(maxsize=128)
@@ -21,13 +21,13 @@ def _prove_every(scheme: str, timed: bool, degrees: int) -> ProofForEveryH:
 
 
 def holds(sample: Sample) -> None:
-    scheme, limit = sample.scheme, _MOST_ORDER[sample.hamiltonian.structure]
+    scheme, limit = sample.scheme, _MAX_ORDER[sample.hamiltonian.structure]
     only_if(scheme.every_h is not None and scheme.order <= limit and sample.ordinary)
     with silent_at(LimitError):
         general = _prove_every(scheme.name, sample.depends_on_time, sample.hamiltonian.degrees)
     only_if(general.verdict is Verdict.PROVED)
     contradiction = _contradiction(general, sample.proof)
-    # Where the leading coefficient for every H vanishes for this one, another one leads.
+    # If the leading coefficient for every H vanishes for this one, another one leads.
     if general.telescopes and sample.proof.order == general.order and _telescopes(sample) is False:
         contradiction = contradiction or "the leading coefficient does not telescope"
     if contradiction:
@@ -45,9 +45,10 @@ def _telescopes(sample: Sample) -> bool | None:
 
 
 def _contradiction(general: ProofForEveryH, proof: Proof) -> str:
-    """Describe how the proof for one H contradicts that for every H; empty if it does not.
+    """Describe how the proof for one H contradicts that for every H; "" if it does not.
 
-    Both are about S, which in the plane is ΔJ·Ω. An order None is beyond all examined ones.
+    Both are about S, which in the plane is ΔJ·Ω. The order None means that it is higher than all
+    that were examined.
     """
     if general.symplectic and proof.symplectic is False:
         return f"S has order {proof.order}"

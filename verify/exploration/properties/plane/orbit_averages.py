@@ -1,7 +1,7 @@
 """Along a closed orbit the time average of H + X(p q) is H: what is a derivative averages to 0.
 
-Only one sample in many is tested, as its orbit has to be followed until it closes, and none with an
-H that depends on time, whose orbits close by chance.
+Only one sample in 16 is tested, as its orbit has to be followed until it closes, and none with an H
+that depends on time, whose orbits close by chance only.
 """
 
 from fractions import Fraction
@@ -15,7 +15,8 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
 
 _DIGITS = 12
-_SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
+# Relative to the averaged values: it is added to the bound of the average, which is an estimate.
+_BOUND_TOLERANCE = Fraction(1, 10**9)
 
 
 def holds(sample: Sample) -> None:
@@ -30,6 +31,6 @@ def holds(sample: Sample) -> None:
     at_start = require_value(enclose(ring, field.energy, sample.start, 200))
     expected = midpoint_and_radius(at_start)[0]
     size = 1 + abs(expected) + Fraction(max(map(abs, mean.values), default=0.0))
-    if abs(mean.value - expected) > mean.bound + _SPARE * size:
+    if abs(mean.value - expected) > mean.bound + _BOUND_TOLERANCE * size:
         message = f"{decimal(mean.value, 12)} ± {decimal(mean.bound, 3)}"
         raise Violation(f"the average is {message}, and H is {decimal(expected, 12)}")

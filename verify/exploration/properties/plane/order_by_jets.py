@@ -1,8 +1,8 @@
 """ΔJ's order and leading coefficient are those that the proof for every H gives, put in this H.
 
-For every H the partial derivatives of H are free variables (jets); for this one ΔJ is expanded
-itself. The two share no code but the polynomials' own. Of an H that depends on time, whose jets are
-many, `lieη` alone is looked at.
+For every H the partial derivatives of H are free variables (jets); for this H, ΔJ itself is
+expanded. The two share no code except the polynomials. If H depends on time there are many jets,
+and only the Lie-derivative schemes `lieη` are tested.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from verify.algebra.jets import Jets, Poly, Series
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.property import only_if, require_value
-from verify.exploration.reference_steps import BITS, must_overlap, sharp
+from verify.exploration.reference_steps import BITS, is_narrow, must_overlap
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import (
     BySeries,
@@ -26,13 +26,13 @@ from verify.schemes.conditions.every_hamiltonian import (
 )
 from verify.schemes.scheme import Scheme
 
-_MOST_ORDER = 5  # of a scheme: with more there are too many jets
+_MAX_ORDER = 5  # schemes of a higher order need too many jets
 
 
 def holds(sample: Sample) -> None:
     scheme = sample.scheme
     only_if(_has_series_in_jets(sample))
-    only_if(scheme.order <= _MOST_ORDER and sample.ordinary)
+    only_if(scheme.order <= _MAX_ORDER and sample.ordinary)
     proof = sample.proof
     only_if(proof.area_preserving is not None)
     jets, coefficients = _coefficients_for_every_hamiltonian(
@@ -42,7 +42,7 @@ def holds(sample: Sample) -> None:
     for n, x in enumerate(coefficients, start=1):
         expected = _value(x, derivatives)
         coefficient = _leading(sample) if n == proof.order else flint.arb(0)
-        only_if(sharp(coefficient) and sharp(expected))
+        only_if(is_narrow(coefficient) and is_narrow(expected))
         quantity = f"the coefficient of h^{n} in ΔJ is at the initial value"
         must_overlap(quantity, coefficient, expected, ", by jets")
         if n == proof.order:

@@ -1,9 +1,9 @@
 """Truncation and the kinds of rounding add up exactly to the Λ that float64 gives.
 
-That Λ is, bit for bit, what the float64 kernel gives without the separation; of an H in time where
-float64's own clock, t ← t + h, rounds nothing, as the kernel's is t₀ + k h. The truncation part is
-the Λ that balls enclose, with the input part it is that at inputs rounded to float64, and with the
-clock part that at the times of float64's own clock.
+This Λ is, bit for bit, that of the float64 kernel without the separation. If H depends on time,
+this holds only if the clock t ← t + h of the separation rounds nothing, as the kernel's is
+t₀ + k h. The truncation part is the Λ that balls enclose; together with the input part it is Λ at
+inputs rounded to float64, and with the clock part Λ at the times of float64's own clock.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,8 @@
 """The run of H = H1(p1, q1) + H2(p2, q2) + … is that of each plane by itself, and so is S.
 
-H is taken without its couplings. J consists of the blocks of the planes' maps: S has ΔJ of each
-plane on its diagonal and nothing else, det J is their product, and W_N is Λ of each. Balls decide,
-or runs if the step is implicit.
+H is taken without its couplings. J consists of the blocks of the planes' maps: S has the entry ΔJ
+of each plane for its pair (p_k, q_k), and 0 elsewhere; det J is the product of their determinants;
+W, the defect of the run, has the Λ of each plane. Balls decide, or runs if the step is implicit.
 """
 
 from collections.abc import Sequence

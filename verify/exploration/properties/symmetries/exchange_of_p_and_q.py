@@ -1,6 +1,6 @@
 """With p and q exchanged, the step for −H(q, p) is that for H(p, q) with p' and q' exchanged.
 
-Asked of schemes that treat p and q alike.
+It is checked for schemes that treat p and q alike.
 """
 
 from fractions import Fraction

@@ -1,6 +1,6 @@
 """In other canonical coordinates M z, det M = 1, the step for H∘M⁻¹ is the image of that for H.
 
-Schemes that step p and q by turns are asked for M that scales p and q only.
+For schemes that advance p and q in turn, M only scales p and q.
 """
 
 from verify.exploration.equivariance import (
@@ -19,6 +19,6 @@ def holds(sample: Sample) -> None:
 
     For schemes that advance q and p in turn, M must not mix q and p.
     """
-    only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
+    only_if(sample.is_turn(one_in=2, after=1))  # `time_scaling` tests the others
     matrix = symplectic if knows_no_coordinates(sample) else coordinate_change
     must_be_same_steps(sample, CoordinateChange(matrix(sample.turn, sample.hamiltonian.degrees)))

@@ -1,7 +1,7 @@
 """For quadratic H, det J = R(x)·R(−x) with x² = −h² det Hess H, R the scheme's stability function.
 
-That is |R(iωh)|² where the orbits are ellipses, and R(λh)·R(−λh) where they are hyperbolas. All of
-J is tested, for the quadratic part of H at the initial value with rounded coefficients.
+It is |R(iωh)|² if the orbits are ellipses, and R(λh)·R(−λh) if they are hyperbolas. All entries of
+J are tested, for the quadratic part of H at the initial value with rounded coefficients.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 
-_UNIT = 100  # coefficients are whole multiples of 1/100
+_COEFFICIENT_DENOMINATOR = 100
 
 
 def holds(sample: Sample) -> None:
@@ -83,7 +83,15 @@ def _form(sample: Sample) -> list[list[Fraction]]:
             require_value(enclose(field.ring, x, sample.start, 128)) for x in field.gradient(a)
         ]
         only_if(all(abs(x) < 10**6 for x in values))
-        rows.append([Fraction(round(midpoint_and_radius(x)[0] * _UNIT), _UNIT) for x in values])
+        rows.append(
+            [
+                Fraction(
+                    round(midpoint_and_radius(x)[0] * _COEFFICIENT_DENOMINATOR),
+                    _COEFFICIENT_DENOMINATOR,
+                )
+                for x in values
+            ]
+        )
     return rows
 
 

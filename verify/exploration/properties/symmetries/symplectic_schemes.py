@@ -1,9 +1,9 @@
 """A scheme that claims det J ≡ 1 has it: by the proof, and by J's four entries at a point.
 
-In n degrees of freedom it has S ≡ 0, and the entries of S are checked. If the step is implicit, J
-is that of two steps, by differences of runs; in the plane the product of the determinants in a
-kernel is checked, too. The digits may not suffice to solve the equations: a result that changes
-with twice as many digits, or has none, does not count against the scheme.
+In n degrees of freedom it has S = JᵀΩJ − Ω ≡ 0, and the entries of S are checked. If the step is
+implicit, J is that of two steps, by differences of runs; in the plane the product of the
+determinants in a kernel is checked, too. The digits may not suffice to solve the equations: a
+result that changes with twice as many digits does not count against the scheme.
 """
 
 from fractions import Fraction
@@ -25,14 +25,16 @@ from verify.exploration.sample import Sample
 from verify.scenes.observables import carries
 from verify.structures import AREA, SYMPLECTIC
 
-_LOOKED_AT = {AREA: attrgetter("ordinary"), SYMPLECTIC: attrgetter("brief")}
+_APPLIES = {AREA: attrgetter("ordinary"), SYMPLECTIC: attrgetter("brief")}
 _BITS_OF_DIFFERENCES = 700
-_SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
+# Of Π det J − 1: if H is steep, the entries of J lose twenty digits in a step.
+_PRODUCT_TOLERANCE = Fraction(1, 10**30)
 
 
 def holds(sample: Sample) -> None:
+    """Check the proof and the entries of S."""
     only_if(sample.scheme.area_preserving)
-    only_if(_LOOKED_AT[sample.hamiltonian.structure](sample))
+    only_if(_APPLIES[sample.hamiltonian.structure](sample))
     if sample.ordinary and sample.proof.symplectic is False:
         raise Violation(f"the proof says that S has order {sample.proof.order}")
     if sample.step_map.implicit:
@@ -55,9 +57,12 @@ def _check_by_runs(sample: Sample) -> None:
         raise Violation(f"W is {greatest.str(6)} after two steps, by differences of runs")
     if carries(sample.hamiltonian, "lambda_plain"):
         end = end_of(sample, "lambda_plain")
-        change, small = end["lambda_plain"], _SMALL * (1 + sum(abs(end[n]) for n in sample.point))
+        change, small = (
+            end["lambda_plain"],
+            _PRODUCT_TOLERANCE * (1 + sum(abs(end[n]) for n in sample.point)),
+        )
         if abs(change) > small:
-            # Twice as many digits decide if the equations were solved, or if the map is at fault.
+            # Twice as many digits decide if the equations were not solved, or if the map is wrong.
             accurate_end = end_of(sample, times=2)
             only_if(all(abs(x - end[name]) <= small for name, x in accurate_end.items()))
             raise Violation(f"Π det J − 1 is {decimal(change, 6)} after two steps")

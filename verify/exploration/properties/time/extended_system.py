@@ -13,7 +13,7 @@ from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.property import Silent, only_if, require_value
-from verify.exploration.reference_steps import BITS, ball_steps, must_overlap, sharp
+from verify.exploration.reference_steps import BITS, ball_steps, is_narrow, must_overlap
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.conditions.splitting_conditions import Splitting
@@ -28,7 +28,7 @@ def holds(sample: Sample) -> None:
         expected = _step(sample)
     state = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
     for name, true in zip(sample.point, expected, strict=False):
-        only_if(sharp(true))
+        only_if(is_narrow(true))
         must_overlap(f"{name}' is", state.point[name], true, ", with t as a coordinate")
 
 

@@ -1,7 +1,9 @@
 """For an H that is periodic in t, a step from a period later is the same step, whatever its size.
 
-The sample's own step size is tested, and a whole period, after which H is as before. The property
-applies where t occurs in sin and cos of ω t + φ alone, with a single ω.
+Two step sizes are tested: that of the sample, and then the period itself, after which H is the same
+function of p and q. The property applies if t occurs only in sin and cos of ω t + φ, with a single
+ω, and if the balls of each step are narrow enough for a comparison; after a step with wide balls,
+no other step is tested.
 """
 
 from collections.abc import Sequence
@@ -19,9 +21,9 @@ from verify.exploration.reference_steps import (
     BITS,
     BallState,
     ball_steps,
+    is_narrow,
     must_overlap,
     overlap,
-    sharp,
     take_step,
 )
 from verify.exploration.sample import Sample
@@ -29,41 +31,52 @@ from verify.functions.function import CIRCLE
 
 
 def holds(sample: Sample) -> None:
-    """Compare the steps one period apart, with their Jacobians."""
+    """Compare the steps one period apart, with their Jacobians.
+
+    Raises Violation if they differ, and Silent if the property does not apply.
+    """
     only_if(sample.brief)
-    frequency = require_value(_frequency(*sample.slopes))
+    ring, slopes = sample.slopes
+    frequency = require_value(_frequency(ring, slopes))
+    # The states after 0 steps: the start alone, as balls.
     start = ball_steps(sample.step_map, sample.start, 0)[0]
     with working_precision(BITS):
         period = 2 * flint.arb.pi() / rational_ball(abs(frequency))
         later = replace(start, point=start.point | {"t": start.point["t"] + period})
-        for size in (rational_ball(sample.step_size), period):
-            _must_be_alike(*(take_step(sample.step_map, x, size) for x in (start, later)))
+        for step_size in (rational_ball(sample.step_size), period):
+            _must_overlap(*(take_step(sample.step_map, x, step_size) for x in (start, later)))
 
 
-def _must_be_alike(one: BallState, other: BallState) -> None:
-    for name, x in one.point.items():
-        y = other.point[name]
-        only_if(sharp(x) and sharp(y))
+def _must_overlap(state: BallState, later_state: BallState) -> None:
+    """Raise Violation if two steps one period apart are disjoint, and Silent if a ball is wide."""
+    for name, x in state.point.items():
+        later_x = later_state.point[name]
+        only_if(is_narrow(x) and is_narrow(later_x))
         if name != "t":
-            must_overlap(f"a period later {name}' is", y, x)
-    if not overlap(one.step_jacobian, other.step_jacobian):
+            must_overlap(f"a period later {name}' is", later_x, x)
+    if not overlap(state.step_jacobian, later_state.step_jacobian):
         raise Violation("a period later J is another")
 
 
 def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
-    """Return ω if t occurs in sin and cos of ω t + φ alone; None otherwise."""
-    # t itself outside of sin and cos is not periodic.
+    """Return ω if t occurs only in sin and cos of ω t + φ, with a single ω; None otherwise.
+
+    `slopes`: p′ and q′, as elements of the ring; t itself is one of its generators.
+    """
+    # With t outside of sin and cos, H is not periodic.
     if any(x.degrees()[ring.places["t"]] > 0 for x in slopes):
         return None
+    # A generator with an argument is a function of others; `inner` is the argument as an element.
     functions = [g for g in ring.generators_in(*slopes) if g.argument is not None]
-    rates = {_rate(ring, g) for g in functions if ring.depends(g.inner, "t")}
-    return rates.pop() if len(rates) == 1 else None
+    frequencies = {_frequency_of(ring, g) for g in functions if ring.depends(g.inner, "t")}
+    # A function that is no sin or cos of ω t + φ contributes None.
+    return frequencies.pop() if len(frequencies) == 1 else None
 
 
-def _rate(ring: Ring, g: Generator) -> Fraction | None:
+def _frequency_of(ring: Ring, g: Generator) -> Fraction | None:
     """Return ω of sin or cos of ω t + φ; None for any other function."""
-    rate = ring.diff(g.inner, "t")
-    if g.kind not in (CIRCLE.odd, CIRCLE.even) or not rate.is_constant():
+    derivative = ring.diff(g.inner, "t")
+    if g.kind not in (CIRCLE.odd, CIRCLE.even) or not derivative.is_constant():
         return None
-    value = rate.leading_coefficient()
+    value = derivative.leading_coefficient()
     return Fraction(int(value.numer()), int(value.denom()))

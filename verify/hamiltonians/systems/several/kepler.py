@@ -22,7 +22,7 @@ from verify.arithmetic.arb import rational_ball
 from verify.hamiltonians.named_system import System
 
 Vector = tuple[Fraction, Fraction]
-_MOST = 200  # Newton steps
+_MAX_NEWTON_STEPS = 200  # Newton steps
 
 
 def is_ellipse(mu: Fraction, q: Vector, p: Vector) -> bool:
@@ -64,7 +64,9 @@ def _anomaly(mean: arb, c: arb, s: arb, e: arb) -> arb:
         return x - c * x.sin() + s * (1 - x.cos()) - mean
 
     x, low, high = mean.mid(), (mean - 2).lower().mid(), (mean + 2).upper().mid()
-    for _ in range(_MOST):  # Newton's method, held between the ends of where the root is
+    for _ in range(
+        _MAX_NEWTON_STEPS
+    ):  # Newton's method, held between the ends of where the root is
         residual = residual_at(x)
         if residual > 0:
             high = x

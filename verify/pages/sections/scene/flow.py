@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 class RegionView:
     """One region and its images.
 
-    `plot` is None if nothing can be drawn; `plots` holds it and, in n degrees of freedom, the
-    projections on the other planes after it.
+    `plots`: that of the region's own plane, and in n degrees of freedom those of the projections on
+    the other planes after it; empty if nothing can be drawn. `plot`: the first of them, or None.
     """
 
     result: FlowResult
@@ -85,16 +85,16 @@ def _title(flow: FlowResult) -> str:
 
 def _describe_region(flow: FlowResult) -> str:
     q, p = map(number, flow.centre)
-    begins = "" if flow.t0 is None else f", from t₀{IS}{number(flow.t0)}"
-    region_text = f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{begins}"
+    start_note = "" if flow.t0 is None else f", from t₀{IS}{number(flow.t0)}"
+    region_text = f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{start_note}"
     if flow.plane is None:
         return region_text
     plane_names = f"q{flow.plane}", f"p{flow.plane}"
     other_coordinates = (
         f"{name}{IS}{number(x)}" for name, x in flow.point.items() if name not in plane_names
     )
-    placed = region_text.replace("(q, p)", "({}, {})".format(*plane_names))
-    return f"{placed}, {', '.join(other_coordinates)}"
+    in_its_plane = region_text.replace("(q, p)", "({}, {})".format(*plane_names))
+    return f"{in_its_plane}, {', '.join(other_coordinates)}"
 
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -122,7 +122,7 @@ def _row(image: FlowImage) -> TableRow:
 
 
 def _projection_areas(image: FlowImage) -> str | Markup:
-    """Return the areas that the region's outline encloses in each plane, with their errors."""
+    """Return the area that the image of the outline encloses in each plane, with its error."""
     projections = image.outlines[0].projections if image.outlines else ()
     return Markup(" ").join(_format_cell(x.area, x.area_error) for x in projections)
 
@@ -131,7 +131,7 @@ def _projection_areas(image: FlowImage) -> str | Markup:
 
 
 def _plots(flow: FlowResult, anchor: str) -> Iterator[Plot]:
-    """Yield the drawings; matplotlib is imported only if there is an image."""
+    """Yield the plots, if there is an image; only then is matplotlib imported."""
     if not flow.before or not any(image.outlines for image in flow.images):
         return
     planes = range(1, len(flow.point) // 2 + 1)
@@ -173,10 +173,10 @@ def _caption(flow: FlowResult, grid: "PanelGrid") -> str:
     if missing_steps:
         notes += f" At N{IS}{join_and(map(whole, missing_steps))} there is no image."
     q, p = grid.axes
-    before = "Grey: before; in" if len(grid.before[0]) > 1 else "In"
+    opening = "Grey: before; in" if len(grid.before[0]) > 1 else "In"
     measure = "whose area is measured" if flow.plane is None else "around which ∮ p·dq is measured"
     return (
-        f"{before} colour: after N steps by each map{exact_note}.{notes} Tinted is "
+        f"{opening} colour: after N steps by each map{exact_note}.{notes} Tinted is "
         f"{region_of(flow)}, {measure}. One scale for {q} and {p} in all panels."
     )
 

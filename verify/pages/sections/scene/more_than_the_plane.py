@@ -1,4 +1,4 @@
-"""The defect of the symplectic form in n degrees of freedom, compared with what det J tells.
+"""The defect S of the symplectic form in n degrees of freedom, compared with det J − 1.
 
 S has n(2n − 1) entries and det J is one number: at its lowest order det J − 1 is the sum of n of
 them. Along a run W = Σ MᵀSM grows with the tangent map M, and Λ = Π det J − 1 does not.
@@ -65,7 +65,7 @@ def _row(point: WorkPoint) -> TableRow:
 
 
 def _compare_orders(scene: SceneResult) -> Iterator[str]:
-    """Yield the schemes whose det J − 1 begins with a higher power of h than S."""
+    """Yield a sentence on each scheme whose det J − 1 begins with a higher power of h than S."""
     for proof in scene.proofs:
         form = proof.form
         if form is None or form.volume_order is None or proof.order is None:
@@ -134,5 +134,5 @@ SECTION = ReportSection(
     title="More than the plane",
     anchor="beyond",
     view=_view,
-    terms=lambda _: legend.OF_FORM,
+    terms=lambda _: legend.FORM_TERMS,
 )

@@ -38,7 +38,7 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
     texts = [f"{name}{IS}{number(x)}" for name, x in _fixed_values(first_map)]
     fixed = f", with {', '.join(texts)}" if texts else ""
-    lines = " Grey lines: the same energy H." if _has_energies(first_map) else ""
+    line_note = " Grey lines: the same energy H." if _has_energies(first_map) else ""
     return OrbitsView(
         anchor=anchor,
         title=title,
@@ -51,7 +51,7 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
             label=f"{lead}. {counts}.",
             caption=(
                 f"Each mark is an orbit in float64{fixed}. It leaves "
-                f"where a coordinate is beyond ±{number(first_map.beyond)}.{lines}"
+                f"where a coordinate is beyond ±{number(first_map.beyond)}.{line_note}"
             ),
         ),
     )
@@ -62,7 +62,7 @@ def _counts(orbit_map: OrbitMapResult) -> str:
 
 
 def _fixed_values(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
-    """Yield the initial values that are the same for all orbits."""
+    """Yield the names and values of the coordinates in which all orbits begin alike."""
     for letter, values in (("q", orbit_map.q), ("p", orbit_map.p)):
         if isinstance(values, tuple):
             for k, x in enumerate(values, start=1):
@@ -86,15 +86,15 @@ def _energy_finding(orbit_map: OrbitMapResult) -> str:
         return f"By {orbit_map.scheme} none leaves."
     if not stay:
         return f"By {orbit_map.scheme} all leave."
-    least, most = (number(short(x)) for x in (min(leave), max(stay)))
+    least_leaving, most_staying = (number(short(x)) for x in (min(leave), max(stay)))
     return (
-        f"By {orbit_map.scheme} the lowest energy that leaves is {least}, the highest that stays "
-        f"{most}."
+        f"By {orbit_map.scheme} the lowest energy that leaves is {least_leaving}, the highest that "
+        f"stays {most_staying}."
     )
 
 
 def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> TableRow:
-    """Return a kind's row: the number of orbits, greatest rate and W, first step of leaving."""
+    """Return the row of a kind: the number of orbits, the greatest rate and W, the first exit."""
     cells = [(i, j) for i, j in orbit_map.places() if orbit_map.kinds[i][j] == kind]
     rates, defects = (
         [x for i, j in cells if (x := rows[i][j]) is not None]

@@ -1,4 +1,4 @@
-"""Orbits where they pass a surface: sentences, a figure, a table."""
+"""Orbits at their passes through a surface: sentences, a figure, a table."""
 
 from fractions import Fraction
 
@@ -32,9 +32,9 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
         select_points,
     )
 
-    way = "upwards" if result.rising else "downwards"
+    direction = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
-    surface_text = f"where {result.coordinate} passes {number(result.value)} {way}"
+    surface_text = f"where {result.coordinate} passes {number(result.value)} {direction}"
     title = f"{orbits} orbits {surface_text}"
     lead = (
         f"{title}, by {join_and(map_name(section.map) for section in result.sections)}, "
@@ -43,9 +43,11 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
     passes = max(len(o.points) for section in result.sections for o in section.orbits)
     drawn_count = count_drawn_looks(result.sections)
     omissions = f" The first {whole(drawn_count)} passes are drawn." * (drawn_count < passes)
-    outside = select_points(result)[1]
-    if outside:
-        omissions += f" Points far out, by orbits that escape, are not drawn: {whole(outside)}."
+    outside_count = select_points(result)[1]
+    if outside_count:
+        omissions += (
+            f" Points far out, by orbits that escape, are not drawn: {whole(outside_count)}."
+        )
     finding = " ".join(map(_finding, result.sections))
     return OrbitsView(
         anchor=anchor,
@@ -71,16 +73,16 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
 
 
 def _finding(sections: MapSections) -> str:
-    """Return a sentence on how far the map's orbits are known, and with what error."""
+    """Return a sentence on the part of the map's orbits that is known, and on its error."""
     orbits = sections.orbits
-    partly_decided = [o for o in orbits if o.known < len(o.points)]
+    partly_known = [o for o in orbits if o.known < len(o.points)]
     error = max((o.error for o in orbits), key=Fraction)
     sentence = f"With {whole(sections.digits)} digits in {sections.arithmetic}, "
     sentence += f"by {map_name(sections.map)},"
     accuracy = f"within {number(error)} (estimated, by a second reckoning)"
-    if not partly_decided:
+    if not partly_known:
         return f"{sentence} every point is known {accuracy}."
-    part = describe_partly_known(orbits, partly_decided, "passes")
+    part = describe_partly_known(orbits, partly_known, "passes")
     return f"{sentence} {part}; what is known is so {accuracy}."
 
 

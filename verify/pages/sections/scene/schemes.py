@@ -26,7 +26,7 @@ class SchemeView:
 
     @property
     def entry(self) -> ContentsEntry:
-        """Its place in the contents."""
+        """Its entry in the contents."""
         return ContentsEntry(self.anchor, Markup("<code>{}</code>").format(self.proof.scheme))
 
 

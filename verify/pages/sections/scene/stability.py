@@ -40,9 +40,9 @@ MEANINGS: dict[Kind, str] = {
 class StabilityView:
     """The view of a scene's stability.
 
-    `kinds`: the verdicts that occur; `bound`: the time over which the largest steps are bounded.
-    `runs`: the visible ones of `count` runs, each with its name and step size, and `excerpt` says
-    which they are. `plots`: each with the number of kinds of run that it shows.
+    `kinds`: the verdicts that occur; `bound`: a phrase on the time over which the motion with the
+    largest steps is bounded; `runs`: the visible ones of `count` runs, each with its name and step
+    size; `excerpt`: a sentence on these; `plots`: each with the number of kinds that it shows.
     """
 
     finding: tuple[str, ...]
@@ -109,7 +109,7 @@ def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]
 
 
 def _name(run: StabilityResult) -> str:
-    """Return the run's id without scene, scheme and step size: section and initial value."""
+    """Return the run's id without scene, scheme and step size: the section and initial value."""
     _, *parts = run.id.split("/")
     implied = (run.scheme, f"h={short(Fraction(run.step_size))}")
     return ", ".join(part for part in parts if part not in implied)
@@ -128,9 +128,9 @@ def _row_of_largest_step(result: LargestStepResult) -> TableRow:
 
 
 def _describe_requirements(result: LargestStepResult) -> str:
-    """Return the requirements on the motion other than to stay bounded."""
+    """Return the limits on the motion besides that it stays bounded, after a comma; "" for none."""
     requirements = (("energy error", result.energy_error), ("|W|", result.symplectic_defect))
-    limits = [f"{quantity} ≤ {number(most)}" for quantity, most in requirements if most]
+    limits = [f"{quantity} ≤ {number(limit)}" for quantity, limit in requirements if limit]
     return f", {' and '.join(limits)}" if limits else ""
 
 
@@ -150,7 +150,6 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[in
     """
     groups = by_key(maps, lambda m: (m.parameter, m.values, m.step_sizes, m.steps, m.q, m.p))
     for index, group in enumerate(groups.values()):
-        # matplotlib takes long to import, and is needed only if there is a map.
         from verify.pages.figures.kind_map_figure import draw_planes
 
         names = join_and(stability_map.scheme for stability_map in group)
@@ -167,20 +166,20 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[in
 
 
 def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
-    """Return the caption, with the counts of a single map; a text alternative has several."""
+    """Return the caption; it has the counts of a single map, but not those of several."""
     first_map = maps[0]
-    limit = ""
+    limit_note = ""
     if any(_is_positive(h) for m in maps for h in m.linear):
-        limit = (
+        limit_note = (
             " The line is where h times the orbit’s greatest frequency reaches the limit of linear "
             "theory."
         )
     never = [m.scheme for m in maps if any(m.linear) and not any(map(_is_positive, m.linear))]
     if never:
-        limit += f" For {join_and(never)} linear theory has no stable step."
+        limit_note += f" For {join_and(never)} linear theory has no stable step."
     return (
         f"Each mark is a run of {whole(first_map.steps)} steps from "
-        f"q = {coordinates(first_map.q)}, p = {coordinates(first_map.p)}.{limit}"
+        f"q = {coordinates(first_map.q)}, p = {coordinates(first_map.p)}.{limit_note}"
         + f" {counts}."
         * (len(maps) == 1)
     )

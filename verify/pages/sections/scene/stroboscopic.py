@@ -28,14 +28,14 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
     from verify.pages.figures.orbit_points_figure import count_drawn_looks, draw_periods
 
     schemes = join_and(section.scheme for section in result.sections)
-    begins = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
+    start_note = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
     orbits = whole(len(result.sections[0].orbits))
     lead = (
         f"{orbits} orbits by {schemes}, looked at {whole(result.periods)} times, every "
-        f"{number(result.period)}{begins}; h{IS}{step(result.step_size)}"
+        f"{number(result.period)}{start_note}; h{IS}{step(result.step_size)}"
     )
     title = f"{orbits} orbits at multiples of T{IS}{number(result.period)}"
-    turn = " q is an angle, and drawn within one turn." * result.q_is_angle
+    angle_note = " q is an angle, and drawn within one turn." * result.q_is_angle
     drawn_count = count_drawn_looks(result.sections, 1)
     omission = f" The first {whole(drawn_count)} periods are drawn." * (
         drawn_count < result.periods
@@ -51,7 +51,9 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
             name=f"points-of-{anchor}",
             lead=lead,
             label=f"{lead}. {finding}",
-            caption=f"A colour an orbit; grey: what more digits do not confirm.{turn}{omission}",
+            caption="A colour an orbit; grey: what more digits do not confirm."
+            + angle_note
+            + omission,
         ),
         source=result.source,
     )
@@ -59,23 +61,23 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
 
 def _finding(result: StroboscopicResult) -> Iterator[str]:
     for section in result.sections:
-        partly_decided = [o for o in section.orbits if o.known < len(o.points) - 1]
+        partly_known = [o for o in section.orbits if o.known < len(o.points) - 1]
         source = f"{section.scheme}: with {whole(section.digits)} digits in {section.arithmetic}"
-        if partly_decided:
-            yield f"{source} {describe_partly_known(section.orbits, partly_decided, 'periods')}."
+        if partly_known:
+            yield f"{source} {describe_partly_known(section.orbits, partly_known, 'periods')}."
         else:
             yield f"{source} every orbit is known to its end."
-        floats = min(o.in_float64 for o in section.orbits)
-        if floats < result.periods:
-            yield f"float64 shows another picture from period {whole(floats + 1)} on."
+        known_in_float64 = min(o.in_float64 for o in section.orbits)
+        if known_in_float64 < result.periods:
+            yield f"float64 shows another picture from period {whole(known_in_float64 + 1)} on."
 
 
 def _rows(result: StroboscopicResult) -> Iterator[TableRow]:
     for section in result.sections:
         for orbit in section.orbits:
-            done = len(orbit.points) - 1
+            period_count = len(orbit.points) - 1  # the first point is the initial state
             cells = (
-                number(orbit.q), number(orbit.p), whole(done), whole(orbit.known),
+                number(orbit.q), number(orbit.p), whole(period_count), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
             yield TableRow(section.scheme, cells, describe_escape(orbit))

@@ -1,4 +1,4 @@
-"""Error against run time: sentences, figures and tables, all from the data."""
+"""Error against run time: sentences, figures and tables."""
 
 import re
 from collections.abc import Iterator
@@ -24,14 +24,14 @@ from verify.scenes.results.work_precision import (
 from verify.structures import AREA, SYMPLECTIC
 
 _HEADS = {AREA: ("order of Λ", "Λ, plain"), SYMPLECTIC: ("order of max |W|", "max |W|")}
-# A count and its unit are joined by a no-break space.
-_UNIT = re.compile(r"(\d) ")
+# The space between a count and its unit, which becomes a no-break space.
+_UNIT_SPACE = re.compile(r"(\d) ")
 
 
 @dataclass(frozen=True)
 class WorkPrecisionView:
     result: WorkPrecisionResult
-    heads: tuple[str, str]  # of two columns: the order of the defect, and the sharper defect
+    heads: tuple[str, str]  # those of two columns: the order of the defect, and a second defect
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
     schemes: tuple[TableRow, ...]
@@ -75,14 +75,14 @@ def _finding(result: WorkPrecisionResult) -> Iterator[str]:
         yield f"{result.rounded_down}."
     points = [point for line in result.lines if not line.peer for point in line.points]
     rounded = sum(point.limited_by == "rounding" for point in points)
-    lost = sum(point.limited_by == "failed" for point in points)
+    failed = sum(point.limited_by == "failed" for point in points)
     if rounded:
         yield (
             f"Of {whole(len(points))} runs, {whole(rounded)} "
             f"{'is' if rounded == 1 else 'are'} limited by rounding: hollow, and in no slope."
         )
-    if lost:
-        yield f"{whole(lost)} {'run' if lost == 1 else 'runs'} left the range of float64."
+    if failed:
+        yield f"{whole(failed)} {'run' if failed == 1 else 'runs'} left the range of float64."
 
 
 def _describe_provenance(result: WorkPrecisionResult) -> str:
@@ -121,7 +121,7 @@ def _format_slope(slope: SlopeResult) -> str:
 def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
-    operations = _UNIT.sub(rf"\1{NBSP}", cost.text)
+    operations = _UNIT_SPACE.sub(rf"\1{NBSP}", cost.text)
     if cost.gradient is None:
         return operations, "–"
     gradient = (
@@ -142,14 +142,14 @@ def _row(point: WorkPoint) -> TableRow:
     if point.limited_by == "failed":
         step_note = f" at step {whole(point.failed_step)}" if point.failed_step else ""
         return TableRow(label, (steps,), f"failed{step_note}: {point.reason}")
-    values = (point.error, point.rounding, point.energy, point.lam, _sharper_defect(point))
+    values = (point.error, point.rounding, point.energy, point.lam, _second_defect(point))
     times = (point.seconds_min, point.seconds_median)
     limit = "its tolerance" if point.limited_by == "tolerance" else point.limited_by
     cells = (*map(known_digits, values), *map(_seconds, times), limit)
     return TableRow(label, (steps, *cells))
 
 
-def _sharper_defect(point: WorkPoint) -> Value | None:
+def _second_defect(point: WorkPoint) -> Value | None:
     """Return Λ by the plain product; in n degrees of freedom max |W|."""
     return point.symplectic_defect or point.lam_plain
 

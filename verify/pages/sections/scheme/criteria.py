@@ -6,7 +6,7 @@ from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.studies.criteria_verdicts import NAMES
 
-CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with the criterion's name
+CriteriaView = tuple[tuple[CriterionResult, str], ...]  # the results, each with a name
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView:

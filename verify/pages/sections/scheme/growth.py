@@ -1,4 +1,4 @@
-"""The growth law of Λ: sentences, a figure and a table, all from the data."""
+"""The growth law of Λ: log(1 + Λ) as a bounded part and a secular one, which grows with T."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class GrowthView:
     plots: tuple[Plot, ...]
     groups: tuple[Group, ...]
     count: int
-    excerpt: str  # says which rows are shown, if not all are
+    excerpt: str  # a sentence on the rows that are shown, if not all are
     provenance: str
 
 
@@ -124,7 +124,7 @@ def _few(value: Fraction) -> str:
 
 
 def _format_share(value: Fraction) -> str:
-    """Return a ratio to two digits: per cent below 1, else a number of times."""
+    """Return a ratio to two digits, as per cent below 1; one of 10 or more as a whole number."""
     if value < 1:
         return f"{number(f'{float(100 * value):.2g}')}{NBSP}%"
     return f"{whole(round(value)) if value >= 10 else f'{float(value):.2g}'} times"
@@ -134,8 +134,7 @@ def _format_share(value: Fraction) -> str:
 
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
-    """Yield the plot of |Λ| predicted and measured, if there are step sizes to compare."""
-    # An orbit needs two step sizes with known digits, or there is no line to draw.
+    """Yield the plot of |Λ| predicted and measured, if an orbit has two step sizes to compare."""
     drawable = select_drawable(laws)
     if not drawable:
         return
@@ -157,7 +156,7 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
 
 
 def select_drawable(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
-    """Return the laws with two drawable predictions or more, reduced to these predictions."""
+    """Return the laws with two drawable predictions or more, without the other predictions."""
     drawable = (
         growth.model_copy(update={"predictions": _drawable_predictions(growth)}) for growth in laws
     )
@@ -165,16 +164,16 @@ def select_drawable(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
 
 
 def _caption(law: AverageResult) -> str:
-    drift = ""
+    drift_note = ""
     if law.by_potential:
-        drift = (
+        drift_note = (
             f", which for this scheme is O({_h(law.power)} T) of it: there the slope is {law.power}"
         )
     return (
         f"(a) Each line is {_h(law.power)} T ⟨g⟩ and the bounded part at the run’s own end. (b) By "
         "what they differ, as a part of the measured Λ. The law’s remainder is O(h) of the secular "
         "part (grey: the slope of h), and beyond that what the slow drift of the energy makes of "
-        f"⟨g⟩{drift}."
+        f"⟨g⟩{drift_note}."
     )
 
 

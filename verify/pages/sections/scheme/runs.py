@@ -1,4 +1,4 @@
-"""The runs of one scheme as a table, and in sentences: arithmetic, certainty, fallbacks."""
+"""The runs of one scheme: a table, and sentences on number systems, bounds and fallbacks."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -24,16 +24,16 @@ from verify.scenes.results.run import RunResult
 
 @dataclass(frozen=True)
 class RunTable:
-    """The runs of one scheme, with a column for each observable, a group for each initial value."""
+    """The runs of one scheme: a column for each observable, a group for each initial value."""
 
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
     count: int
-    excerpt: str  # says which rows are shown, if not all are
+    excerpt: str  # a sentence on the rows that are shown, if not all are
     provenance: str
-    certainty: str  # which of the bounds are rigorous
-    notes: tuple[str, ...]  # where another arithmetic was taken, and which left H's domain
-    proved_columns: tuple[str, ...]  # the columns that a proof gave, for all runs
+    certainty: str  # a sentence on the bounds that are rigorous
+    notes: tuple[str, ...]  # on runs in another number system, and on runs that left H's domain
+    proved_columns: tuple[str, ...]  # those whose values a proof gives for all runs
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
@@ -66,27 +66,27 @@ def _has_failed(run: RunResult) -> bool:
 def _describe_certainty(runs: Sequence[RunResult]) -> str:
     """Return a sentence on how many of the runs are certified."""
     finished = [run for run in runs if run.status == "finished"]
-    certain = sum(run.error_kind == "enclosed" for run in finished)
+    enclosed_count = sum(run.error_kind == "enclosed" for run in finished)
     if not finished:
         return ""
-    if certain == len(finished):
-        subject = "The run is" if certain == 1 else f"All {whole(certain)} runs are"
+    if enclosed_count == len(finished):
+        subject = "The run is" if enclosed_count == 1 else f"All {whole(enclosed_count)} runs are"
         return (
             f"{subject} certified: the error bounds are rigorous (enclosed), so each value is "
             "proved to lie within its bound."
         )
-    if certain == 0:
+    if enclosed_count == 0:
         return "The error bounds are estimates, not certificates."
     return (
-        f"{whole(certain)} of {whole(len(finished))} runs are certified, with rigorous (enclosed) "
-        "error bounds; the bounds of the others are estimates."
+        f"{whole(enclosed_count)} of {whole(len(finished))} runs are certified, with rigorous "
+        "(enclosed) error bounds; the bounds of the others are estimates."
     )
 
 
 def _describe_fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
-    """Yield the reasons for another arithmetic than the requested one, with their runs."""
-    replaced = [run for run in runs if run.fallback]
-    groups = by_key(replaced, lambda run: (run.arithmetic, run.fallback))
+    """Yield sentences on runs in another number system than the requested one, with the reasons."""
+    fallback_runs = [run for run in runs if run.fallback]
+    groups = by_key(fallback_runs, lambda run: (run.arithmetic, run.fallback))
     for (arithmetic, reason), group in groups.items():
         sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in group))
         count = "One run" if len(group) == 1 else f"{whole(len(group))} runs"
@@ -94,7 +94,7 @@ def _describe_fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
 
 
 def _describe_exits(runs: Sequence[RunResult]) -> Iterator[str]:
-    """Yield the runs that leave the domain of H, although the scheme goes on."""
+    """Yield sentences on runs that leave the domain of H, although the scheme continues."""
     for run in (run for run in runs if run.left_domain):
         yield f"From {start(run)}, h = {number(run.step_size)}: {run.left_domain}"
 

@@ -1,4 +1,4 @@
-"""Truncation against rounding in Λ, or in W: sentences, figures, tables."""
+"""Truncation and rounding in Λ, or in W in n degrees of freedom: sentences, figures, tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -49,8 +49,9 @@ from verify.structures import AREA, SYMPLECTIC, Structure
 class SeparationView:
     """The view of a separation.
 
-    `finding`: sentences on all runs, or on the longest one; `growth`: a sentence on how rounding in
-    Λ grows; `growths`: the table of that growth, or of the growth of W.
+    `finding`: sentences on all runs in Λ, or on the longest one in W; `growth`: a sentence on the
+    growth of rounding in Λ; `growths`: the table of that growth, or of the growth of W;
+    `crossovers`: sentences on those in W.
     """
 
     structure: Structure
@@ -105,14 +106,14 @@ def _view_of_form(scene: SceneResult, proof: ProofResult) -> SeparationView | No
     )
 
 
-def _describe_longest_run(rows: Sequence[SeparationInDegrees]) -> Iterator[Markup]:
+def _describe_longest_run(points: Sequence[SeparationInDegrees]) -> Iterator[Markup]:
     """Yield a sentence on the longest run: how W grew, and how the tangent map did."""
-    separated = [point for point in rows if point.tangent]
+    separated = [point for point in points if point.tangent]
     if not separated:
         yield Markup("No run could be separated; the table says why.")
         return
     longest = max(separated, key=lambda point: Fraction(point.step_size) * point.steps)
-    assert longest.tangent is not None  # noqa: S101 - chosen so
+    assert longest.tangent is not None  # noqa: S101 - as `separated` says
     run_text = Markup("Over T = {}, h = {}: ").format(longest.tangent.time, step(longest.step_size))
     yield run_text + prose(longest.tangent.meaning) + Markup(".")
 
@@ -154,9 +155,9 @@ def _rounding_against_truncation(evaluation: AnyEvaluation) -> Markup:
     if gap is None:
         return rounding
     side = "below" if gap > 0 else "above"
-    kind = "bound" if gap > 0 else "bound over"
+    css_class = "bound" if gap > 0 else "bound over"
     return Markup('{} <span class="{}">{:.1f} decades {}</span>').format(
-        rounding, kind, abs(gap), side
+        rounding, css_class, abs(gap), side
     )
 
 
@@ -211,7 +212,7 @@ _CROSSOVER_TERMS = {
 }
 _TERMS = {
     AREA: legend.SEPARATED | _CROSSOVER_TERMS | legend.RAN,
-    SYMPLECTIC: {"W": legend.OF_FORM["W"]} | legend.SEPARATED_FORM | legend.RAN,
+    SYMPLECTIC: {"W": legend.FORM_TERMS["W"]} | legend.FORM_SEPARATION_TERMS | legend.RAN,
 }
 
 

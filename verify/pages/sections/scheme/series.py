@@ -1,4 +1,4 @@
-"""ΔJ and Λ along a run, over time, in a picture with its caption.
+"""ΔJ and Λ along runs, over time: a picture with its caption.
 
 The drawing, and with it matplotlib, is imported only if something is drawn.
 """
@@ -19,7 +19,8 @@ from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
-SeriesView = tuple[tuple[Plot, str], ...]  # each with the part of a paper that it repeats
+# Plots, each with the part of a paper that it repeats.
+SeriesView = tuple[tuple[Plot, str], ...]
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
@@ -27,7 +28,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
 
 
 def _plots(scene: SceneResult, proof: ProofResult, anchor: str) -> Iterator[tuple[Plot, str]]:
-    """Yield a plot for all runs that repeat the same figure with the same step size."""
+    """Yield a plot for all runs with the same step size that repeat the same part of a paper."""
     scheme_series = [run for run in scene.series if run.scheme == proof.scheme and run.series]
     groups = by_key(scheme_series, lambda run: (run.source, run.step_size, run.arithmetic))
     for index, ((source, *_), runs) in enumerate(groups.items()):
@@ -43,8 +44,9 @@ def _over_time(runs: Sequence[RunResult], *, name: str) -> Plot:
     drawn_runs = [run for row in rows for run, _ in row.panels]
     origin = f" from {rows[0].label}" if len(rows) == 1 else ""
     source = f" (for {runs[0].source})" if runs[0].source else ""
-    is_hidden = any(len(row.panels) == 1 for row in rows)
-    quantities = "Λ" if is_hidden else "ΔJ = det J − 1 and Λ"
+    # An orbit has one panel, that of Λ, if the band of ΔJ would fill its own.
+    hides_delta_j = any(len(row.panels) == 1 for row in rows)
+    quantities = "Λ" if hides_delta_j else "ΔJ = det J − 1 and Λ"
     sentences = [
         _describe_bands(
             max(
@@ -52,7 +54,7 @@ def _over_time(runs: Sequence[RunResult], *, name: str) -> Plot:
             )
         ),
         "ΔJ goes up and down within each band, so that its picture would be a rectangle."
-        * is_hidden,
+        * hides_delta_j,
         *(
             sentence
             for start_text, group in by_start.items()
@@ -77,15 +79,18 @@ def _describe_bands(steps: int) -> str:
 
 
 def _describe_ends(runs: Sequence[RunResult], label: str) -> Iterator[str]:
-    """Yield the final values of the longest run, or how it ended."""
+    """Yield a sentence on the last values of the longest run, or on its end."""
     run = max(runs, key=lambda run_of_orbit: run_of_orbit.steps)
     beginning = f"From {label}: the" if label else "The"
     if run.status == "left range":
         steps = whole(run.steps)
         yield f"{beginning} run left the range of {run.arithmetic} before its {steps} steps."
     elif {"delta_j_max", "lambda"} <= set(run.values):
-        top, end = (round_to_few_digits(run.values[key].value) for key in ("delta_j_max", "lambda"))
-        yield f"{beginning} greatest |ΔJ| is {top}; after {whole(run.steps)} steps Λ is {end}."
+        greatest, final = (
+            round_to_few_digits(run.values[key].value) for key in ("delta_j_max", "lambda")
+        )
+        steps = whole(run.steps)
+        yield f"{beginning} greatest |ΔJ| is {greatest}; after {steps} steps Λ is {final}."
 
 
 SECTION = ReportSection(

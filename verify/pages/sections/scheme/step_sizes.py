@@ -1,4 +1,4 @@
-"""The cost of a step size in area: |Λ| and MSE/|Λ| over h."""
+"""The area error against the step size: |Λ| and MSE/|Λ| over h."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -36,7 +36,7 @@ def _plots(
 
     order = proof.order_of_delta_j
     span = f"over {interval(scene.t0, scene.time)}" if scene.time else "over all steps"
-    # Λ is O(h^(order − 1)) by the proof, and O(h^order) if the leading term telescopes.
+    # If ΔJ = O(h^order), Λ is O(h^(order − 1)), or O(h^order) if the leading term telescopes.
     lam_slopes = (order - 1, order) if order is not None and order > 1 else ()
     ratio_slopes = (order, order + 1) if order is not None else ()
     lam = step_size_figures.QuantityPanel(
@@ -47,7 +47,7 @@ def _plots(
     )
     panels = [panel for panel in (lam, ratio) if panel.lines]
     if panels:
-        bound = [_describe_measured_slopes(runs, lam_slopes)] if lam.lines else []
+        slope_sentences = [_describe_measured_slopes(runs, lam_slopes)] if lam.lines else []
         yield captioned_plot(
             lambda: step_size_figures.draw_against_step_size(
                 [
@@ -57,12 +57,14 @@ def _plots(
             ),
             name=f"step-sizes-of-{name}",
             lead=f"{' and '.join(panel.title for panel in panels)} {span} against the step size h",
-            caption=" ".join([*map(_describe_panel, panels), *bound, describe_runs(runs)]),
+            caption=" ".join(
+                [*map(_describe_panel, panels), *slope_sentences, describe_runs(runs)]
+            ),
         )
 
 
 def _describe_panel(panel: "QuantityPanel") -> str:
-    """Return the trend of the panel's lines, how many of them are drawn, and the guides."""
+    """Return sentences on the trend of the panel's lines, on their number and on the guides."""
     from verify.pages.figures.step_size_figures import select_lines
 
     trend, drawn_count = _describe_trend(panel.lines), len(select_lines(panel.lines))
@@ -74,17 +76,19 @@ def _describe_panel(panel: "QuantityPanel") -> str:
 
 def _describe_trend(plotted: Sequence["LogarithmicLine"]) -> str:
     """Return a sentence that says whether the lines rise or fall with h."""
-    steps = [[b - a for (_, a), (_, b) in pairwise(line.points)] for line in plotted]
-    rising = sum(all(s > 0 for s in line) for line in steps)
-    falling = sum(all(s < 0 for s in line) for line in steps)
+    differences = [[b - a for (_, a), (_, b) in pairwise(line.points)] for line in plotted]
+    rising = sum(all(x > 0 for x in line) for line in differences)
+    falling = sum(all(x < 0 for x in line) for line in differences)
     subject = (
-        "The line" if len(steps) == 1 else f"Each of the {len(steps)} lines (one an initial value)"
+        "The line"
+        if len(differences) == 1
+        else f"Each of the {len(differences)} lines (one an initial value)"
     )
-    if rising == len(steps):
+    if rising == len(differences):
         return f"{subject} rises with h."
-    if falling == len(steps):
+    if falling == len(differences):
         return f"{subject} falls as h grows."
-    return f"Of {len(steps)} lines (one an initial value), {rising} rise with h throughout."
+    return f"Of {len(differences)} lines (one an initial value), {rising} rise with h throughout."
 
 
 def _describe_measured_slopes(runs: Sequence[RunResult], guides: Sequence[int]) -> str:

@@ -1,29 +1,31 @@
 """Order conditions of a step as equations between its coefficients of words, over any numbers.
 
-They are of the step itself, or where T is quadratic of its generator; without time also of its
-logarithm. `verify.schemes.conditions.splitting_conditions` decides them in a ring.
+The coefficients are those of the step itself, or if T is quadratic those of its generator; without
+time also those of its logarithm. `verify.schemes.conditions.splitting_conditions` decides the
+equations in a ring.
 
-Where T = p²/(2m), D_n is m_n p²/2, with 1/m = Σ m_n tⁿ, and the bracket of letters is a polynomial
-in p, in the m_n and in the derivatives of the functions V_n(q), which are all free. Some are 0, as
-{V, {V', {V'', p²}}}, and some are equal. A Lie polynomial is Σ y_b b over brackets b of which the
-leading words are the Lyndon words, and its Hamiltonian Σ y_b H_b: that vanishes where so many
-combinations of its coefficients of Lyndon words do as the H_b have rank. The letters of a word go
-with it everywhere, those of D as the powers of the m_n and those of K as the functions V_n; so that
-is linear algebra among the words of the same letters.
+If T = p²/(2m), D_n is m_n p²/2 with 1/m = Σ m_n tⁿ, and a bracket of letters is a polynomial in p,
+the m_n and the derivatives of the functions V_n(q), all of which are free. Some brackets are 0, as
+{V, {V', {V'', p²}}}, and some are equal. A Lie polynomial is Σ y_b b over brackets b whose leading
+words are the Lyndon words, and its Hamiltonian is Σ y_b H_b. If the H_b have rank r, the
+Hamiltonian vanishes if and only if r combinations of the coefficients of Lyndon words do. Only
+words of the same letters combine: a letter D_n is seen in H_b as a factor m_n, and K_n as a
+function V_n.
 
-A step S = Π exp(Σ c_l X_l) is a product of exponentials of letters that do not commute; log S is a
-Lie series, and S agrees with the flow up to h^r where log S is that of the flow up to weight r. A
-Lie element of the free algebra is known by its coefficients of the Lyndon words (Reutenauer, Free
-Lie Algebras, 1993, theorem 5.1). Three kinds of steps are written so:
+Without time, a step S = Π exp(Σ c_l X_l) is a product of exponentials of letters that do not
+commute. Then log S is a Lie series, and S agrees with the flow up to h^r if log S is that of the
+flow up to weight r. A Lie element of the free algebra is determined by its coefficients of the
+Lyndon words (Reutenauer, Free Lie Algebras, 1993, theorem 5.1). There are three kinds of steps:
 
 - `splitting`: kicks and drifts, letters K and D of weight 1, for H = T(p) + V(q);
-- `nystrom`: the same for H = p·M⁻¹p/2 + V(q), where [K, [K, [K, D]]] = 0. The ideal that it
-  generates is divided out: a condition is a combination of Lyndon words that vanishes on it;
+- `nystrom`: the same for H = p·M⁻¹p/2 + V(q), where [K, [K, [K, D]]] = 0. The ideal that
+  this bracket generates is divided out: a condition is a combination of Lyndon words that vanishes
+  on the ideal;
 - `composition`: steps of sizes w of any symmetric method, exp(wY₁ + w³Y₃ + w⁵Y₅ + …), letters 1, 3,
   5, … of those weights (Yoshida 1990; McLachlan 1995).
 
-A step that is the same read backwards has no even weights in log S, since S(h) S(−h) = 1; so its
-conditions of even order hold where those below do (Hairer, Lubich, Wanner, V.3 and III.5).
+A step that is the same read backwards has no even weights in log S, since S(h) S(−h) = 1: if its
+conditions of lower orders hold, so do those of even order (Hairer, Lubich, Wanner, V.3 and III.5).
 """
 
 from collections import defaultdict
@@ -51,17 +53,20 @@ from verify.schemes.conditions.words.words import (
 )
 
 Combination = tuple[tuple[int, Word], ...]
-LETTERS_BY_KIND = {"splitting": "", "nystrom": "", "composition": STEPS}  # with their letters
-# Of nystrom steps fewer conditions would do from weight 8 on: forces of two kinds commute too.
+# The `kinds` of letters that `lyndon` takes, for each kind of table.
+LETTERS_BY_KIND = {"splitting": "", "nystrom": "", "composition": STEPS}
+# For nystrom steps fewer conditions suffice from weight 8 on, as more brackets vanish.
 MOST_ORDER_BY_KIND = {"splitting": 8, "nystrom": 7, "composition": 10}
-_PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
-_MOST_WEIGHT = 8  # of words
+_MOST_GENERAL_WEIGHT = 3  # up to it a quadratic T needs the same conditions as any T
+_MOST_WEIGHT = 8  # limit of the weight of words
 
 
 @dataclass(frozen=True)
 class WordEquation:
-    """A condition on a combination of words' coefficients in the `operator`: the step, its
-    generator or its logarithm."""
+    """A condition: the combination `terms` of words' coefficients has the value `value`.
+
+    The coefficients are those in the `operator`: the step, its generator or its logarithm.
+    """
 
     name: str
     order: int
@@ -77,8 +82,7 @@ class WordEquation:
         return frozenset(x for _, word in self.terms for x in factors(word))
 
     def residual(self, words: StepWords) -> Any:
-        """Return left side − right side; with every sign plus where the step's numbers are
-        bounds."""
+        """Return left side − right side; if `words.bound`, a bound with every sign plus."""
         one = words.ring.one * self.value.numerator / self.value.denominator
         # A bound adds absolute values: left side plus right side.
         total = one if words.bound else -one
@@ -90,7 +94,7 @@ class WordEquation:
 
 
 def residuals_of(equations: Sequence[WordEquation], words: StepWords) -> list[Any]:
-    """Return the residuals of all equations, their words computed together."""
+    """Return the residuals of all equations; their words are computed together."""
     words.prepare(_words_to_prepare(tuple(equations)))
     return [equation.residual(words) for equation in equations]
 
@@ -102,20 +106,19 @@ def _words_to_prepare(equations: tuple[WordEquation, ...]) -> frozenset[Word]:
 
 @cache
 def equations_of_weight(kinetic: Kinetic | None, n: int) -> tuple[WordEquation, ...]:
-    """Return the conditions of weight n for every V and every T of the class; None: without
-    time."""
-    if kinetic is not None and kinetic.quadratic and n > _PLAIN:
-        return tuple(map(_of_generator, combinations(kinetic.timed_letters, n)))
-    return tuple(map(_of_word, lyndon(kinetic.timed_letters if kinetic else "", n)))
+    """Return the conditions of weight n for every V and every T of the class; None: no time."""
+    if kinetic is not None and kinetic.quadratic and n > _MOST_GENERAL_WEIGHT:
+        return tuple(map(_equation_in_generator, combinations(kinetic.timed_letters, n)))
+    return tuple(map(_equation_of_word, lyndon(kinetic.timed_letters if kinetic else "", n)))
 
 
-def _of_word(word: Word) -> WordEquation:
+def _equation_of_word(word: Word) -> WordEquation:
     flow = flow_coefficient(word)
-    return WordEquation(_equation(word, flow), weight(word), ((1, word),), flow)
+    return WordEquation(_equation_text(word, flow), weight(word), ((1, word),), flow)
 
 
-def _of_generator(row: Combination) -> WordEquation:
-    # Of the exact flow the generator has each letter once, and no longer word.
+def _equation_in_generator(row: Combination) -> WordEquation:
+    # The exact flow's generator is the sum of the letters.
     value = sum(n for n, word in row if len(word) == 1)
     name = f"coefficient of {_sum_text(row)} in the generator = {value}"
     return WordEquation(name, weight(row[0][1]), row, Fraction(value), "generator")
@@ -125,10 +128,10 @@ def _sum_text(terms: Combination) -> str:
     return " + ".join(text(word) if n == 1 else f"({n}) {text(word)}" for n, word in terms)
 
 
-def _equation(word: Word, flow: Fraction) -> str:
-    """Return the word's condition; of one letter also as a sum over the parts.
+def _equation_text(word: Word, flow: Fraction) -> str:
+    """Return the text of a word's condition; for one letter also as a sum over the parts.
 
-    >>> _equation((("K", 1),), Fraction(1, 2))
+    >>> _equation_text((("K", 1),), Fraction(1, 2))
     'Σ kicks·time = 1/2, coefficient of K1 = 1/2'
     """
     name = f"coefficient of {text(word)} = {flow}"
@@ -145,10 +148,10 @@ def _equation(word: Word, flow: Fraction) -> str:
 
 @cache
 def combinations(kinds: str, n: int) -> tuple[Combination, ...]:
-    """Return the combinations of weight n that vanish exactly where a Lie polynomial's
-    Hamiltonian does.
+    """Return combinations of weight n that all vanish if and only if the Hamiltonian does.
 
-    `kinds`: those whose time counts, "KD" where m depends on t, "K" where it does not.
+    It is the Hamiltonian of the Lie polynomial with these coefficients. `kinds`: the letters whose
+    time counts: "KD" if m depends on t, else "K".
     """
     by_letters: dict[Word, list[Word]] = defaultdict(list)
     for word in lyndon(kinds, n):
@@ -162,7 +165,8 @@ def _combinations_of_letters(letters: Word, leading: list[Word]) -> Iterator[Com
     monomials = sorted({m for h in hamiltonians for m in h})
     if not monomials:
         return
-    # With C the brackets' coefficients of the words, c = y C; y M = c C⁻¹ M must vanish.
+    # With C the brackets' coefficients of the words, c = y C are those of the Lie polynomial; with
+    # M the brackets' Hamiltonians by monomials, y M = c C⁻¹ M must vanish.
     coefficients = flint.fmpq_mat([[b.words.get(w, 0) for w in leading] for b in brackets])
     values = flint.fmpq_mat([[h.get(m, 0) for m in monomials] for h in hamiltonians])
     echelon, rank = (coefficients.inv() * values).transpose().rref()
@@ -184,7 +188,7 @@ class _Bracket:
     hamiltonian: Poly
 
     def with_letter(self, letter: Letter) -> "_Bracket":
-        """Return [letter, this one]."""
+        """Return the bracket [letter, self]."""
         return _Bracket(bracket(letter, self.words), _poisson(letter, self.hamiltonian))
 
 
@@ -210,8 +214,7 @@ def _brackets(letters: Word) -> tuple[_Bracket, ...]:
 
 
 def _hamiltonian_of_letter(letter: Letter) -> Poly:
-    """Return the Hamiltonian of a letter, in jets: those of ∂_q ∂_tⁿ V by q are as free as those of
-    V_n."""
+    """Return the Hamiltonian of a letter, in jets: ∂_q ∂_tⁿ V, as free as V_n, stands for it."""
     kind, n = letter
     return _jets().variable("p") ** 2 / 2 if kind == "D" else _jets().derivative((0, 1, n))
 
@@ -234,20 +237,21 @@ def _jets() -> JetsInDegrees:
 
 @cache
 def logarithm_equations(kind: str, order: int) -> tuple[WordEquation, ...]:
-    """Return all conditions of orders 1 … `order` for the kind; `order` at most
-    `MOST_ORDER[kind]`."""
+    """Return all conditions of orders 1 … `order` ≤ `MOST_ORDER_BY_KIND[kind]` for the kind."""
     equations = []
     for n in range(1, order + 1):
         words = lyndon(LETTERS_BY_KIND[kind], n)
         # [K, [K, [K, D]]] has weight 4: below that the conditions are those of any splitting.
         if kind == "nystrom" and n > 3:
-            equations += [_of_combination(row, words, n) for row in _modulo_ideal(words, n)]
+            equations += [
+                _equation_of_combination(row, words, n) for row in _modulo_ideal(words, n)
+            ]
         else:
-            equations += [_of_logarithm(kind, word, n) for word in words]
+            equations += [_equation_in_logarithm(kind, word, n) for word in words]
     return tuple(equations)
 
 
-def _of_logarithm(kind: str, word: Word, n: int) -> WordEquation:
+def _equation_in_logarithm(kind: str, word: Word, n: int) -> WordEquation:
     value, kinds = int(n == 1), [letter for letter, _ in word]
     names = {"K": "Σ kicks = 1", "D": "Σ drifts = 1", "1": "Σ w = 1", "3": "Σ w³ = 0"}
     spelling = "Y" + " Y".join(kinds) if kind == "composition" else text(word)
@@ -255,15 +259,15 @@ def _of_logarithm(kind: str, word: Word, n: int) -> WordEquation:
     return WordEquation(name, n, ((1, word),), Fraction(value), "logarithm")
 
 
-def _of_combination(row: Sequence[int], words: Sequence[Word], n: int) -> WordEquation:
+def _equation_of_combination(row: Sequence[int], words: Sequence[Word], n: int) -> WordEquation:
     terms = tuple((factor, word) for factor, word in zip(row, words, strict=True) if factor)
     return WordEquation(f"{_sum_text(terms)} in log S = 0", n, terms, Fraction(0), "logarithm")
 
 
 def _modulo_ideal(words: Sequence[Word], n: int) -> Iterator[tuple[int, ...]]:
-    """Yield a basis of the combinations of Lyndon words that vanish on the ideal's elements."""
+    """Yield a basis of the combinations of these Lyndon words that vanish on the ideal."""
     rows = [[element.get(word, 0) for word in words] for element in _ideal(n)]
-    # flint's nullspace is over ℤ but not primitive: each column is divided by its gcd.
+    # flint's nullspace over ℤ is not primitive: each column is divided by its gcd.
     space, count = flint.fmpz_mat(rows).nullspace()
     for k in range(count):
         column = [int(space[i, k]) for i in range(len(words))]
@@ -272,8 +276,7 @@ def _modulo_ideal(words: Sequence[Word], n: int) -> Iterator[tuple[int, ...]]:
 
 @cache
 def _ideal(n: int) -> tuple[Mapping[Word, int], ...]:
-    """Return elements that span the ideal's part of weight n: brackets of letters with [K, [K,
-    [K, D]]]."""
+    """Return elements that span the ideal of [K, [K, [K, D]]] in weight n ≥ 4."""
     if n == 4:
         nested: Mapping[Word, int] = {(("D", 0),): 1}
         for _ in range(3):

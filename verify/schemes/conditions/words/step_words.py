@@ -1,15 +1,16 @@
 """A step's coefficients of words, and those of its generator.
 
-The step is S = Π exp(a Σ sⁿ X_n) over its parts, in the order in which they are made. As a function
-of h it is the flow of some field that depends on time: h dS/dh = S G, and G = S⁻¹ h dS/dh is a Lie
-series, of the exact flow the letters themselves, K_0 + K_1 + … + D_0 + …. So the step agrees with
-the flow up to h^r where G has no other terms of weights up to r; and where some brackets of letters
-vanish, where the others' coefficients in G do. Of a word G has
+The step is S = Π exp(a Σ sⁿ X_n) over its parts, in the order in which they are applied: a is the
+size and s the time of a part, and X_n is K_n or D_n. As a function of h it is the flow of a field
+that depends on time: h dS/dh = S G, and the generator G = S⁻¹ h dS/dh is a Lie series. For the
+exact flow it is the sum of the letters, K_0 + K_1 + … + D_0 + …. So the step agrees with the flow
+up to h^r if G has no other terms of weights up to r. If some brackets of letters vanish, only the
+coefficients of the others in G must be 0. The coefficient of a word w in G is
 
-    G(w) = weight(w) S(w) − Σ S(u) G(v), over w = u v with neither empty.
+    G(w) = weight(w) S(w) − Σ S(u) G(v), over all w = u v with neither u nor v empty.
 
-A composition of symmetric steps of sizes a is Π exp(a Y_1 + a³ Y_3 + …): the same with s = a, and
-with letters that do not commute.
+A composition of symmetric steps of sizes a is Π exp(a Y_1 + a³ Y_3 + …): the same form with s = a,
+and with letters that do not commute.
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,10 +20,10 @@ from typing import Any, Protocol
 
 from verify.schemes.conditions.words.words import Word, cuts, endings, weight
 
-# The kinds of its letters, "K" or "D", what part of h it takes, and at what part its time; of steps
-# `STEPS`, and the size twice.
+# A part: the kind of its letters, "K" or "D", its size a and its time s. A step of a composition:
+# `STEPS`, and its size as both.
 TimedPart = tuple[str, Any, Any]
-Heads = tuple[tuple[int, int], ...]  # places of heads and of their tails
+Heads = tuple[tuple[int, int], ...]  # the indices of heads and of their tails
 
 
 class WordNumbers(Protocol):
@@ -57,7 +58,10 @@ class PlainNumbers:
 
 
 class StepWords:
-    """The coefficients of words in a step, each computed once. `bound`: with every sign plus."""
+    """The coefficients of words in a step, each computed once.
+
+    `bound`: every minus becomes a plus, so that with |sizes| and |times| the values are bounds.
+    """
 
     def __init__(self, ring: WordNumbers, parts: Sequence[TimedPart], bound: bool = False) -> None:
         self.ring, self.parts, self.bound = ring, parts, bound
@@ -65,15 +69,13 @@ class StepWords:
         self._generators: dict[Word, Any] = {}
 
     def coefficient(self, word: Word) -> Any:
-        """Return the word's coefficient in the step; `prepare` computes those of many words
-        together."""
+        """Return the word's coefficient in the step; `prepare` computes many together faster."""
         if word not in self._coefficients:
             self.prepare([word])
         return self._coefficients[word]
 
     def prepare(self, words: Iterable[Word]) -> None:
-        """Compute the coefficients of all these words and their heads in one pass over the
-        parts."""
+        """Compute the coefficients of these words and their heads in one pass over the parts."""
         requested = frozenset(words)
         if requested <= self._coefficients.keys():
             return
@@ -81,7 +83,8 @@ class StepWords:
         totals: list[Any] = [None if word else ring.one for word in plan.words]
         for kinds, size, time in self.parts:
             shares = _shares(ring, plan.tails[kinds], len(kinds) == 1, size, time)
-            for place, heads in plan.heads[kinds]:  # a head is shorter, and is not yet this part's
+            # Longer words come first: their heads do not yet include this part.
+            for place, heads in plan.heads[kinds]:
                 total = totals[place]
                 for head, tail in heads:
                     before = totals[head]
@@ -104,8 +107,11 @@ class StepWords:
         return self._generators[word]
 
     def logarithm(self, word: Word) -> Any:
-        """Return the word's coefficient in log S, of letters without time: Σ (−1)^(k+1)/k over its
-        cuts into k pieces."""
+        """Return the word's coefficient in log S, for letters without time.
+
+        It is Σ (−1)^(k+1)/k times the product of the coefficients of the pieces, over all cuts of
+        the word into k pieces.
+        """
         size, sign = len(word), 1 if self.bound else -1
         totals: list[Any] = [self.ring.one, *[None] * size]
         total = self.ring.zero
@@ -127,19 +133,23 @@ class StepWords:
 
 @cache
 def factors(word: Word) -> frozenset[Word]:
-    """Return the heads of its tails, whose coefficients `StepWords.generator` reads."""
+    """Return the words whose coefficients `StepWords.generator` reads: tails, and their heads."""
     tails = [word, *(tail for _, tail in cuts(word))]
     return frozenset(x for tail in tails for x in (tail, *(head for head, _ in cuts(tail))))
 
 
-# -- one passage over the parts -------------------------------------------------------------------
+# -- one pass over the parts ----------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class _PassPlan:
-    """A plan for one pass: `words`: those requested and their heads, the longest first; by the
-    kinds of a part's letters `tails`, each after its own head, and `heads`: the places of words
-    that end in such letters, with those of heads and of tails."""
+    """A plan for one pass over the parts.
+
+    `words`: the requested words and their heads, the longest first. By the kind of a part's
+    letters: `tails` in these letters, each after its own beginnings; and `heads`, which for each
+    word that ends in such letters has its index, and the indices of head and tail of each of its
+    splits.
+    """
 
     words: tuple[Word, ...]
     tails: dict[str, tuple[Word, ...]]
@@ -179,7 +189,7 @@ def _make_plan(requested: frozenset[Word], kinds: frozenset[str]) -> _PassPlan:
 
 @cache
 def _head_tail_pairs(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
-    """Return (head, tail) for each tail, not empty, in letters of these kinds."""
+    """Return (head, tail) for each nonempty tail in letters of these kinds."""
     if len(kinds) == 1:
         return endings(word) if word and word[-1][0] == kinds else ()
     return tuple((word[:k], word[k:]) for k in reversed(range(len(word))))
@@ -188,8 +198,11 @@ def _head_tail_pairs(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
 def _shares(
     ring: WordNumbers, tails: Sequence[Word], commute: bool, size: Any, time: Any
 ) -> list[Any]:
-    """Return the coefficients of exp(a Σ sⁿ X_n): Π a sⁿ, divided by the number of its orders, m!
-    for m letters; of commuting letters m! for each alone."""
+    """Return the coefficients of the tails in exp(a Σ sⁿ X_n).
+
+    That of a tail of m letters is Π a sⁿ divided by m!; if letters commute, by the product of m!
+    over its distinct letters, each of which occurs m times.
+    """
     powers = [size]
     for _ in range(max((n for tail in tails for _, n in tail), default=0)):
         powers.append(ring.multiply(powers[-1], time))

@@ -1,18 +1,18 @@
 """Words in the letters of a splitting with time, of which those of one kind commute.
 
-A kick of a h at t + s h is the flow of a h V(q, t + s h). With K_n = ∂_tⁿ V/n! at t, as a Lie
-derivative, it is exp(a Σ sⁿ h^(n+1) K_n); so K_n has the weight n + 1 in h, and D_n of the drift
-likewise. All K_n are functions of q alone and commute, all D_n are of p alone; between the two
-kinds there is no relation. So a kick may be parted into neighbours at several times, in any order.
-Products of such letters are words in which a run of letters of one kind has no order (Cartier and
-Foata). It is written with falling indices, the last in the dictionary.
+A kick of size a at t + s h is the flow of a h V(q, t + s h). With K_n the Lie derivative of
+∂_tⁿ V/n! at t, it is exp(a Σ sⁿ h^(n+1) K_n); so K_n has the weight n + 1 in h, and likewise D_n of
+the drift. All K_n belong to functions of q alone and commute, all D_n to functions of p alone;
+between the two kinds there is no relation. Products of such letters are words in which the order
+within a run of letters of one kind does not matter (Cartier and Foata). A run is written with
+falling indices, which is its last order in the dictionary.
 
-Those of them that are smaller than each of their proper ends, the Lyndon words, lead the Lie
-polynomials of a basis (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
-commutatives, Theor. Comput. Sci. 117 (1993)). So a Lie polynomial is known by its coefficients of
-them; a test has the ranks. Without letters of time they are words as all are.
+The Lyndon words, which are smaller than each of their proper ends, are the leading words of a basis
+of the Lie polynomials (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
+commutatives, Theor. Comput. Sci. 117 (1993)). So a Lie polynomial is determined by its
+coefficients of them; a test computes the ranks. Without letters of time they are ordinary words.
 
-Which letters have a time depends on T in H = T + V(q, t): see `Kinetic`.
+`Kinetic` says which letters have a time, by the class of T in H = T + V(q, t).
 """
 
 from collections import Counter
@@ -21,13 +21,13 @@ from enum import Enum
 from fractions import Fraction
 from functools import cache
 
-STEPS = "13579"  # the kinds of letters of a composition of symmetric steps
-Letter = tuple[str, int]  # "K" or "D", or one of `STEPS`, and its weight less 1, the power of time
+STEPS = "13579"  # the letters of a composition of symmetric steps, each a kind
+Letter = tuple[str, int]  # its kind, "K", "D" or one of `STEPS`, and the power of time, weight − 1
 Word = tuple[Letter, ...]
 
 
 class Kinetic(Enum):
-    """A class of kinetic energies T; V(q, t) is any smooth function in each of them, H = T + V."""
+    """A class of kinetic energies T in H = T + V(q, t), V any smooth function."""
 
     GENERAL = "T(p, t)"
     AUTONOMOUS = "T(p)"
@@ -36,7 +36,7 @@ class Kinetic(Enum):
 
     @property
     def timed_letters(self) -> str:
-        """The letters whose time counts: a drift's does where T depends on t."""
+        """The letters whose time counts: D only if T depends on t."""
         return "KD" if self in (Kinetic.GENERAL, Kinetic.MASS) else "K"
 
     @property
@@ -46,7 +46,7 @@ class Kinetic(Enum):
 
 
 def weight(word: Word) -> int:
-    """Return the power of h that the word comes with.
+    """Return the power of h of the word.
 
     >>> weight((("K", 1), ("D", 0)))
     3
@@ -55,7 +55,7 @@ def weight(word: Word) -> int:
 
 
 def text(word: Word) -> str:
-    """Return the word as it is written; without indices where none depends on time.
+    """Return the word as text; without indices if no letter depends on time.
 
     >>> text((("D", 0), ("K", 1))), text((("D", 0), ("K", 0)))
     ('D0 K1', 'DK')
@@ -77,7 +77,7 @@ def concatenate(head: Word, tail: Word) -> Word:
 
 
 def last_run(word: Word) -> Word:
-    """Return the letters at its end that are of one kind."""
+    """Return the longest end of the word in letters of one kind."""
     cut = len(word)
     while cut and word[cut - 1][0] == word[-1][0]:
         cut -= 1
@@ -86,8 +86,7 @@ def last_run(word: Word) -> Word:
 
 @cache
 def endings(word: Word) -> tuple[tuple[Word, Word], ...]:
-    """Return (head, tail) for each tail, not empty, that its last run contains: head · tail is the
-    word.
+    """Return (head, tail) for each nonempty tail in the last run, with head · tail the word.
 
     >>> [text(tail) for _, tail in endings((("D", 0), ("K", 1), ("K", 0)))]
     ['K', 'K1', 'K1 K0']
@@ -122,8 +121,11 @@ def _cuts(word: Word) -> Iterator[tuple[Word, Word]]:
 
 
 def letters(kinds: str, most: int) -> list[Letter]:
-    """Return the letters of weights up to `most`: K_n and D_n, n > 0 of the kinds whose time
-    counts, as "K" where only V depends on t; or, of `STEPS`, Y_1, Y_3, …, each a kind by itself."""
+    """Return the letters of weights up to `most`.
+
+    For `STEPS` they are Y_1, Y_3, …. Otherwise they are K_0 and D_0, and K_n and D_n with n > 0 of
+    the `kinds` whose time counts, as "K" if only V depends on t.
+    """
     if kinds == STEPS:
         return [(kind, int(kind) - 1) for kind in kinds if int(kind) <= most]
     return [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
@@ -131,7 +133,7 @@ def letters(kinds: str, most: int) -> list[Letter]:
 
 @cache
 def words(kinds: str, most: int) -> tuple[Word, ...]:
-    """Return all words of that weight in these letters."""
+    """Return all words of the weight `most` in these letters."""
     if most == 0:
         return ((),)
     all_words = {
@@ -142,7 +144,7 @@ def words(kinds: str, most: int) -> tuple[Word, ...]:
 
 @cache
 def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
-    """Return the Lyndon words of that weight.
+    """Return the Lyndon words of the weight `most`.
 
     >>> [text(word) for word in lyndon("KD", 2)]
     ['DK', 'D1', 'K1']
@@ -151,7 +153,7 @@ def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
 
 
 def bracket(letter: Letter, element: Mapping[Word, int]) -> dict[Word, int]:
-    """Return [letter, element], numbers by words."""
+    """Return [letter, element], both as coefficients by word."""
     coefficients = Counter[Word]()
     for word, n in element.items():
         coefficients[concatenate((letter,), word)] += n
@@ -163,8 +165,8 @@ def bracket(letter: Letter, element: Mapping[Word, int]) -> dict[Word, int]:
 def flow_coefficient(word: Word) -> Fraction:
     """Return the word's coefficient in the exact flow over a step of 1.
 
-    That of letters in an order is ∫ τ_1^n_1 … τ_m^n_m over 0 < τ_1 < … < τ_m < 1, which is
-    Π 1/(weight of the first k letters); of a run all orders are added up.
+    For letters in one order it is ∫ τ_1^n_1 … τ_m^n_m over 0 < τ_1 < … < τ_m < 1, which is
+    Π_k 1/(weight of the first k letters); all orders of a run are added up.
     """
     if not word:
         return Fraction(1)

@@ -8,18 +8,17 @@ from sympy.printing.c import C99CodePrinter
 from verify.schemes.export.program import Program
 
 SUFFIX = ".c"
-_WORDS = """
+_RESERVED_WORDS = """
 auto break case char const continue default do double else enum extern float for goto if inline int
 long register restrict return short signed sizeof static struct switch typedef union unsigned void
 volatile while bool true false main out j0 j1 jn y0 y1 yn gamma class namespace new delete this
 template operator public private protected friend virtual try catch throw using
-"""  # of C and C++, and of math.h
-RESERVED = frozenset(_WORDS.split())
+"""  # words of C and C++, and names of math.h
+RESERVED = frozenset(_RESERVED_WORDS.split())
 
 
 class _Printer(C99CodePrinter):  # type: ignore[misc]
-    """A printer that writes products in place of small powers, which are faster, and doubles
-    throughout."""
+    """A printer that writes all numbers as doubles, and small powers as products."""
 
     def _print_Pow(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
         base = self.parenthesize(expr.base, sympy.printing.precedence.PRECEDENCE["Pow"])
@@ -72,7 +71,7 @@ def _function(program: Program, key: str) -> list[str]:
 
 
 def _end(names: Sequence[str], key: str) -> str:
-    """Return a description of the values that a function writes into `out`."""
+    """Describe the values that a function writes into `out`."""
     entries = [f"{x}'" for x in names]
     if key == "jacobian":
         entries = [f"d{x}'/d{y}" for x in names for y in names]

@@ -8,11 +8,11 @@ from sympy.printing.str import StrPrinter
 from verify.schemes.export.program import Program
 
 SUFFIX = ".jl"
-_WORDS = """
+_RESERVED_WORDS = """
 baremodule begin break catch const continue do else elseif end export false finally for function
 global if import let local macro module quote return struct true try using while pi im ans
 """
-RESERVED = frozenset(_WORDS.split())
+RESERVED = frozenset(_RESERVED_WORDS.split())
 
 
 class _JuliaPrinter(StrPrinter):  # type: ignore[misc]

@@ -1,11 +1,11 @@
-"""LaTeX: equations to be set, exact; the constants' decimals stand in comments."""
+"""LaTeX: exact equations; decimals of the irrational constants stand in comments."""
 
 from collections.abc import Iterator
 
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.effort import MOST, limit_effort
+from verify.effort import MAX_CALLS, limit_effort
 from verify.schemes.export.program import Program
 
 SUFFIX = ".tex"
@@ -20,7 +20,7 @@ def render(program: Program) -> str:
     rows = [*_steps(program)]
     if len(program.parts) == 1:
         (pair,), state = program.parts, list(map(symbol, program.coordinates))
-        with limit_effort("map", program.scheme, "to write its Jacobian", 10 * MOST):
+        with limit_effort("map", program.scheme, "to write its Jacobian", 10 * MAX_CALLS):
             entries = [sympy.factor_terms(x.diff(y)) for x in pair for y in state]
         matrix = sympy.Matrix(len(state), len(state), entries)
         rows.append(rf"J &= {sympy.latex(matrix)}")
@@ -31,7 +31,7 @@ def render(program: Program) -> str:
 
 
 def _steps(program: Program) -> Iterator[str]:
-    """Yield p_1, q_1, p_2, … as they change from part to part, the last of each being p' and q'."""
+    """Yield the equations of p_1, q_1, p_2, …, part by part; the last of each is p' or q'."""
     names = {symbol(name): _name(name) for name in program.coordinates}
     changes = {z: sum(pair[n] != z for pair in program.parts) for n, z in enumerate(names)}
     now, counts = {z: z for z in names}, dict.fromkeys(names, 0)

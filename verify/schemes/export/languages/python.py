@@ -1,4 +1,4 @@
-"""Python, with nothing but `math`: floats in, floats out."""
+"""Python functions of floats, which import only `math`."""
 
 import keyword
 from collections.abc import Iterator

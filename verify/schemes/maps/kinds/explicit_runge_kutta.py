@@ -1,4 +1,4 @@
-"""Explicit Runge–Kutta methods: stage by stage, each at t + c h where H depends on time."""
+"""Explicit Runge–Kutta methods; if H depends on time, stage i is at t + c_i h."""
 
 from fractions import Fraction
 from functools import partial
@@ -18,8 +18,8 @@ def build(
 ) -> StepMap:
     """Return the map for any H.
 
-    `standing`: the clock stands at t + so many h, which is wrong (see
-    `verify.schemes.methods.user.wrong_clocks`); None for the right one.
+    `standing`: every stage is at t + `standing` h, which is a wrong clock (see
+    `verify.schemes.methods.user.wrong_clocks`); None for the right clock.
     """
     field, _ = canonical_field(hamiltonian)
     return StepMap(hamiltonian, field, partial(coefficients.changes, standing=standing))

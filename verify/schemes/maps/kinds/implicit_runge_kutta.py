@@ -1,21 +1,21 @@
 """Implicit Runge–Kutta methods: their maps, symplectic by coefficients, and their order for one H.
 
-The unknowns are Z_i = Y_i − z, Y_i the points at which the stages' slopes are taken: they are of
-the size of h, so that their rounding is h times smaller than that of Y_i (Hairer, Nørsett, Wanner,
-Solving Ordinary Differential Equations I, II.8, and II, IV.8). Z_i = h Σ a_ij f(z + Z_j), and
-z' = z + h Σ b_i f(z + Z_i). Newton's method begins at Z_i = h c_i f(z); of several solutions, which
-there may be where h is large, it finds one, and that is the map. Where H depends on time, stage i
-is taken at t + c_i h, c_i = Σ_j a_ij.
+The unknowns are Z_i = Y_i − z, where Y_i is the point of stage i: they are O(h), so that their
+rounding is smaller than that of Y_i by a factor h (Hairer, Nørsett, Wanner, Solving Ordinary
+Differential Equations I, II.8, and II, IV.8). Z_i = h Σ a_ij f(z + Z_j), and z' = z + h Σ b_i f(z +
+Z_i). Newton's method begins at Z_i = h c_i f(z). For a large h the equations may have several
+solutions: the one that it finds is the map. If H depends on time, stage i is at t + c_i h, c_i =
+Σ_j a_ij.
 
-That b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for S ≡ 0, for every H in any number of
-degrees of freedom (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric Numerical Integration,
-theorem VI.4.3).
+The condition b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for S = JᵀΩJ − Ω ≡ 0, for every H
+in any number of degrees of freedom (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric Numerical
+Integration, theorem VI.4.3).
 
 The order for one H needs no Taylor series of the map. Up to the order that the conditions on its
 coefficients give, the map agrees with the exact flow for every H. At the next power of h they
-differ by Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t), over the trees of as many vertices; where ball arithmetic
-encloses it away from 0 at some point, that is the order for this H. Only the derivatives of H at
-that point are needed: no series is multiplied out, which for an involved H takes minutes.
+differ by Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t), over the trees of as many vertices. If ball arithmetic
+encloses this sum away from 0 at some point, the order for this H is the same. Only the derivatives
+of H at that point are needed; to multiply out a series would take minutes for an involved H.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from verify.schemes.conditions.tree_conditions import (
 from verify.schemes.maps.formula_map import map_from_expressions
 from verify.schemes.maps.step_map import StepMap
 
-_POINTS = 8
+_TESTED_POINTS = 8
 _PRECISION = 192
 
 
@@ -57,7 +57,7 @@ def build(coefficients: TreeConditions, hamiltonian: Hamiltonian, name: str = ""
 
 @lru_cache(maxsize=64)
 def implicit_map(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
-    """Return the map for any H: by its equations; in closed form for a quadratic H in the plane."""
+    """Return the map: in closed form for a quadratic H in the plane, else by equations."""
     closed_form = None
     if hamiltonian.planar and not hamiltonian.time_dependent:
         closed_form = _linear(hamiltonian, tableau)
@@ -73,8 +73,7 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
     clocks = [sum(row, field.ring.zero) for row in rows]
 
     def known_order() -> int | None:
-        """Return the order by rooted trees, which are those of an autonomous H, by its derivatives
-        by p and q."""
+        """Return the order by rooted trees, for an H in the plane without time; else None."""
         return order_of(tableau, field) if hamiltonian.planar and not field.timed else None
 
     return StepMap(
@@ -89,7 +88,7 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
 
 
 def conditions(coefficients: TreeConditions, degrees: int) -> tuple[Condition, ...]:
-    """Return the conditions of the module's text."""
+    """Return the conditions b_i a_ij + b_j a_ji = b_i b_j."""
     return coefficients.tableau.area_conditions()
 
 
@@ -100,9 +99,9 @@ def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | Non
     """Return the closed form for a quadratic H; None for another.
 
     f(z + d) = f(z) + M d with M² = −D, D = det Hess H, and z' = z + h ρ(hM) f(z) with
-    ρ(μ) = (R(μ) − 1)/μ, R the method's stability function (Hairer, Wanner, II, IV.3). With the
-    denominator's product by its own at −μ, which is even, ρ(hM) = (α + β h M)/γ, where α, β and γ
-    are polynomials in μ² = −h² D.
+    ρ(μ) = (R(μ) − 1)/μ, R the method's stability function (Hairer, Wanner, II, IV.3). Multiplied
+    above and below by its denominator at −μ, ρ has an even denominator γ: ρ(hM) = (α + β h M)/γ,
+    where α, β and γ are polynomials in μ² = −h² D.
     """
     p, q, h = map(symbol, "pqh")
     field, _ = canonical_field(hamiltonian)
@@ -113,7 +112,7 @@ def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | Non
     u, v, u_p, u_q, v_p, v_q = map(ring.expression, (u, v, *matrix))
     # μ² = −h² D by Cayley and Hamilton, as the trace of M is 0.
     square = -(h**2) * (u_p * v_q - u_q * v_p)
-    alpha, beta, gamma = (x.subs(_square(), square) for x in _of_matrix(tableau))
+    alpha, beta, gamma = (x.subs(_square(), square) for x in _rational_function(tableau))
     more_u, more_v = u_p * u + u_q * v, v_p * u + v_q * v
     p_next = p + h * (alpha * u + beta * h * more_u) / gamma
     q_next = q + h * (alpha * v + beta * h * more_v) / gamma
@@ -125,7 +124,7 @@ def _square() -> sympy.Symbol:
 
 
 @lru_cache(maxsize=64)
-def _of_matrix(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
+def _rational_function(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
     """Return α, β and γ as polynomials in μ²; see `_linear`."""
     count, mu = tableau.stages, sympy.Symbol("mu")  # an eigenvalue of hM
     a, b = sympy.Matrix(tableau.rows), sympy.Matrix([tableau.weights])
@@ -133,7 +132,7 @@ def _of_matrix(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.
     below = sympy.expand(pencil.det(method="berkowitz"))
     above = sympy.expand((pencil + mu * sympy.ones(count, 1) * b).det(method="berkowitz"))
     rho = sympy.expand(sympy.expand(above - below) / mu)
-    # With the denominator at −μ as a factor above and below, the new denominator is even in μ.
+    # Multiplied above and below by the denominator at −μ: the new denominator is even in μ.
     below_mirrored = below.subs(mu, -mu)
     numerator, even = (sympy.Poly(sympy.expand(x * below_mirrored), mu) for x in (rho, below))
     parts = [sympy.S.Zero] * 2
@@ -147,7 +146,7 @@ def _of_matrix(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.
 
 
 def order_of(tableau: ImplicitTableau, field: CanonicalField) -> int | None:
-    """Return the order for this H; None where no point decides it."""
+    """Return the order for this H; None if no point decides it."""
     for order in range(1, MOST_ORDER + 1):
         gaps = gaps_of(tableau, order)
         decisions = [tableau.numbers.ring.decide(x).zero for x in gaps.values()]
@@ -159,7 +158,7 @@ def order_of(tableau: ImplicitTableau, field: CanonicalField) -> int | None:
 
 
 def _differ(tableau: ImplicitTableau, field: CanonicalField, order: int) -> bool:
-    """Return True if map and flow differ at h^order in some point, shown by balls."""
+    """Return True if balls show at a point that map and flow differ at h^order."""
     ring = tableau.numbers.ring
     names = [n for n in field.ring.variables if n != "h"]
     with working_precision(_PRECISION):
@@ -168,7 +167,7 @@ def _differ(tableau: ImplicitTableau, field: CanonicalField, order: int) -> bool
             for tree, gap in gaps_of(tableau, order).items()
         }
         # One point with a nonzero difference proves it; if none shows one, nothing is concluded.
-        for point in islice(points(names), _POINTS):
+        for point in islice(points(names), _TESTED_POINTS):
             jets = _JetsAtPoint(field, point)
             differentials = Differentials(jets)
             total = [flint.arb(0)] * 2
@@ -183,7 +182,7 @@ def _differ(tableau: ImplicitTableau, field: CanonicalField, order: int) -> bool
 
 
 class _JetsAtPoint:
-    """The derivatives of H at a point, as balls, in place of the jets."""
+    """The derivatives of H at a point as balls; they take the place of the jets."""
 
     def __init__(self, field: CanonicalField, point: Mapping[str, Fraction]) -> None:
         self.field, self.point, self.is_defined = field, point, True
@@ -192,7 +191,7 @@ class _JetsAtPoint:
         self._cache: dict[tuple[int, int], flint.arb] = {}
 
     def h(self, i: int, j: int, k: int = 0) -> flint.arb:
-        """Return H_ijk at the point; NaN where it may not be defined."""
+        """Return H_ijk at the point; NaN if it may be undefined. H must not depend on time."""
         if k:
             return self.zero
         if (i, j) not in self._cache:

@@ -1,7 +1,7 @@
 """Kicks and drifts in turn, for H = T(p) + V(q): each is a shear, and symplectic.
 
-A kick moves p by −a h ∂V/∂q. The one block of its Jacobian that is neither 0 nor 1 is −a h Hess V,
-and S of a shear is that block less its transpose, which is 0.
+A kick moves p by −a h ∂V/∂q. The one block of its Jacobian that is neither 0 nor the identity is
+−a h Hess V. S = JᵀΩJ − Ω of a shear is the difference of that block and its transpose, which is 0.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ def _with_numbers(
     parts = coefficients.raw_parts
     is_timed = hamiltonian.time_dependent
     rational = [size for _, size in parts if isinstance(size, Fraction)]
-    # Rational sizes need no embedding, and so the field that other schemes share can be used.
+    # Rational sizes need no embedding: then the cached field of H serves, which schemes share.
     if len(rational) == len(parts) and not is_timed:
         field = canonical_field(hamiltonian)[0]
         sizes = [field.ring.constant(size) for size in rational]
@@ -66,13 +66,15 @@ def _shears(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) 
 
 
 def conditions(coefficients: Splitting, degrees: int) -> tuple[Condition, ...]:
-    """Return the conditions that kicks and drifts move by a gradient, whose Jacobian is symmetric,
-    for all T and V."""
-    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.raw_parts)))
+    """Return the conditions that kicks and drifts move by gradients, for all T and V.
+
+    The Jacobian of a gradient is symmetric.
+    """
+    return _gradient_conditions(tuple(dict.fromkeys(kind for kind, _ in coefficients.raw_parts)))
 
 
 @lru_cache(maxsize=4)
-def _of_kinds(kinds: tuple[str, ...]) -> tuple[Condition, ...]:
+def _gradient_conditions(kinds: tuple[str, ...]) -> tuple[Condition, ...]:
     jets = JetsInDegrees(("p1", "p2", "q1", "q2"), 2, separable=True)
     pairs = {"kick": ("q1", "q2"), "drift": ("p1", "p2")}
     gradient_conditions = []

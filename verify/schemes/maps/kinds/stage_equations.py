@@ -1,8 +1,8 @@
-"""Stages that are solved for, one after the other: symplectic Euler of any H.
+"""Stages that are solved one after the other: symplectic Euler for any H.
 
-A stage moves p by −h a ∂H/∂q and q by h b ∂H/∂p, both taken at (p + α(p' − p), q + β(q' − q)). With
-a = b, dP∧dH_p + dQ∧dH_q = −d(dH) = 0 leaves dp'∧dq' − dp∧dq = (1 − α − β) δp∧δq, δ = d(z' − z): so
-α + β = 1 suffices for a map that is symplectic, for every H. (Hairer, Lubich, Wanner, Geometric
+A stage moves p by −h a ∂H/∂q and q by h b ∂H/∂p, both at (P, Q) = (p + α(p' − p), q + β(q' − q)).
+If a = b, dP∧dH_p + dQ∧dH_q = −d(dH) = 0 leaves dp'∧dq' − dp∧dq = (1 − α − β) δp∧δq, δ = d(z' − z):
+so α + β = 1 suffices for a symplectic map, for every H. (Hairer, Lubich, Wanner, Geometric
 Numerical Integration, VI.3.) In the plane less suffices; see `StageEquations.conditions`.
 """
 
@@ -23,8 +23,11 @@ from verify.schemes.maps.step_map import StepMap
 
 @lru_cache(maxsize=64)
 def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> StepMap:
-    """Return the map for any H. Where H = T(p) + V(q), symplectic Euler is its kick and its drift;
-    where ∂H/∂q is linear in p it is written in closed form, in the plane."""
+    """Return the map for any H.
+
+    For H = T(p) + V(q), symplectic Euler is a kick and a drift. If ∂H/∂q is linear in p, it has a
+    closed form in the plane.
+    """
     field, _ = canonical_field(hamiltonian)
     if all(s.at_p == 1 and s.at_q == 0 for s in coefficients.stages):
         if field.separable:
@@ -46,8 +49,7 @@ _EULER = Stage(kick=Fraction(1), drift=Fraction(1), at_p=Fraction(1))
 
 
 def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | None:
-    """Return p' = p − h H_q/(1 + h H_pq) and q' = q + h H_p(p', q); None where H_q is not linear in
-    p."""
+    """Return p' = p − h H_q/(1 + h H_pq), q' = q + h H_p(p', q); None unless H_q is linear in p."""
     ring, (force, speed) = field.ring, field.slopes
     # Linearity in p is decided exactly: the second derivative must be the zero function.
     mixed = ring.diff(force, "p")  # −H_pq
@@ -62,7 +64,7 @@ def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | N
 
 
 def conditions(coefficients: StageEquations, degrees: int) -> tuple[Condition, ...]:
-    """Return the conditions of each stage; see the module's text."""
+    """Return the conditions of all stages: det A = det B in the plane, else α + β = 1, a = b."""
     if degrees == 1:
         return coefficients.conditions()
     return tuple(map(_condition, coefficients.stages))

@@ -1,15 +1,16 @@
 """Blanes and Moan's scheme of order 4 with six stages (their S₆), for H = T(p) + V(q).
 
-Printed are 15 or 16 digits of its coefficients, too few for order 4 to hold exactly. Here a₁, a₂
-and a₃ are the printed decimals, exactly, and a₄ = 1 − 2 (a₁ + a₂ + a₃). As a palindrome it has
-order 4 where Σ b = 1 and two conditions of order 3 hold: that of DDK is linear in b₁ and b₂, that
-of DKK quadratic. With c_i = a₁ + … + a_i they read
+The paper prints 15 or 16 digits of its coefficients, too few for order 4 to hold exactly. Here a₁,
+a₂ and a₃ are exactly the printed decimals, and a₄ = 1 − 2 (a₁ + a₂ + a₃). A palindrome has order 4
+if Σ a = Σ b = 1 and two conditions of order 3 hold: that of the word DDK is linear in b₁ and b₂,
+that of DKK quadratic. With c_i = a₁ + … + a_i they read
 
     2 Σ b_i (c_i² − c_i) = −1/6,    2 Σ a_i (e_i² − e_i) + a₄ (¼ − ½) = −1/6,
 
-over i = 1, 2, 3, with e_i = b₁ + … + b_(i−1), b₃ = ½ − b₁ − b₂. So b is in Q(√Δ), Δ rational. The
-one solution is b₁ = 0.209515106613362089, b₂ = −0.143851773179818115; printed are
-0.209515106613362 and −0.143851773179818, the same to 15 places. The other has b₁ = 0.238.
+over i = 1, 2, 3, with e_i = b₁ + … + b_(i−1), b₃ = ½ − b₁ − b₂. So b₁ and b₂
+are in Q(√Δ) with a rational Δ. One solution is b₁ = 0.209515106613362089, b₂ =
+−0.143851773179818115, which agrees with the printed 0.209515106613362 and −0.143851773179818 to 15
+places. The other has b₁ = 0.238.
 """
 
 from sympy import Expr, Rational, S, sqrt
@@ -23,7 +24,7 @@ PRINTED = {
 
 
 def _kicks(a: tuple[Rational, ...]) -> tuple[Expr, Expr]:
-    """b₁ and b₂ for these a₁, a₂, a₃."""
+    """Return b₁ and b₂ for a₁, a₂, a₃."""
     a1, a2, a3 = a
     a4 = 1 - 2 * (a1 + a2 + a3)
     f1, f2, f3 = (c * c - c for c in (a1, a1 + a2, a1 + a2 + a3))

@@ -4,8 +4,8 @@ Where H_q is linear in p, as for H = T(p) + p b(q) + V(q), the first equation gi
 p' = p − h H_q(p, q)/(1 + h H_pq(q)). For H = T(p) + V(q) it is `symplectic-euler`. Elsewhere the
 equation is solved for the change of p.
 
-Where H depends on time and is no T(p, t) + V(q, t), both derivatives are taken at t: of one time
-they are those of one generating function, h H(p', q, t), so that det J ≡ 1.
+If H depends on time and is not of the form T(p, t) + V(q, t), both derivatives are taken at t: they
+are those of one generating function, h H(p', q, t), so that det J ≡ 1.
 """
 
 from fractions import Fraction

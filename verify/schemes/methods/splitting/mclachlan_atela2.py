@@ -1,7 +1,7 @@
 """McLachlan and Atela's optimal scheme of order 2 with two stages, for H = T(p) + V(q).
 
-Kicks b and drifts a in turn, b₁, a₁, b₂, a₂, with a₁ = √2/2 = b₂, a₂ = 1 − √2/2 = b₁. Of all with
-two stages it has the smallest errors of order 3; it is not symmetric.
+Kicks b and drifts a in turn, b₁, a₁, b₂, a₂, with a₁ = √2/2 = b₂, a₂ = 1 − √2/2 = b₁. Of all
+schemes of order 2 with two stages it has the smallest errors of order 3; it is not symmetric.
 """
 
 import sympy

@@ -1,7 +1,7 @@
 """Symplectic Euler (Eq. 24, 32): p' = p − h V'(q), q' = q + h T'(p'), for H = T(p) + V(q).
 
-Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separable the scheme is
-implicit; this file holds the explicit one and says so.
+Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separable see
+`implicit-symplectic-euler`.
 """
 
 from fractions import Fraction

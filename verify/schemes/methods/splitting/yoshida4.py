@@ -2,7 +2,7 @@
 
 γ = 1/(2 − 2^(1/3)) solves 2γ³ + (1 − 2γ)³ = 0, which removes the error of order h³. With
 R = 2^(1/3) it is (4 + 2R + R²)/6, since (2 − R)(4 + 2R + R²) = 8 − R³; so it stays exact, an
-element of the ring with R³ = 2. Neighbouring half kicks are one; seven shears, so det J ≡ 1.
+element of the ring with R³ = 2. Neighbouring half kicks make one: seven shears, so det J ≡ 1.
 """
 
 import sympy

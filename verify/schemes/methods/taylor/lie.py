@@ -1,11 +1,11 @@
 """The Lie-derivative scheme `lieη`: p' = Σ hⁿ/n! Xⁿp, q' = Σ hⁿ/n! Xⁿq, n = 0 … η (Eq. 2).
 
-How the paper's notation maps to it. Eq. 5 has L_{H_p}(y) = H_p ∂y/∂q and L_{−H_q}(y) =
+In the paper's notation, Eq. 5 has L_{H_p}(y) = H_p ∂y/∂q and L_{−H_q}(y) =
 −H_q ∂y/∂p, two first-order operators whose sum is the Lie derivative X = H_p ∂_q − H_q ∂_p.
 Eq. 4 recurs by both of them, L^n = L_{H_p}(L^{n−1}) + L_{−H_q}(L^{n−1}) = X L^{n−1}; Eq. 3 starts
 it with L_{−H_q} p = −H_q = X p and L_{H_p} q = H_p = X q (where the paper writes L_{H_p}(p_k), its
 ∂q/∂p must be read as ∂q/∂q). So L^n_{−H_q} = X^n p and L^n_{H_p} = X^n q, and Eq. 2 is the Taylor
-series of the flow, cut off after h^η.
+series of the flow, truncated after h^η.
 """
 
 import re
@@ -28,7 +28,7 @@ def make(name: str) -> Scheme | None:
 
 
 def lie_series(name: str, eta: int, *, source: str) -> Scheme:
-    """Return the scheme of that name whose map is lieη's."""
+    """Return the scheme called `name` with the map of lieη."""
     return Scheme(name, order=eta, source=source, every_h=TaylorSeries(eta))
 
 

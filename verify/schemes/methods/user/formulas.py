@@ -2,8 +2,7 @@
 
 The formulas may use p, q, h, the parameters of H, and t where H depends on it; q_next may use
 p_next. In n degrees of freedom they are p1_next … qn_next, each of which may use those that are
-written before it. The map claims consistency (order 1) and nothing else; what it has is proved, not
-believed.
+written before it. The map claims consistency (order 1) and nothing else.
 """
 
 import re
@@ -14,12 +13,14 @@ from verify.schemes.scheme import Scheme
 
 _FORM = "write it as 'p_next = …; q_next = …', or as 'kick 1/2; drift 1; kick 1/2'"
 _NUMBERED = re.compile(r"[pq][1-9]\d{0,2}_next", re.ASCII)
-EXAMPLES = ()  # its names are the users' own
+EXAMPLES = ()  # names are texts that users write
 
 
 def make(name: str) -> Scheme | None:
-    """Return the scheme for a text with `=`; InputError unless it defines p_next and q_next, once
-    each."""
+    """Return the scheme for a text with `=`; None for another text.
+
+    Raises InputError unless it defines p_next and q_next, or p1_next, …, once each.
+    """
     if "=" not in name:
         return None
     parts = [part.partition("=") for part in name.split(";") if part.strip()]

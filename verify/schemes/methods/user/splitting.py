@@ -1,12 +1,12 @@
 """A user's own splitting, by its coefficients: `kick 1/2; drift 1; kick 1/2; order 2`.
 
 Coefficients are exact: decimals and quotients, and expressions of them with `sqrt` and powers, as
-`drift 1/(2 - 2**(1/3))`. Those that are printed with eight digits and more stand for numbers near
-them: the order is that of these (`verify.schemes.printed.nearby_order`). `order` is the claimed
-one, at least; without it that is 1.
+`drift 1/(2 - 2**(1/3))`. Decimals of eight digits and more stand for exact numbers near them: the
+order is that of these numbers (`verify.schemes.printed.nearby_order`). `order` is the claimed
+order, 1 if left out.
 
-For an H that depends on time a part may have its own, in parts of h from the step's start, as in
-`kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is the right one.
+For an H that depends on time a part may have a time, in parts of h from the step's start, as in
+`kick 1/2 at 0; drift 1; kick 1/2 at 1`; if left out, it is the right one.
 """
 
 import sympy
@@ -18,13 +18,13 @@ from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 
-EXAMPLES = ()  # its names are the users' own
+EXAMPLES = ()  # names are texts that users write
 _MOST_PARTS = 200
 _FORM = "write it as 'kick 1/2; drift 1; kick 1/2; order 2'"
 
 
 def make(name: str) -> Scheme | None:
-    """Return the scheme for a text that begins with kick or drift; InputError for a bad one."""
+    """Return the scheme for a text that begins with kick or drift; InputError for a wrong one."""
     words = [part.split(maxsplit=1) for part in name.split(";") if part.strip()]
     if not words or words[0][0] not in LETTERS:
         if words and words[0][0].lower() in LETTERS:
@@ -40,7 +40,8 @@ def make(name: str) -> Scheme | None:
         None if time is None else parse(time, (), source=f"{kind} at")
         for kind, _, time in part_texts
     )
-    # A time that is exactly the right one stays so, whatever its size's digits stand for.
+    # A time that is exactly the right one stays the right one when sizes are moved to exact
+    # numbers.
     not_right = [
         x != right for x, right in zip(times, sums_before(parts, sympy.S.Zero), strict=True)
     ]
@@ -70,7 +71,7 @@ def _order(name: str, text: str) -> int:
 
 
 def _part(name: str, kind: str, text: str) -> tuple[str, str, str | None]:
-    """Return the part's kind, its size and its time as they are written, None where no time is."""
+    """Return the part's kind, size and time as they are written; None for no time."""
     if kind not in LETTERS:
         raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
     if "," in text:
@@ -80,6 +81,5 @@ def _part(name: str, kind: str, text: str) -> tuple[str, str, str | None]:
 
 
 def _palindrome(parts: tuple[Part, ...]) -> bool:
-    """Return True if it is a palindrome as it is written; a table that is one only in value does
-    not claim it."""
+    """Return True if the parts are the same read backwards, as written."""
     return parts == parts[::-1]

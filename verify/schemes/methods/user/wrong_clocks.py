@@ -1,14 +1,14 @@
 """A scheme with a wrong clock, for comparison: `forest-ruth, clock frozen`, `rk4, clock frozen`.
 
-Without time it is the same scheme. Where H depends on time it reads
+Without time it is the same scheme. If H depends on time it reads
 
 - `frozen`: every part or stage at the step's start;
 - `at the end`: every part or stage at the step's end;
-- `exchanged`: each part of a splitting at the sum of the parts of its own kind before it, and not
-  of the other's.
+- `exchanged`: each part of a splitting at the sum of the parts of its own kind before it, in place
+  of the other kind.
 
-It claims the order that the scheme has with its right clocks, and is refuted. `lieη` with such a
-clock is what X makes of H at that time, in place of D.
+It claims the order of the scheme with its right clocks, which a proof refutes. `lieη` with such a
+clock is the Taylor polynomial of the flow of H at that fixed time.
 """
 
 import re
@@ -33,13 +33,15 @@ from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 
-EXAMPLES = ()  # its names are the users' own
+EXAMPLES = ()  # names are texts that users write
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")
 
 
 def make(name: str) -> Scheme | None:
-    """Return the scheme for a text `NAME, clock HOW`; InputError for a scheme without clocks, or an
-    unknown HOW."""
+    """Return the scheme for a text `NAME, clock HOW`; None for another text.
+
+    Raises InputError for a scheme without clocks, and for an unknown HOW.
+    """
     from verify.schemes import get
 
     match = _NAME.fullmatch(name)
@@ -86,7 +88,7 @@ def _with_standing_clock(
     return map_from_expressions(hamiltonian, exact)
 
 
-_STANDING = {"frozen": 0, "at the end": 1}  # and when it stands, in parts of h
+_STANDING = {"frozen": 0, "at the end": 1}  # the fixed time of a clock, in parts of h
 _CLOCKS: Mapping[str, Callable[[Sequence[Part]], Sequence[sympy.Expr]]] = {
     "frozen": lambda parts: (sympy.S.Zero,) * len(parts),
     "at the end": lambda parts: (sympy.S.One,) * len(parts),

@@ -20,7 +20,7 @@ from verify.studies.work_precision.peers import (
 
 NAME = "DOP853"
 LIBRARY = "scipy"
-TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy takes none below 100 · 2⁻⁵²
+TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy's limit is 100 · 2⁻⁵²
 
 
 def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
@@ -35,21 +35,21 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     )
     start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
-    slopes(*start, *(begin,)[: field.timed])
+    slopes(*start, *(begin,)[: field.timed])  # the first call compiles
     compile_seconds = time.perf_counter() - start_time
 
-    def still(_: float, z: Sequence[float]) -> tuple[float, ...]:
+    def autonomous_field(_: float, z: Sequence[float]) -> tuple[float, ...]:
         slope_values: tuple[float, ...] = slopes(*z)
         return slope_values
 
-    def driven(t: float, z: Sequence[float]) -> tuple[float, ...]:
+    def time_dependent_field(t: float, z: Sequence[float]) -> tuple[float, ...]:
         slope_values: tuple[float, ...] = slopes(*z, t)
         return slope_values
 
     def solve() -> Answer:
         solution = solve_ivp(
-            driven if field.timed else still, (begin, end), start, method="DOP853", t_eval=(end,),
-            rtol=float(tolerance), atol=float(tolerance),
+            time_dependent_field if field.timed else autonomous_field, (begin, end), start,
+            method="DOP853", t_eval=(end,), rtol=float(tolerance), atol=float(tolerance),
         )  # fmt: skip
         if not solution.success:
             raise PeerError(solution.message)

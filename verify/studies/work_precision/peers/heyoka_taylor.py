@@ -32,11 +32,12 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     start_time = time.perf_counter()
     names = tuple(problem.point)
     variables, n = hy.make_vars(*names), len(names) // 2
-    h = _translate(problem.hamiltonian.exact)
+    energy = _translate(problem.hamiltonian.exact)
     start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
     pairs = list(zip(variables[:n], variables[n:], strict=True))
-    field = [(p, -hy.diff(h, q)) for p, q in pairs] + [(q, hy.diff(h, p)) for p, q in pairs]
+    field = [(p, -hy.diff(energy, q)) for p, q in pairs]
+    field += [(q, hy.diff(energy, p)) for p, q in pairs]
     taylor = hy.taylor_adaptive(field, list(start), tol=float(tolerance))
     compile_seconds = time.perf_counter() - start_time
 
