@@ -1,12 +1,10 @@
 """The page in a real browser: quiet, closed to the outside, seen in full, and open to everyone."""
 
-import os
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from tests.browser.checks import Opened, opened
 from tests.browser.made_pages import EVIL, NAMES, page_of, planted
@@ -22,20 +20,6 @@ A4 = 680  # px: 210 mm without the margins
 CUT = """() => [...document.querySelectorAll('.statement, .why')].filter(
   each => each.scrollWidth > each.clientWidth && getComputedStyle(each).display !== 'inline')
   .map(each => each.textContent)"""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Chromium as it is installed; where tests must not be left out, its absence is a failure."""
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        if os.environ.get("CI"):
-            pytest.fail("chromium is not installed")
-        pytest.skip("chromium is not installed")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium)
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")

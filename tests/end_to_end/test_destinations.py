@@ -23,6 +23,7 @@ DRAWN = f"bench {RUN} --step-size 0.05 --time 1 -o"
 FOLDERS = {
     "--keep": f"run {RUN} --steps 10 --keep",
     "--findings": "report integrators --findings",
+    "--errata": "report paper --errata",
     "FOLDER": "certificate theory",
     "--output": f"report {RUN} --steps 10 -o",
 }

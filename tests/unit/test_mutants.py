@@ -404,7 +404,7 @@ def test_the_tests_of_a_mutants_room_that_reach_its_line_come_first() -> None:
 def test_a_mutant_is_planted_in_the_process_of_the_tests(planted: bool, killed: bool) -> None:
     """One that the test has to see, and one of another module."""
     test = "tests/unit/kernels/test_partials.py::test_the_solution_is_that_of_the_system"
-    module = "verify.kernels.step.program_algebra" if planted else "verify.pages.answers"
+    module = "verify.kernels.step.matrix_operations" if planted else "verify.pages.answers"
     chosen = next(m for m in mutants(module) if not planted or m.change.startswith("pivots +="))
     status, said = campaign._run(chosen, [test], 120)
     assert (status not in (0, None)) is killed, said

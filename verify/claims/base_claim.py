@@ -3,22 +3,7 @@
 A kind of claim is one file in `verify.claims.kinds`: a subclass with the claim's keys, which names
 the scene, the runs and the tasks it needs, and judges. A claim's own value stands under the
 name of its kind if it has one (`order = 3`); its verdict always comes with evidence.
-
-Several claims of a file may be readings of one statement, whose texts they share:
-
-    [[claim]]
-    id = "eq-9"
-    statement = "…"                     # what the paper prints, with its source and section
-    reading = "each component alone"    # in which sense; may be left out
-
-    [[claim]]
-    id = "eq-9-in-the-plane"
-    reading_of = "eq-9"                 # the same statement, whose texts it has, read otherwise
-    reading = "both components together, in one norm"
-    standing = "fair"                   # this is understood; or "strict", "misprint", "ours"
-
-See `verify.scenes.results.claim` for what the standings mean and when a statement is refuted.
-A file in which no claim has one of these keys counts claims alone, and no statements.
+Readings of one statement, and repairs: `verify.claims.statement_readings`.
 """
 
 from abc import abstractmethod
@@ -30,12 +15,12 @@ from typing import Annotated, Any, ClassVar, Self
 from pydantic import Field
 
 from verify.algebra.domain import EVERYWHERE, FormulaDomain
-from verify.errors import NOT_GIVEN, InputError, unknown_name
+from verify.errors import InputError, unknown_name
 from verify.execution.task import Task
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose, read_prose
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.claim import ClaimResult, CriterionResult, Standing
+from verify.scenes.results.claim import ClaimResult, CriterionResult, Effect, Standing
 from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -96,7 +81,7 @@ class Claim(Frozen):
     `obstacle`: the reason why the claim cannot be transferred to other scenes; empty if it can.
     `warning`: how a reader may misunderstand the claim; empty if there is no such danger.
     Formulas in `statement` and `reading` stand between backticks. `reading_of`, `reading` and
-    `standing` connect a reading with its statement; see the module's text.
+    `standing` connect a reading with its statement; see `verify.claims.statement_readings`.
     """
 
     exact: ClassVar[bool] = True
@@ -124,6 +109,12 @@ class Claim(Frozen):
     """The interpretation of the statement, in words."""
     standing: Standing = "fair"
     """The standing of the reading: its closeness to the printed text."""
+    repaired: str = ""
+    """The statement as it would be right; this claim's verdict is on it."""
+    repairs: str = ""
+    """The statement that a claim of ours repairs; a reading with `repaired` repairs its own."""
+    effect: Effect = ""
+    """What the repair changes in the paper: nothing else, a table, or a conclusion."""
     remark: str = ""
     """A remark for readers of the verdict; formulas as in `statement`."""
     confirmed_by: str = ""
@@ -195,6 +186,9 @@ class Claim(Frozen):
             statement_id=self.reading_of,
             reading=read_prose(self.reading),
             standing=self.standing,
+            repaired=read_prose(self.repaired),
+            repairs=self.repairs or (self.reading_of if self.repaired else ""),
+            effect=self.effect,
             scene=self.scene,
             verdict=verdict,
             evidence=prose(evidence),
@@ -224,8 +218,8 @@ class Claim(Frozen):
 
 # These keys can be read even where the claim itself cannot: they keep its place in the
 # report and in the count of its statement.
-_KEYS_OF_READINGS = ("reading_of", "reading", "standing")
-_READABLE = ("id", "kind", "source", "section", "statement", "scheme", *_KEYS_OF_READINGS)
+KEYS_OF_READINGS = ("reading_of", "reading", "standing")
+_READABLE = ("id", "kind", "source", "section", "statement", "scheme", *KEYS_OF_READINGS)
 
 
 class OutsideClaim(Claim):
@@ -250,51 +244,3 @@ def outside(table: Mapping[str, Any], problem: str) -> OutsideClaim:
     """
     texts = {key: table[key] for key in _READABLE if key in table}
     return OutsideClaim.model_validate({"scheme": "", **texts, "problem": problem})
-
-
-# -- readings of one statement --------------------------------------------------------------------
-
-
-def settle_reading(claims: Sequence[Claim], index: int) -> Claim:
-    """Return the claim at this place with its statement's id and texts, if these are counted.
-
-    Raises InputError, whose name is the key, if its keys contradict each other or its statement.
-    """
-    claim = claims[index]
-    if all(other.model_fields_set.isdisjoint(_KEYS_OF_READINGS) for other in claims):
-        return claim
-    if claim.standing == "ours":
-        if claim.reading_of:
-            problem = "a claim of ours is no reading of a paper's statement"
-            raise InputError("reading_of", claim.reading_of, problem)
-        return claim
-    if claim.reading_of:
-        return _settle_other_reading(claims, index)
-    # A statement that is only read strictly, or as a misprint, would count as none of the paper's.
-    fair = [c for c in claims if claim.id in (c.id, c.reading_of) and c.standing == "fair"]
-    if not fair:
-        problem = "no reading of this statement is fair, so that it is none of the paper"
-        raise InputError("standing", claim.standing, problem)
-    return claim.model_copy(update={"reading_of": claim.id})
-
-
-def _settle_other_reading(claims: Sequence[Claim], index: int) -> Claim:
-    claim = claims[index]
-    statement = next((c for c in claims[:index] if c.id == claim.reading_of), None)
-    if statement is None:
-        raise InputError("reading_of", claim.reading_of, "no claim before this one has this id")
-    if statement.standing == "ours" or statement.reading_of not in ("", statement.id):
-        problem = (
-            "is ours" if statement.standing == "ours" else f"is a reading of {statement.reading_of}"
-        )
-        raise InputError(
-            "reading_of", claim.reading_of, f"{problem}; name a statement's first claim"
-        )
-    if claim.statement:
-        raise InputError(
-            "statement", claim.statement, f"is that of {statement.id}; say how it is read"
-        )
-    if not claim.reading:
-        raise InputError("reading", NOT_GIVEN, f"is missing: how {statement.id} is read here")
-    texts = {key: getattr(claim, key) or getattr(statement, key) for key in ("source", "section")}
-    return claim.model_copy(update={"statement": statement.statement, **texts})

@@ -14,37 +14,35 @@
     kind = "defect_order"
     defect_order = 3
 
-`title` names the whole; `about` lines describe it at the head of a report, and `[[left_out]]`
-tables name, with `what` and `why`, the parts of the paper that no claim covers. See
-`verify.claims.base_claim` for claims and readings of one statement, `verify.claims.kinds` for the
-kinds, `verify.claims.claim_scenes` for what a claim may speak of, and
-`verify.scenes.paper_sections` for `[[figure]]` and `[[cause]]`. A scene that a claim names is a
-`[[scene]]` of this file, or the file of that name beside it.
+`title` names the whole. See `verify.claims.statement_readings` for readings of one statement and
+for repairs, `verify.claims.kinds` for the kinds, `verify.claims.claim_scenes` for what a claim may
+speak of, and `verify.claims.paper_file` for what else a file may say of its paper. A scene that a
+claim names is a `[[scene]]` of this file, or the file of that name beside it; a report shows the
+scenes of `report_scenes = ["NAME", …]`, by default these.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from verify.claims.base_claim import Claim, outside, settle_reading
+from verify.claims.base_claim import Claim, outside
 from verify.claims.claim_scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
 from verify.claims.kinds import models
+from verify.claims.paper_file import TABLES, PaperFile, errors_located_at
 from verify.claims.quantified_claims import QuantifiedClaim
 from verify.claims.run_claims import RunKeys
-from verify.errors import NOT_GIVEN, InputError, LimitError, unknown_name
+from verify.claims.statement_readings import check_repair, settle_reading
+from verify.errors import InputError, LimitError, unknown_name
 from verify.files import read_text
-from verify.prose import read_prose
 from verify.scenes.model_mistakes import describe_first_error
-from verify.scenes.paper_sections import Cause, PaperFigure
 from verify.scenes.scene import Scene
-from verify.scenes.toml_file import Lines, lines_of, read_toml, tables_of
+from verify.scenes.toml_file import lines_of, read_toml
 
-_ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
+_ROOT = ("title", "defaults", "scene", "report_scenes", "claim", *TABLES)
 # A claim needs one key of each group. If it gives one itself, it takes none of that group from the
 # defaults: `steps` of a claim would otherwise contradict a shared `time`.
 _GROUPS = (
@@ -60,21 +58,15 @@ _ALSO = {"parameter": ("parameters",), "step_size": ("step_sizes",), "number": (
 
 
 @dataclass
-class ClaimsFile:
+class ClaimsFile(PaperFile):
     """The claims in their order, with their scenes by the names that the claims use.
 
-    `about`: the first lines of a report; `left_out`: what is not claimed, and why.
+    `report_scenes`: those that a report of the file shows by themselves.
     """
 
-    name: str
-    title: str
-    about: tuple[str, ...] = ()
-    left_out: tuple[tuple[str, str], ...] = ()
     claims: list[Claim] = field(default_factory=list)
     scenes: dict[str, Scene] = field(default_factory=dict)
-    causes: list[Cause] = field(default_factory=list)
-    figures: list[PaperFigure] = field(default_factory=list)
-    lines: Lines = field(default_factory=lambda: Lines({}))
+    report_scenes: list[Scene] = field(default_factory=list)
 
     def warnings(self, claims: Collection[Claim]) -> list[str]:
         """Return a line with its place for each claim that readers may misunderstand."""
@@ -121,8 +113,6 @@ def load_claims(path: Path) -> ClaimsFile:
             f"{path.name}:{line}: {key}", data[key], "unknown; allowed: " + ", ".join(_ROOT)
         )
     file.title = str(data.get("title", path.stem))
-    file.about = _texts(file, "about", data.get("about", []))
-    file.left_out = _left_out(file, data.get("left_out", []))
     defaults = _defaults(file, data.get("defaults", {}))
     scenes = NamedScenes(path, data.get("scene", []), file.lines)
     for index, table in enumerate(tables):
@@ -142,26 +132,12 @@ def load_claims(path: Path) -> ClaimsFile:
                 raise located_error from None
             _append(file, outside({**defaults, **table}, str(located_error)))
     _settle_all_readings(file)
-    _add_causes(file, data.get("cause", []))
-    _add_figures(file, data.get("figure", []), scenes)
+    file.add_tables(data, file.claims, scenes.get)
+    names = file.texts("report_scenes", data.get("report_scenes", [*scenes.scenes]))
+    line = file.lines.line_of("", 0, "report_scenes")
+    with errors_located_at(f"{path.name}:{line}: report_scenes"):
+        file.report_scenes = [scenes.get(name) for name in names]
     return file
-
-
-def _texts(file: ClaimsFile, key: str, value: Any) -> tuple[str, ...]:
-    """Check a list of texts that stands under a top-level key of the file."""
-    if not isinstance(value, list) or not all(isinstance(text, str) for text in value):
-        line = file.lines.line_of("", 0, key)
-        raise InputError(f"{file.name}:{line}: {key}", value, "is not a list of texts")
-    return tuple(value)
-
-
-def _left_out(file: ClaimsFile, tables: Any) -> tuple[tuple[str, str], ...]:
-    """Return what is not claimed, each with the reason."""
-    for index, table in enumerate(tables_of(file.name, "left_out", tables)):
-        if not isinstance(table, dict) or set(table) != {"what", "why"}:
-            line = file.lines.line_of("left_out", index)
-            raise InputError(f"{file.name}:{line}: left_out", table, "has `what` and `why`, both")
-    return tuple((str(table["what"]), str(table["why"])) for table in tables)
 
 
 def _settle_all_readings(file: ClaimsFile) -> None:
@@ -174,46 +150,10 @@ def _settle_all_readings(file: ClaimsFile) -> None:
     for index, claim in enumerate(file.claims):
         try:
             claims.append(settle_reading(file.claims, index))
+            check_repair(claims[-1], file.claims)
         except InputError as error:
             raise file.locate_error(index, claim.id, error) from None
     file.claims = claims
-
-
-def _add_causes(file: ClaimsFile, tables: Any) -> None:
-    """Add the causes that explain several statements, once all claims are known."""
-    ids = {claim.id for claim in file.claims}
-    statements = {claim.reading_of for claim in file.claims if claim.reading_of}
-    for index, table in enumerate(tables_of(file.name, "cause", tables)):
-        with _errors_located_at(f"{file.name}:{file.lines.line_of('cause', index)}: cause"):
-            says = table.get("says") if isinstance(table, dict) else None
-            if not isinstance(says, str) or not says:
-                raise InputError("says", says or NOT_GIVEN, "is a sentence; none stands here")
-            cause = Cause.model_validate({**table, "says": read_prose(says)})
-            cause.check(statements, ids)
-            file.causes.append(cause)
-
-
-@contextmanager
-def _errors_located_at(place: str) -> Iterator[None]:
-    """Add the place in the file to the errors raised inside."""
-    try:
-        yield
-    except ValidationError as error:
-        raise describe_first_error(error, place) from None
-    except InputError as error:
-        raise InputError(f"{place}: {error.name}", error.value, error.problem) from None
-
-
-def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
-    """Add the paper's figures that are to be drawn again, once all claims are known."""
-    ids = {claim.id for claim in file.claims}
-    for index, table in enumerate(tables_of(file.name, "figure", tables)):
-        with _errors_located_at(f"{file.name}:{file.lines.line_of('figure', index)}: figure"):
-            figure = PaperFigure.model_validate(table)
-            if figure.label in {other.label for other in file.figures}:
-                raise InputError("label", figure.label, "stands twice")
-            figure.check(scenes.get(figure.scene), ids)
-        file.figures.append(figure)
 
 
 def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:

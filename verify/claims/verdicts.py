@@ -23,7 +23,7 @@ from verify.execution.provenance import provenance
 from verify.hamiltonians import systems
 from verify.prose import prose
 from verify.scenes.frozen import Frozen
-from verify.scenes.paper_sections import Cause, PaperFigure
+from verify.scenes.paper_sections import Assumption, Cause, PaperFigure
 from verify.scenes.results.claim import ClaimResult, Outcome, StatementResult, statements_of
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.report import Report, SceneResult
@@ -185,6 +185,7 @@ def make_report(
     command: str,
     claim_scenes: Mapping[str, Scene] | None = None,
     causes: Sequence[Cause] = (),
+    assumptions: Sequence[Assumption] = (),
     figures: Sequence[PaperFigure] = (),
     preface: Sequence[str] = (),
     not_claimed: Sequence[tuple[str, str]] = (),
@@ -195,7 +196,8 @@ def make_report(
     """Compute what the scenes and claims need, and judge.
 
     A claim is about one of the scenes, or of `claim_scenes`, which the report does not show.
-    `figures` and `preface` are passed on to the page, and so are those `causes` whose claims hold.
+    `figures`, `assumptions` and `preface` are passed on to the page, and so are those `causes`
+    whose claims hold.
     `not_claimed`, the parts of the paper without a claim, is listed with what was left out.
     """
     start_time = time.perf_counter()
@@ -218,9 +220,11 @@ def make_report(
         statements=statements_of(verdicts),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         causes=tuple(cause for cause in causes if _is_shown(cause, verdicts)),
+        assumptions=tuple(assumptions),
         figures=tuple(figures),
         preface=tuple(preface),
         left_out=(*not_claimed, *plan.left_out),
+        not_claimed=tuple(not_claimed),
         provenance=provenance(
             command, start_time, kept=reused, computed=count, where=_describe_cluster(where, count)
         ),

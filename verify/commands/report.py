@@ -67,6 +67,12 @@ _PAGE = "html"
     metavar="DIR",
     help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
 )
+@click.option(
+    "--errata",
+    type=OUT_FOLDER,
+    metavar="DIR",
+    help="Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
+)
 @click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
 @with_placement
 @answering
@@ -76,14 +82,15 @@ def report(
     formats: tuple[str, ...],
     full: bool,
     findings: Path | None,
+    errata: Path | None,
     force: bool,
     placement: "Placement",
     **options: Any,
 ) -> CommandAnswer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
-    SCENE is a TOML file, `paper`, `stiff`, `extreme`, `several-degrees` or `integrators`; or a
-    scheme of one's own and where it starts, in one line:
+    SCENE is a TOML file of a scene or of claims, `paper`, `stiff`, `extreme`, `several-degrees` or
+    `integrators`; or a scheme of one's own and where it starts, in one line:
 
     \b
     verify report --system duffing --param delta=1 --scheme lie2 --step-size 0.01 --time 100 \\
@@ -103,15 +110,20 @@ def report(
     if findings is not None and scene != _INTEGRATORS:
         raise InputError("--findings", str(findings), "is of `verify report integrators`")
     if scene == _INTEGRATORS:
+        _check_errata(errata, None)
         folder, result = _verify_integrators(scene, output, typed_options, placement, force)
     else:
-        folder, result = _verify_scene(
-            _read_request(scene, options), output, typed_options, placement, force
-        )
+        request = _read_request(scene, options)
+        _check_errata(errata, request.claims)
+        folder, result = _verify_scene(request, output, typed_options, placement, force)
     # Each format once, in the order in which they were typed.
     paths = [_select_writer(name, full)(result, folder) for name in dict.fromkeys(formats)]
     if findings is not None:
         paths += _write_notes(result, findings)
+    if errata is not None:
+        from verify.pages.errata.errata import write_errata
+
+        paths += write_errata(result, errata)
     return CommandAnswer(
         lambda: result.model_dump(mode="json"), lambda: show.print_report(result, *paths)
     )
@@ -128,6 +140,15 @@ class _Request:
     claims: "ClaimsFile | None" = None
 
 
+def _check_errata(folder: Path | None, claims: "ClaimsFile | None") -> None:
+    """Raise InputError, before anything is computed, if there can be no erratum."""
+    if folder is None:
+        return
+    if claims is None or not any(claim.reading_of for claim in claims.claims):
+        raise InputError("--errata", str(folder), "is of claims that are readings of statements")
+    ensure_writable(folder, "--errata")
+
+
 def _read_request(scene: str | None, options: Mapping[str, Any]) -> _Request:
     if scene is None:
         scenes = scenes_of(None, options, ("q", "p"), partial(_build_sections, options))
@@ -137,7 +158,9 @@ def _read_request(scene: str | None, options: Mapping[str, Any]) -> _Request:
         )
     check_scene_alone(options)
     title, scenes, file = load_target(scene, _INTEGRATORS)
-    return _Request(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
+    # A file of claims is one paper, however many scenes it has.
+    name = scenes[0].name if file is None and len(scenes) == 1 else Path(scene).stem
+    return _Request(scene, name, title, scenes, file)
 
 
 def _build_sections(
@@ -183,6 +206,7 @@ def _verify_scene(
             command=f"verify report {request.arguments} -o {folder.name}{typed_options}",
             claim_scenes=claim_scenes,
             causes=file.causes if file else (),
+            assumptions=file.assumptions if file else (),
             figures=file.figures if file else (),
             preface=file.about if file else (),
             not_claimed=file.left_out if file else (),

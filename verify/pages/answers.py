@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 from verify.pages.sections.page_contents import ClaimView
 from verify.pages.text.typography import join_and
-from verify.prose import Formula, Prose, prose
-from verify.scenes.results.claim import Outcome
+from verify.prose import Formula, Prose, join_prose, prose
+from verify.scenes.paper_sections import Cause
+from verify.scenes.results.claim import Category
 from verify.scenes.results.proof_result import ProofResult
-from verify.scenes.results.report import Report
+from verify.scenes.results.report import Report, SceneResult
 from verify.verdict import Verdict
 
 _QUESTIONS = {"ΔJ": "Is area preserved?", "S": "Is the symplectic form preserved?"}
@@ -24,15 +25,9 @@ _MIN_ANSWERS = 2
 # Up to so many schemes and systems are few.
 _FEW_ITEMS = 3
 _MAX_LINKS = 12
+_WRONG = {Category.REFUTED, Category.UNDECIDED}
 # Characters of a leading coefficient that is shown here; the proof shows any.
 _MAX_LEADING_LENGTH = 100
-# Of one statement, and of several; those that are refuted stand last, before their links.
-_OUTCOMES = {
-    Outcome.HOLDS: ("holds as meant", "hold as meant"),
-    Outcome.IN_SOME: ("holds in some readings", "hold in some readings"),
-    Outcome.UNDECIDED: ("is undecided", "are undecided"),
-    Outcome.REFUTED: ("is refuted in every reading", "are refuted in every reading"),
-}
 # Severities that begin so are about the last digits of tables; they are counted, not named.
 _DIGITS = "digits"
 # At most so many methods are named for each kind of mistake; the others are counted.
@@ -55,14 +50,18 @@ class RefereeQuestion:
 
 
 def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[RefereeQuestion, ...]:
-    """Return the questions with their answers; none if the page below says more."""
-    area = list(_answer_structure(report))
+    """Return the questions with their answers; none if the page below says more.
+
+    Of a paper, only what it asks itself: systems that no statement of it names stand below.
+    """
+    named = {c.scene_title for c in claims if c.statement and c.scene_title}
+    scenes = [s for s in report.scenes if not report.statements or (s.title or s.name) in named]
+    area = list(_answer_structure(scenes))
     entries = [
-        *_answer_causes(report, claims),
-        *_answer_theory(claims),
+        *_answer_theory(claims, report.causes),
         *area,
         *_answer_tables(claims),
-        *_answer_equal_cost(report),
+        *([] if report.statements else _answer_equal_cost(scenes)),
     ]
     few = len(report.scenes) <= _FEW_ITEMS and all(
         len(question.lines) <= _FEW_ITEMS for question in area
@@ -70,10 +69,12 @@ def answer_questions(report: Report, claims: Sequence[ClaimView]) -> tuple[Refer
     return tuple(entries) if len(entries) >= _MIN_ANSWERS or (area and few) else ()
 
 
-def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
-    """Yield the causes that explain several statements, each with links to these."""
-    lines = []
-    for cause in report.causes:
+def explain(causes: Sequence[Cause], claims: Sequence[ClaimView]) -> Iterator[LinkedLine]:
+    """Yield each cause, whom it disfavours and how it may have come about.
+
+    The links lead to the statements that it explains.
+    """
+    for cause in causes:
         first = [
             c
             for c in claims
@@ -83,13 +84,17 @@ def _answer_causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Refe
         # anchor.
         names = {c.name: c.anchor for c in reversed(first)}
         links = tuple((c.name, names[c.name]) for c in first if names[c.name] == c.anchor)
-        lines.append(LinkedLine(cause.says, links))
-    if lines:
-        yield RefereeQuestion("What is wrong, and why?", tuple(lines))
+        sentences = [cause.says, *filter(None, (cause.disfavours, cause.origin))]
+        yield LinkedLine(join_prose(" ", sentences), links)
 
 
-def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
-    """Yield the outcomes of the statements none of whose readings speaks of a single H."""
+def _answer_theory(
+    claims: Sequence[ClaimView], causes: Sequence[Cause]
+) -> Iterator[RefereeQuestion]:
+    """Yield the outcomes of the statements none of whose readings speaks of a single H.
+
+    Those are named that are refuted, or that do not hold because of one of the causes.
+    """
     specific = {c.statement.id for c in claims if c.statement and c.result.scene}
     general = [
         c
@@ -98,23 +103,31 @@ def _answer_theory(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
     ]
     if not general:
         return
-    counts = Counter(c.statement.outcome for c in general if c.statement)
-    clauses = [f"{n} {words[n != 1]}" for o, words in _OUTCOMES.items() if (n := counts[o])]
-    refuted = [c for c in general if c.statement and c.statement.outcome is Outcome.REFUTED]
-    clauses += [] if refuted else ["none is refuted in every reading"]
+    counts = Counter(c.statement.category for c in general if c.statement)
+    clauses = [f"{n} {category.verb(n)}" for category in Category if (n := counts[category])]
+    sentence = f"Of {len(general)} statements on every H, {join_and(clauses)}"
+    explained = {name for cause in causes for name in cause.explains}
+    wrong = [
+        c
+        for c in general
+        if c.statement and (c.statement.id in explained or c.statement.category in _WRONG)
+    ]
     # Links follow a colon; a long list of them would hide the sentence.
-    end = ":" if 0 < len(refuted) <= _MAX_LINKS else "."
-    links = tuple((c.name, c.anchor) for c in refuted) if end == ":" else ()
-    line = f"Of {len(general)} statements on every H, {join_and(clauses)}{end}"
-    yield RefereeQuestion("Is the theory right?", (LinkedLine(Prose(line), links),))
+    if not 0 < len(wrong) <= _MAX_LINKS:
+        end = "." if counts[Category.REFUTED] else "; none is refuted in every reading."
+        yield RefereeQuestion("Is the theory right?", (LinkedLine(Prose(sentence + end)),))
+        return
+    links = tuple((c.name, c.anchor) for c in wrong)
+    line = Prose(f"{sentence}. What needs a repair:")
+    yield RefereeQuestion("Is the theory right?", (LinkedLine(line, links),))
 
 
-def _answer_structure(report: Report) -> Iterator[RefereeQuestion]:
+def _answer_structure(scenes: Sequence[SceneResult]) -> Iterator[RefereeQuestion]:
     """Yield a line for each scheme, with the leading term for each H that is not preserved."""
     for structure, question in _QUESTIONS.items():
         # By scheme, not by scene, so that each scheme has one line however many H it is proved for.
         by_scheme: dict[str, list[tuple[str, ProofResult]]] = {}
-        for scene in report.scenes:
+        for scene in scenes:
             for proof in scene.proofs:
                 if proof.what == structure:
                     titled_proof = scene.title or scene.name, proof
@@ -177,10 +190,10 @@ def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
         yield RefereeQuestion("Do the printed tables stand?", tuple(lines))
 
 
-def _answer_equal_cost(report: Report) -> Iterator[RefereeQuestion]:
+def _answer_equal_cost(scenes: Sequence[SceneResult]) -> Iterator[RefereeQuestion]:
     """Yield the comparisons at equal run time with schemes that do not preserve area."""
     lines = []
-    for scene in report.scenes:
+    for scene in scenes:
         not_preserving = {proof.scheme for proof in scene.proofs if not proof.area_preserving}
         for comparison in scene.work_precision.comparisons if scene.work_precision else ():
             if comparison.error is not None and {comparison.one, comparison.other} & not_preserving:

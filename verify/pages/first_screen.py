@@ -7,7 +7,14 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.answers import MistakesByLibrary, RefereeQuestion, answer_questions, find_mistakes
+from verify.pages.answers import (
+    LinkedLine,
+    MistakesByLibrary,
+    RefereeQuestion,
+    answer_questions,
+    explain,
+    find_mistakes,
+)
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
 from verify.pages.sections.page_contents import COLOURS, ClaimView
@@ -16,7 +23,7 @@ from verify.pages.sections.section import SectionPlace, Tile, VisibleSection, wa
 from verify.pages.sections.section import sections as found_sections
 from verify.pages.text.legend import SIGNS, counts_of
 from verify.pages.text.typography import join_and, superscript, whole
-from verify.scenes.results.claim import Outcome, describe_counts
+from verify.scenes.results.claim import Category, Outcome, describe_counts
 from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
@@ -34,17 +41,16 @@ _RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
     "sensitive": ("≀", Verdict.ENCLOSED),
     "undecided": ("?", Verdict.UNDECIDED),
 }
-# A statement's outcome: its sign, its word, what it means.
-_OUTCOMES = {
-    Outcome.HOLDS: (
-        "✓", "hold as meant", "every fair reading holds; a strict or misprinted one may not",
+# The sign of a statement's category, and what it means.
+_CATEGORIES = {
+    Category.AS_MEANT: ("✓", "every fair reading holds; a strict one may not"),
+    Category.MISPRINTED: ("✓", "what is meant holds; the letter says something else"),
+    Category.DEPENDS: (
+        "≈", "one reading holds; a fair one is refuted, or not decided",
     ),
-    Outcome.IN_SOME: (
-        "≈", "hold in some readings", "one reading holds; a fair one is refuted, or not decided",
-    ),
-    Outcome.REFUTED: ("✗", "refuted", "every reading is refuted, also the most favourable one"),
-    Outcome.UNDECIDED: (
-        "?", "undecided", "no reading is shown to hold, and not all are refuted",
+    Category.REFUTED: ("✗", "every reading is refuted, also the most favourable one"),
+    Category.UNDECIDED: (
+        "?", "no reading is shown to hold, and not all are refuted",
     ),
 }  # fmt: skip
 # Up to so many proofs have a sentence and a tile each; more of them are counted.
@@ -63,8 +69,9 @@ class Refutation:
 class FirstScreen:
     """The content of the first screen.
 
-    `wrong`: the mistakes by library, in place of a refutation. `plot` stands here and nowhere else
-    on the page; `place` is the section that it belongs to.
+    `causes`: what explains that statements do not hold. `wrong`: the mistakes by library, in place
+    of a refutation. `plot` stands here and nowhere else on the page; `place` is the section that it
+    belongs to.
     """
 
     finding: str
@@ -74,6 +81,7 @@ class FirstScreen:
     plot: Plot | None
     place: SectionPlace | None
     wrong: MistakesByLibrary | None = None
+    causes: tuple[LinkedLine, ...] = ()
 
 
 def first_screen(
@@ -89,9 +97,9 @@ def first_screen(
     main_finding = finding(report, refutation) or sentence
     wrong = find_mistakes(claims)
     telling = None if wrong else refutation
-    return FirstScreen(
-        main_finding, all_tiles, answer_questions(report, claims), telling, plot, place, wrong
-    )
+    causes = tuple(explain(report.causes, claims))
+    questions = answer_questions(report, claims)
+    return FirstScreen(main_finding, all_tiles, questions, telling, plot, place, wrong, causes)
 
 
 def _finding_of_sections(report: Report) -> tuple[str, Sequence[Tile]]:
@@ -190,11 +198,11 @@ def _power_of_h(power: int) -> str:
 
 def _build_tiles(report: Report) -> list[Tile]:
     if report.statements:
-        counts = Counter(statement.outcome for statement in report.statements)
+        counts = Counter(statement.category for statement in report.statements)
         return [
-            Tile(COLOURS[o], sign, whole(counts[o]), word, meaning, counts[o])
-            for o, (sign, word, meaning) in _OUTCOMES.items()
-            if counts[o]
+            Tile(COLOURS[c], sign, whole(counts[c]), _word(c, counts[c]), meaning, counts[c])
+            for c, (sign, meaning) in _CATEGORIES.items()
+            if counts[c]
         ]
     if report.claims:
         verdicts = Counter(c.verdict for c in report.claims)
@@ -212,6 +220,12 @@ def _build_tiles(report: Report) -> list[Tile]:
             Tile(v, SIGNS[v][0], whole(n), text, weight=n) for v, n, text in _proof_counts(proofs)
         ]
     return [_tile_of_proof(proof) for proof in proofs]
+
+
+def _word(category: Category, count: int) -> str:
+    """Return the tile's word: “refuted” and “undecided” have no verb there."""
+    words = category.verb(count).removeprefix("is ").removeprefix("are ")
+    return words.removesuffix(" in every reading")
 
 
 def _tiles_of_runs(judged_runs: Sequence[StabilityResult]) -> list[Tile]:

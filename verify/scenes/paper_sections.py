@@ -1,4 +1,4 @@
-"""The tables of a paper's file beside its claims: figures to be made again, and causes.
+"""The tables of a paper's file beside its claims: figures, causes, and what is assumed.
 
 A figure is made again from our own runs, with the claims drawn from it:
 
@@ -17,6 +17,16 @@ A cause is one mistake, or one fact, that explains why several statements do not
 says = "Both tables print `1/N` for MSE."   # in a sentence; a formula stands between backticks
 explains = ["table-1", "table-2"]            # statements that do not hold because of it
 shown_by = ["mse-is-1-over-n"]               # claims, ours, that show it; may be left out
+disfavours = "the authors, whose …"          # whom the mistake puts in a worse light than the truth
+origin = "One of the N entries is left at 0."  # how it may have come about, if `shown_by` shows it
+
+An assumption is what the paper does not say and its readers have to choose:
+
+[[assumption]]
+says = "The cat stands at (q, p) = (1, 0)."
+silence = "No place is printed."              # what the paper does, and does not, say of it
+decides = [{ claim = "area", otherwise = "area-elsewhere" }]   # the same claim, otherwise assumed
+settled_by = ["counted-from-1"]               # claims that show that nothing depends on it
 """
 
 from collections.abc import Collection
@@ -24,7 +34,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
+from verify.prose import Prose
 from verify.scenes.frozen import Frozen, ProseText, WithProse
 from verify.scenes.scene import Scene
 
@@ -69,6 +80,10 @@ class Cause(WithProse):
     """The ids of the statements that it explains."""
     shown_by: Annotated[tuple[str, ...], Field(max_length=100)] = ()
     """The ids of the claims that show it."""
+    disfavours: ProseText = Prose("")
+    """Whom the mistake puts in a worse light than the truth would, and by how much."""
+    origin: ProseText = Prose("")
+    """How the mistake may have come about."""
 
     def check(self, statements: Collection[str], claims: Collection[str]) -> None:
         """Raise InputError if a statement or a claim is unknown."""
@@ -80,3 +95,35 @@ class Cause(WithProse):
                 if name not in allowed:
                     kind = "statement" if key == "explains" else "claim"
                     raise InputError(key, name, f"is no id of a {kind} of this file")
+
+
+class Alternative(Frozen):
+    """A claim under the assumption, and the claim that is the same otherwise."""
+
+    claim: str
+    """The id of the claim that assumes it."""
+    otherwise: str
+    """The id of the claim that assumes something else."""
+
+
+class Assumption(WithProse):
+    """A choice that the paper leaves open, with the verdicts that it decides."""
+
+    says: ProseText
+    """What is assumed, in a sentence."""
+    silence: ProseText = Prose("")
+    """What the paper says of it, and what it does not."""
+    decides: Annotated[tuple[Alternative, ...], Field(max_length=100)] = ()
+    """The verdicts that it may decide, each beside the one that stands otherwise."""
+    settled_by: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    """The ids of claims that show that no verdict depends on it."""
+
+    def check(self, claims: Collection[str]) -> None:
+        """Raise InputError if a claim is unknown, or if no claim is named."""
+        pairs = [(alternative.claim, alternative.otherwise) for alternative in self.decides]
+        if not pairs and not self.settled_by:
+            raise InputError("decides", NOT_GIVEN, "or `settled_by` names the claims concerned")
+        for name in (*(name for pair in pairs for name in pair), *self.settled_by):
+            if name not in claims:
+                key = "settled_by" if name in self.settled_by else "decides"
+                raise InputError(key, name, "is no id of a claim of this file")

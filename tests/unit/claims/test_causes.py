@@ -9,6 +9,7 @@ from verify.claims.verdicts import make_report
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
+from verify.prose import Formula
 
 HEAD = """
 [defaults]
@@ -65,6 +66,18 @@ def test_a_cause_is_told_where_it_is_shown_and_nothing_that_it_explains_holds(
     assert (ours.remark, ours.confirmed_by) == ("This is h^4.", "tests/second/test_me.py")
 
 
+def test_a_cause_may_say_whom_it_disfavours_and_how_it_came_about(tmp_path: Path) -> None:
+    more = 'disfavours = "The authors, by `h^2`."\norigin = "One of the `N` is 0."'
+    (cause,) = load_claims(written(tmp_path, f'says = "x"\nexplains = ["a"]\n{more}')).causes
+    assert cause.disfavours.parts == ("The authors, by ", Formula("h^2"), ".")
+    assert cause.origin.parts == ("One of the ", Formula("N"), " is 0.")
+
+
+def test_a_cause_says_nothing_of_that_by_itself(tmp_path: Path) -> None:
+    (cause,) = load_claims(written(tmp_path, 'says = "x"\nexplains = ["a"]')).causes
+    assert (cause.disfavours, cause.origin) == ("", "")
+
+
 @pytest.mark.parametrize(
     ("cause", "problem"),
     [
@@ -76,6 +89,8 @@ def test_a_cause_is_told_where_it_is_shown_and_nothing_that_it_explains_holds(
         ('says = "x"\nexplains = ["c"]', "explains=c: is no id of a statement"),
         ('says = "x"\nexplains = ["a"]\nshown_by = ["c"]', "shown_by=c: is no id of a claim"),
         ('says = "x"\nexplains = ["a"]\nbecause = "y"', "because"),
+        ('says = "x"\nexplains = ["a"]\ndisfavours = 3', "disfavours=3: is a sentence"),
+        ('says = "x"\nexplains = ["a"]\norigin = ["y"]', "origin=['y']: is a sentence"),
     ],
 )
 def test_what_cannot_be_said_of_a_cause_is_named_with_its_line(

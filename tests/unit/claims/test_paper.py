@@ -9,7 +9,8 @@ from tests.paths import ROOT
 from verify.claims.claims_file import load_claims
 
 FILE = load_claims(ROOT / "reports" / "paper" / "claims.toml")
-PAGES = ("README.md", "docs/explanation/results-of-the-paper.md")
+README = "README.md"
+PAGES = (README, "docs/explanation/results-of-the-paper.md")
 EQUATIONS = range(1, 33)
 CRITERIA = range(1, 5)
 FIGURES = range(1, 15)
@@ -159,7 +160,9 @@ def test_the_documentation_counts_the_statements_of_the_file(page: str) -> None:
     readings = [claim for claim in FILE.claims if claim.standing != "ours"]
     statements = {claim.reading_of for claim in readings}
     assert f"{len(statements)} statements of the paper, in {len(readings)} readings" in text
-    assert f"{len(FILE.claims) - len(readings)} more claims are ours" in text
+    ours = re.findall(r"(\d+) more claims are ours", text)
+    assert {*ours} <= {str(len(FILE.claims) - len(readings))}
+    assert ours or page == README, "the page counts them, and README may"
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -10,9 +10,12 @@ from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
+from verify.prose import Prose
 from verify.scenes.results.claim import (
+    Category,
     Outcome,
     Standing,
+    StatementResult,
     describe_counts,
     outcome_of,
     statements_of,
@@ -98,7 +101,7 @@ def test_readings_have_the_texts_of_their_statement_and_are_counted_with_it(
     )
 
 
-def test_misprints_of_what_holds_as_meant_are_counted(written: Callable[..., Path]) -> None:
+def test_misprints_of_what_holds_as_meant_are_counted_apart(written: Callable[..., Path]) -> None:
     path = written(
         claim("a", 3, standing="misprint", reading="as printed"),
         claim("b", reading_of="a", reading="as meant"),
@@ -109,9 +112,58 @@ def test_misprints_of_what_holds_as_meant_are_counted(written: Callable[..., Pat
     check = prepare(load_claims(path))
     results = check.run(Store(None), where=THIS_PROCESS)
     assert describe_counts(check.statements(results), results) == (
-        "3 statements of the paper, in 5 readings: 2 hold as meant, 1 of them with a misprint, 1 "
+        "3 statements of the paper, in 5 readings: 1 holds as meant, 1 holds with a misprint, 1 "
         "is refuted in every reading"
     )
+
+
+@pytest.mark.parametrize(
+    ("outcome", "category", "of_a_misprint"),
+    [
+        (Outcome.HOLDS, Category.AS_MEANT, Category.MISPRINTED),
+        (Outcome.IN_SOME, Category.DEPENDS, Category.DEPENDS),
+        (Outcome.REFUTED, Category.REFUTED, Category.REFUTED),
+        (Outcome.UNDECIDED, Category.UNDECIDED, Category.UNDECIDED),
+    ],
+)
+def test_a_statement_has_the_category_of_its_outcome_and_of_its_misprint(
+    outcome: Outcome, category: Category, of_a_misprint: Category
+) -> None:
+    statement = StatementResult(
+        id="a", source="", section="", statement=Prose("x"), outcome=outcome, readings=("a",)
+    )
+    assert statement.category is category
+    assert statement.model_copy(update={"misprinted": True}).category is of_a_misprint
+
+
+def test_a_reading_that_is_a_misprint_makes_its_statement_misprinted(
+    written: Callable[..., Path],
+) -> None:
+    path = written(
+        claim("a", reading="as meant"),
+        claim("b", 3, reading_of="a", reading="as printed", standing="misprint"),
+        claim("c", reading="as meant"),
+        claim("d", 3, reading_of="c", reading="exactly", standing="strict"),
+    )
+    check = prepare(load_claims(path))
+    statements = check.statements(check.run(Store(None), where=THIS_PROCESS))
+    assert [(each.id, each.misprinted) for each in statements] == [("a", True), ("c", False)]
+
+
+@pytest.mark.parametrize(
+    ("category", "one", "several"),
+    [
+        (Category.AS_MEANT, "holds as meant", "hold as meant"),
+        (Category.MISPRINTED, "holds with a misprint", "hold with a misprint"),
+        (Category.DEPENDS, "depends on the reading", "depend on the reading"),
+        (Category.REFUTED, "is refuted in every reading", "are refuted in every reading"),
+        (Category.UNDECIDED, "is undecided", "are undecided"),
+    ],
+)
+def test_a_category_is_a_verb_of_one_statement_and_of_several(
+    category: Category, one: str, several: str
+) -> None:
+    assert (category.verb(1), category.verb(2), category.verb(0)) == (one, several, several)
 
 
 def test_a_statement_of_which_a_reading_is_not_checked_has_no_outcome(

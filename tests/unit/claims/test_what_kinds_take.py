@@ -31,6 +31,7 @@ KEYS: dict[str, dict[str, Any]] = {
     "less": {**RUN, "quantity": "mse", "than": "abs_lambda"},
     "magnitude": {**RUN, "quantifier": "every", "exponents": {"abs_lambda": -5}},
     "growth": {**RUN, "growth": "linear"},
+    "growth_bound": {**RUNS, "eta": 2, "c1": 1, "c2": 1},
     "criteria": {**RUN, "numbers": [1, 2, 3, 4]},
     "solution_error": {**RUN, "within": "0.1"},
     "shifted": {**RUN, "again": [{"kind": "less", "quantity": "mse", "than": "abs_lambda"}]},

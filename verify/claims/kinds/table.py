@@ -23,6 +23,7 @@ from verify.claims.quantities import (
     start_of,
 )
 from verify.claims.run_claims import RunClaim
+from verify.claims.table_script import table_script
 from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Formula, Prose, join_prose, number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -86,12 +87,24 @@ class PrintedTableClaim(RunClaim):
         if False not in entries:
             evidence = self.describe_range(values) + ", as printed"
             return self.result(all_hold(entries), evidence, details)
-        grid = findings.scene(self.scene).grid
+        scene = findings.scene(self.scene)
+        # What the row is says more than that it is wrong, and stands first.
         evidence = prose(
+            self._describe_identities(rows[0], scene.grid.time if scene.grid else None),
             self._describe_wrong(verdicts), ": ", self.describe_range(values),
-            self._describe_identities(rows[0], grid.time if grid else None),
         )  # fmt: skip
-        return self.result(Verdict.REFUTED, evidence, details)
+        result = self.result(Verdict.REFUTED, evidence, details)
+        # Of an MSE that is 0 a program would end in the logarithm of 0.
+        script = self._script(scene, rows) if all(map(is_representable, values)) else ""
+        return result.model_copy(update={"reproduction": script})
+
+    def _script(self, scene: Scene, rows: Sequence[Sequence[RunResult]]) -> str:
+        """Return a program that prints the values that were computed."""
+        if any(isinstance(row[0].q, tuple) or isinstance(row[0].p, tuple) for row in rows):
+            return ""
+        starts = [(Fraction(str(row[0].q)), Fraction(str(row[0].p))) for row in rows]
+        sizes = [(h, self.run_at(rows[0], h).steps) for h in self.step_sizes]
+        return table_script(scene.exact_hamiltonian(), self.scheme, self.quantity, starts, sizes)
 
     def entries(self, rows: Sequence[Sequence[RunResult]]) -> Entries:
         """Return the verdicts on the printed values, a row per initial value, and the values."""
@@ -142,7 +155,7 @@ class PrintedTableClaim(RunClaim):
         names = [Formula(f"lg({_monomial(e)})") for e in _identities(runs, self.printed, time)]
         if not names:
             return prose("")
-        return prose("; the printed row is ", join_prose(" = ", names), " to all its digits")
+        return prose("the printed row is ", join_prose(" = ", names), " to all its digits; ")
 
 
 def _identities(

@@ -254,30 +254,33 @@ def paper_folder() -> Path:
 
 
 def load_target(scene: str, *further_names: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
-    """Load the title, scenes and claims of `paper`, of a suite, or of a scene's file.
+    """Load the title, scenes and claims of `paper`, of a suite, of a scene's or a claims file.
 
     `further_names`: further names that the command takes, which the error for an unknown one lists.
     """
     from verify.scenes.scene import load_scene
+    from verify.scenes.toml_file import read_toml
 
     if scene in suites():
         return suites()[scene], _load_suite(scene), None
-    if scene != "paper":
+    path = Path(scene)
+    if scene == "paper":
+        path = paper_folder() / "claims.toml"
+    else:
         if not scene.strip():
             raise InputError("SCENE", scene, "is empty; give paper, a suite or a TOML file")
         # A bare word without a file is a mistyped name rather than a missing file.
-        if not Path(scene).suffix and not Path(scene).exists():
+        if not path.suffix and not path.exists():
             here = {path.stem: path.name for path in sorted(Path.cwd().glob("*.toml"))}
             names = ("paper", *suites(), *further_names)
             raise unknown_name("SCENE", scene, names, ", or a TOML file", here)
-        loaded = load_scene(Path(scene))
+    if "claim" not in read_toml(path):
+        loaded = load_scene(path)
         return loaded.title or loaded.name, [loaded], None
     from verify.claims.claims_file import load_claims
 
-    folder = paper_folder()
-    scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
-    file = load_claims(folder / "claims.toml")
-    return file.title, scenes, file
+    file = load_claims(path)
+    return file.title, file.report_scenes, file
 
 
 def suites() -> dict[str, str]:

@@ -174,6 +174,7 @@ class StepProgram:
         return index
 
     def input(self, name: str, *, static: bool) -> int:
+        """Return the input of that name; `static`: it is the same in all steps."""
         key = "input", name
         existing = self._index_of.get(key)
         return self._new(key, kinds.Input(name), static) if existing is None else existing
@@ -230,6 +231,7 @@ class StepProgram:
         return self._index_of.get((value, 1)) == x
 
     def neg(self, x: int) -> int:
+        """Return −x."""
         op = self.ops[x]
         if op.kind == "const":
             return self.quotient(-op.value.numerator, op.value.denominator)
@@ -240,6 +242,7 @@ class StepProgram:
     # Identities with 0, ±1 and signs are applied when an operation is added, so that equal values
     # get one index in whatever form they are written.
     def add(self, x: int, y: int) -> int:
+        """Return x + y."""
         special, ops = self._special, self.ops
         if x in special and special[x] == 0:
             return y
@@ -253,6 +256,7 @@ class StepProgram:
         return self._binary(kinds.Addition, x, y) if x <= y else self._binary(kinds.Addition, y, x)
 
     def mul(self, x: int, y: int) -> int:
+        """Return x y."""
         special, ops, static = self._special, self.ops, self.static
         if x in special:
             return self._multiple(special[x], x, y)

@@ -161,6 +161,8 @@ _TEX_SIGNS = {
     "⇔": r"\Leftrightarrow ", "…": r"\dots ", "∂": r"\partial ", "∇": r"\nabla ",
     "∞": r"\infty ", "∑": r"\sum ", "∏": r"\prod ", "∫": r"\int ", "‖": r"\Vert ",
     "<": r"\lt ", ">": r"\gt ", "\u00a0": r"\ ", "∪": r"\cup ", "∩": r"\cap ",
+    "ℓ": r"\ell ", "←": r"\leftarrow ", "∝": r"\propto ", "∮": r"\oint ", "∼": r"\sim ",
+    "≢": r"\not\equiv ", "⊂": r"\subset ",
 }  # fmt: skip
 _ACCENTS = {"\u0304": "bar", "\u0303": "tilde", "\u0307": "dot", "\u0308": "ddot"}
 _PLAIN_CHARACTER = re.compile(r"[A-Za-z0-9+\-=/().,;:! ]")
@@ -213,7 +215,7 @@ def _tex_operator(node: MarkupNode) -> str:
             return r"\left("
         if node.text == ")":
             return r"\right)"
-    return "".join(_tex_character(c) for c in node.text)
+    return "".join(tex_character(c) for c in node.text)
 
 
 def _tex_leaf(text: str) -> str:
@@ -222,14 +224,15 @@ def _tex_leaf(text: str) -> str:
     if fraction := re.fullmatch("([0-9]+)\N{FRACTION SLASH}([0-9]+)", normalize("NFKC", text)):
         return rf"\tfrac{{{fraction[1]}}}{{{fraction[2]}}}"
     if len(text) == 2 and text[1] in _ACCENTS:
-        return rf"\{_ACCENTS[text[1]]}{{{_tex_character(text[0])}}}"
-    characters = "".join(_tex_character(c) for c in text)
+        return rf"\{_ACCENTS[text[1]]}{{{tex_character(text[0])}}}"
+    characters = "".join(tex_character(c) for c in text)
     if len(text) > 1 and not re.fullmatch(r"[0-9.]+", text):
         return rf"\mathrm{{{characters}}}"
     return characters
 
 
-def _tex_character(c: str) -> str:
+def tex_character(c: str) -> str:
+    """Return the character as TeX within a formula; "?" if there is no sign for it."""
     if c in _GREEK:
         return f"\\{_GREEK[c]} "
     if c in _TEX_SPECIAL_CHARACTERS:

@@ -13,7 +13,7 @@ from verify.pages.figures.captioned_plot import Plot, captioned_plot
 from verify.pages.sections.section import Counts, VisibleSection
 from verify.pages.sections.table_rows import by_key
 from verify.pages.text.typography import is_decimal
-from verify.scenes.results.claim import ClaimResult, Outcome, Standing, StatementResult
+from verify.scenes.results.claim import Category, ClaimResult, Standing, StatementResult
 from verify.scenes.results.report import Report, SceneResult
 from verify.verdict import Verdict
 
@@ -27,21 +27,16 @@ _STANDINGS: dict[Standing, str] = {
     "misprint": "to the letter, a misprint",
     "ours": "ours, not the paper’s",
 }
-_OUTCOMES = {
-    Outcome.HOLDS: "holds as meant",
-    Outcome.IN_SOME: "holds in some",
-    Outcome.REFUTED: "refuted in each",
-    Outcome.UNDECIDED: "undecided",
-}
-# The verdict whose colour a statement's outcome has.
+# The verdict whose colour a statement's category has.
 COLOURS = {
-    Outcome.HOLDS: Verdict.PROVED,
-    Outcome.IN_SOME: Verdict.MEASURED,
-    Outcome.REFUTED: Verdict.REFUTED,
-    Outcome.UNDECIDED: Verdict.UNDECIDED,
+    Category.AS_MEANT: Verdict.PROVED,
+    Category.MISPRINTED: Verdict.ENCLOSED,
+    Category.DEPENDS: Verdict.MEASURED,
+    Category.REFUTED: Verdict.REFUTED,
+    Category.UNDECIDED: Verdict.UNDECIDED,
 }
 # The printed row in the details of a table's claim begins with this word.
-_PRINTED_ROW_START = "printed"
+PRINTED_ROW_START = "printed"
 
 
 @dataclass(frozen=True)
@@ -62,15 +57,15 @@ class ClaimView:
 
     @property
     def outcome(self) -> str:
-        """The statement's outcome, for the first of several readings; else ""."""
+        """The statement's category, for the first of several readings; else ""."""
         if self.statement is None or self.is_later_reading or len(self.statement.readings) == 1:
             return ""
-        return f"{len(self.statement.readings)} readings: {_OUTCOMES[self.statement.outcome]}"
+        return f"{len(self.statement.readings)} readings: {self.statement.category}"
 
     @property
     def tile_word(self) -> str:
         """The verdict, in small letters, of the tile on the first screen that counts the claim."""
-        return (COLOURS[self.statement.outcome] if self.statement else self.result.verdict).lower()
+        return (COLOURS[self.statement.category] if self.statement else self.result.verdict).lower()
 
     @property
     def standing(self) -> str:
@@ -96,7 +91,7 @@ class ClaimView:
             len(details) > 2
             and len(details[0]) > 1
             and all(len(row) == len(details[0]) for row in details)
-            and details[1][0].startswith(_PRINTED_ROW_START)
+            and details[1][0].startswith(PRINTED_ROW_START)
             and all(head.startswith("h = ") for head in details[0][1:])
         )
 

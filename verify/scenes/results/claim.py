@@ -29,6 +29,8 @@ from verify.scenes.frozen import ProseText, WithProse
 from verify.verdict import Verdict
 
 Standing = Literal["fair", "strict", "misprint", "ours"]  # see above
+# What the repair of a statement changes elsewhere in the paper; "" is not said.
+Effect = Literal["", "none", "table", "conclusion"]
 
 
 class StepResult(WithProse):
@@ -68,6 +70,8 @@ class ClaimResult(WithProse):
     computation of the result, whose code shares nothing with this.
     `statement_id`: the statement of the paper of which the claim is a reading, `reading` the way it
     is read and `standing` its relation to the printed text; empty if statements are not counted.
+    `repairs`: the statement in whose place this may be claimed, `repaired` the words, which are
+    those of `statement` if empty, and `effect` what that changes in the paper.
     `reproduction`: a few lines of code that show the mistake in someone else's code; `severity`:
     the kind of mistake, where it is refuted: wrong order, not symplectic as claimed, wrong
     clock, embedded or step weights, digits that a double notices, digits below that, documentation.
@@ -81,6 +85,9 @@ class ClaimResult(WithProse):
     statement_id: str = ""
     reading: ProseText = Prose("")
     standing: Standing = "fair"
+    repairs: str = ""
+    repaired: ProseText = Prose("")
+    effect: Effect = ""
     scene: str
     verdict: Verdict
     evidence: ProseText
@@ -105,8 +112,35 @@ class Outcome(StrEnum):
     UNDECIDED = "undecided"
 
 
+class Category(StrEnum):
+    """The heading under which a statement is counted."""
+
+    AS_MEANT = "holds as meant"
+    MISPRINTED = "holds with a misprint"
+    DEPENDS = "depends on the reading"
+    REFUTED = "is refuted in every reading"
+    UNDECIDED = "is undecided"
+
+    def verb(self, count: int) -> str:
+        """Return the words for that many statements: “hold as meant” for two."""
+        singular, _, rest = self.partition(" ")
+        plural = "are" if singular == "is" else singular.removesuffix("s")
+        return f"{singular if count == 1 else plural} {rest}"
+
+
+_CATEGORIES = {
+    Outcome.HOLDS: Category.AS_MEANT,
+    Outcome.IN_SOME: Category.DEPENDS,
+    Outcome.REFUTED: Category.REFUTED,
+    Outcome.UNDECIDED: Category.UNDECIDED,
+}
+
+
 class StatementResult(WithProse):
-    """A statement of the paper; `readings` are the ids of its claims."""
+    """A statement of the paper; `readings` are the ids of its claims.
+
+    `misprinted`: True if one of the readings is its letter, and the letter a misprint.
+    """
 
     id: str
     source: str
@@ -114,6 +148,14 @@ class StatementResult(WithProse):
     statement: ProseText
     outcome: Outcome
     readings: tuple[str, ...]
+    misprinted: bool = False
+
+    @property
+    def category(self) -> Category:
+        """The heading under which it is counted."""
+        if self.outcome is Outcome.HOLDS and self.misprinted:
+            return Category.MISPRINTED
+        return _CATEGORIES[self.outcome]
 
 
 def outcome_of(readings: Sequence[tuple[Verdict, Standing]]) -> Outcome:
@@ -142,35 +184,20 @@ def statements_of(claims: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
             statement=claims_of_statement[0].statement,
             outcome=outcome_of([(claim.verdict, claim.standing) for claim in claims_of_statement]),
             readings=tuple(claim.id for claim in claims_of_statement),
+            misprinted=any(claim.standing == "misprint" for claim in claims_of_statement),
         )
         for name, claims_of_statement in readings.items()
     )
 
 
 def describe_counts(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> str:
-    """Return a sentence with the numbers of statements, of readings and of each outcome."""
-    counts = Counter(statement.outcome for statement in statements)
+    """Return a sentence with the numbers of statements in each category, and of readings."""
+    counts = Counter(statement.category for statement in statements)
     readings, count = sum(len(each.readings) for each in statements), len(statements)
-    misprints = count_misprinted(statements, claims)
-    slips = f", {misprints} of them with a misprint" if misprints else ""
-    forms = (
-        (counts[Outcome.HOLDS], "{} as meant" + slips, ("holds", "hold")),
-        (counts[Outcome.IN_SOME], "{} in some readings", ("holds", "hold")),
-        (counts[Outcome.REFUTED], "{} refuted in every reading", ("is", "are")),
-        (counts[Outcome.UNDECIDED], "{} undecided", ("is", "are")),
-    )
-    parts = [f"{n} " + template.format(verb[n > 1]) for n, template, verb in forms if n]
+    parts = [f"{counts[c]} {c.verb(counts[c])}" for c in Category if counts[c]]
     ours = len(claims) - readings
     more = f"; {ours} more {'claims are' if ours > 1 else 'claim is'} ours" if ours else ""
     heading = f"{count} statement{'s' if count > 1 else ''} of the paper"
     return (
         f"{heading}, in {readings} reading{'s' if readings > 1 else ''}: {', '.join(parts)}{more}"
-    )
-
-
-def count_misprinted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> int:
-    """Return how many of the statements that hold as meant are misprinted."""
-    slips = {claim.id for claim in claims if claim.standing == "misprint"}
-    return sum(
-        each.outcome is Outcome.HOLDS and bool(slips & {*each.readings}) for each in statements
     )

@@ -9,7 +9,7 @@ from verify.errors import InputError
 from verify.formats import read_json
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, Seconds
-from verify.scenes.paper_sections import Cause, PaperFigure
+from verify.scenes.paper_sections import Assumption, Cause, PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult, StatementResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
@@ -93,8 +93,11 @@ class Report(Frozen):
     """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
 
     `statements`: the statements of the paper whose readings the claims are, where statements are
-    counted; `causes`: explanations why several of them do not hold. `gallery`: the worst scenes of
-    a hunt. `preface`: sentences before everything else, such as on the libraries installed.
+    counted; `causes`: explanations why several of them do not hold; `assumptions`: what the
+    paper leaves open, with the verdicts that depend on it. `gallery`: the worst scenes of
+    a hunt. `left_out`: what was not computed and, first, what of the paper has no claim, which
+    `not_claimed` repeats. `preface`: sentences before everything else, such as on the libraries
+    installed.
     """
 
     format: ReportFormat = FORMAT
@@ -103,9 +106,11 @@ class Report(Frozen):
     statements: tuple[StatementResult, ...] = ()
     scenes: tuple[SceneResult, ...]
     causes: tuple[Cause, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
     figures: tuple[PaperFigure, ...] = ()
     gallery: Gallery | None = None
     left_out: tuple[tuple[str, str], ...]
+    not_claimed: tuple[tuple[str, str], ...] = ()
     preface: tuple[str, ...] = ()
     provenance: Provenance
 

@@ -333,9 +333,13 @@ def test_formulas_are_tex(formula: str, expected: str) -> None:
 
 def test_no_formula_holds_what_ends_it() -> None:
     text, _ = written()
-    for token in parsed(text):
-        if token.type == "fence":
-            assert token.info == "math"
-            assert "$" not in token.content
-            assert token.content.count(r"\left") == token.content.count(r"\right")
-            assert token.content.count("{") == token.content.count("}")
+    fences = [token for token in parsed(text) if token.type == "fence"]
+    (program,) = (fence for fence in fences if fence.info != "math")
+    formulas = [fence.content for fence in fences if fence is not program]
+    assert formulas
+    for formula in formulas:
+        assert "$" not in formula
+        assert formula.count(r"\left") == formula.count(r"\right")
+        assert formula.count("{") == formula.count("}")
+    scripts = [claim.reproduction for claim in real().claims if claim.reproduction]
+    assert [(program.info, program.content)] == [("python", script) for script in scripts]

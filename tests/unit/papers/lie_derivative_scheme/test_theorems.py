@@ -103,6 +103,10 @@ VERDICTS = {
     "criteria-of-consistent-schemes": PROVED,
     "consistency-is-not-enough": PROVED,
     "total-error-increases": REFUTED,
+    "criterion-2-implies-4": PROVED,
+    "criterion-4-equals-2": PROVED,
+    "growth-of-lambda": PROVED,
+    "right-criterion-3": PROVED,
 }
 
 

@@ -129,18 +129,33 @@ def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
     `hamiltonian`: as for `_steps_for_every_time`.
     """
     return refutation(
-        "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
-        "T implies criterion 2, and criterion 2 implies it: 4 is as strong as 2, and no stronger",
-        [
-            *_steps_for_every_time(hamiltonian),
-            step(
-                "Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = "
-                "max |`ΔJ_k`|.",
-                BY_MANY_STEPS,
-            ),
-        ],
-        setting="Let the orbit of z' = g(z) exist on [0, T].",
+        f"{_EQUIVALENT}: 4 is as strong as 2, and no stronger",
+        _steps_of_equivalence(hamiltonian),
+        setting=_SETTING,
     )
+
+
+def criterion_4_equals_2(hamiltonian: bool = False) -> Argument:
+    """Prove that 4 on every [0, t] and 2 are equivalent for steps z + hg + h²r."""
+    return proof(_EQUIVALENT, _steps_of_equivalence(hamiltonian), setting=_SETTING)
+
+
+_SETTING = "Let the orbit of z' = g(z) exist on [0, T]."
+_EQUIVALENT = (
+    "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ T "
+    "implies criterion 2, and criterion 2 implies it"
+)
+
+
+def _steps_of_equivalence(hamiltonian: bool) -> list[Step]:
+    return [
+        *_steps_for_every_time(hamiltonian),
+        step(
+            "Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = "
+            "max |`ΔJ_k`|.",
+            BY_MANY_STEPS,
+        ),
+    ]
 
 
 def criterion_4_against_3_smooth(
@@ -161,7 +176,7 @@ def criterion_4_against_3_smooth(
                 *shrinking(friction),
             ),
         ],
-        setting="Let the orbit of z' = g(z) exist on [0, T].",
+        setting=_SETTING,
     )
 
 
