@@ -36,7 +36,7 @@ def section(page: str) -> str:
 
 @pytest.mark.parametrize(
     ("one", "other", "flips"),
-    [(P, R, "yes"), (R, P, "yes"), (Verdict.ENCLOSED, U, "yes"), (P, P, "no"), (R, R, "no"),
+    [(P, R, "yes"), (R, P, "yes"), (Verdict.ENCLOSED, U, "not decided"), (P, P, "no"), (R, R, "no"),
      (Verdict.ENCLOSED, Verdict.MEASURED, "no")],
 )  # fmt: skip
 def test_a_verdict_flips_where_one_choice_holds_and_the_other_does_not(
