@@ -94,10 +94,11 @@ def first_screen(
         plot, place = _select_picture(sections)
     sentence, tiles = _finding_of_sections(report)
     all_tiles = tuple(_build_tiles(report)) or tuple(tiles)
-    main_finding = finding(report, refutation) or sentence
     wrong = find_mistakes(claims)
     telling = None if wrong else refutation
     causes = tuple(explain(report.causes, claims))
+    # What the table is, the causes say above.
+    main_finding = finding(report, None if causes else refutation) or sentence
     questions = answer_questions(report, claims)
     return FirstScreen(main_finding, all_tiles, questions, telling, plot, place, wrong, causes)
 

@@ -109,7 +109,9 @@ def test_one_step_the_other_way_refutes_and_is_named(index: int) -> None:
     values = one_changed((H[index], len(STARTS) - 1), "mse", smaller, growing)
     found = check(monotone("mse", "increases"), values)
     assert found.verdict is REFUTED
-    assert f"from h = {STEP_SIZES[index - 1]} to {STEP_SIZES[index]}" in found.evidence
+    assert "MSE decreases in 1 of " in found.evidence
+    assert f" at h = {STEP_SIZES[index - 1]} to " in found.evidence
+    assert f" at h = {STEP_SIZES[index]} with q₀ = " in found.evidence
 
 
 @pytest.mark.parametrize("bound", [Fraction(1), Fraction(1, 2)])

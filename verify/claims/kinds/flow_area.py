@@ -53,7 +53,7 @@ class FlowAreaClaim(FlowClaim):
             verdict = Verdict.REFUTED if refuted else Verdict.UNDECIDED
             return self.result(verdict, _largest(certain), details)
         against = prose(
-            _largest(certain), f", the largest of {len(certain)} changes; allowed here: ",
+            _largest(certain), f", the largest of {len(certain)} changes; the claim: at most ",
             Number(text(self.within)),
         )  # fmt: skip
         return self.result(judge_sizes(ends, self.within), against, details)

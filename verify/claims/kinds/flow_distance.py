@@ -53,7 +53,7 @@ class FlowDistanceClaim(FlowClaim):
             f"the largest of {len(measured_images)} Hausdorff distances from the exact flow’s ",
             "outlines is ",
             Number(worst.result.distance or ""), " ± ", Number(worst.result.distance_error or ""),
-            " (", worst.place, "; allowed here: " if self.within else "; to be exceeded: ",
+            " (", worst.place, "; the claim: ", "at most " if self.within else "more than ",
             Number(text(limit)), ")",
         )  # fmt: skip
         return self.result(verdict, evidence, details)

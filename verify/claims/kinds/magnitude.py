@@ -70,7 +70,16 @@ class MagnitudeClaim(RunClaim):
             for description, answer in zip(failing, holds, strict=True)
             if answer is False
         ]
-        evidence = prose("holds for ", _list(holding), "; does not hold for ", _list(not_holding))
+        if holding:
+            evidence = prose("it holds for ", _list(holding))
+            if not_holding:
+                evidence = prose(evidence, "; it does not hold for ", _list(not_holding))
+        elif not_holding:
+            evidence = prose(
+                "it holds for none of the initial values: ", join_prose("; ", not_holding)
+            )
+        else:
+            evidence = prose("it is decided for none of the initial values")
         decide = some_hold if self.quantifier == "some" else all_hold
         return self.result(decide(holds), evidence, details)
 

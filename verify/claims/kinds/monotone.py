@@ -33,15 +33,17 @@ class MonotoneClaim(QuantityClaim):
             # Only a certain decrease is shown as a counterexample; overlapping balls are not.
             if gap < 0:
                 counterexamples.append(prose(
-                    start_of(finer), ": from h = ", Number(finer.step_size), " to ",
-                    Number(coarser.step_size), f", {label} goes from ",
-                    number(format_ball(quantity(finer), 4)), " to ",
-                    number(format_ball(quantity(coarser), 4)),
+                    "from ", number(format_ball(quantity(finer), 4)), " at h = ",
+                    Number(finer.step_size), " to ", number(format_ball(quantity(coarser), 4)),
+                    " at h = ", Number(coarser.step_size), " with ", start_of(finer),
                 ))  # fmt: skip
         total = f"{len(verdicts)} neighbouring pairs"
         evidence = prose(f"{label} {self.direction} between all {total} of step sizes")
         if counterexamples:
-            evidence = f"{len(counterexamples)} of {total} go the other way; " + counterexamples[0]
+            opposite = "decreases" if direction > 0 else "increases"
+            count = f"{len(counterexamples)} of {total} of step sizes"
+            example = ", for example" if len(counterexamples) > 1 else ""
+            evidence = prose(f"{label} {opposite} in {count}: ", counterexamples[0], example)
         elif all_hold(verdicts) is Verdict.UNDECIDED:
             evidence = prose(f"{verdicts.count(None)} of {total} of step sizes are not told apart")
         return self.result(all_hold(verdicts), evidence, table_of(rows, self.quantity))

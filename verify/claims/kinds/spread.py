@@ -59,7 +59,7 @@ class SpreadClaim(QuantityClaim):
             worst = max(worst, least_factor)
         evidence = prose(
             f"{quantity.label} varies over the initial values by a factor of up to ",
-            Number(decimal(worst, 2)), " at one step size (allowed here: ",
+            Number(decimal(worst, 2)), " at one step size (the claim: at most ",
             Number(text(self.factor)), ")",
         )  # fmt: skip
         return self.result(all_hold(verdicts), evidence, details)

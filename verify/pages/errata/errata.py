@@ -22,7 +22,8 @@ from verify.pages.sections.page.repairs import EFFECTS, RepairView, repair_views
 from verify.pages.sections.page_contents import PRINTED_ROW_START, Anchors, ClaimView
 from verify.pages.text.prose_markup import cell, prose, sentence
 from verify.prose import Prose
-from verify.scenes.results.claim import describe_counts
+from verify.prose import prose as prose_of
+from verify.scenes.results.claim import ClaimResult, describe_counts
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
@@ -31,7 +32,7 @@ _FILES = ("errata.tex", "errata.md", "editor.html")
 
 @dataclass(frozen=True)
 class Erratum:
-    """A statement with its repair; `reason`: the evidence against the printed words.
+    """A statement with its repair; `reasons`: the evidence against the printed words.
 
     `repairs`: the words that hold, each with its verdict; `effect`: what changes in the paper.
     """
@@ -39,7 +40,7 @@ class Erratum:
     source: str
     printed: Prose
     repairs: tuple[tuple[Prose, Verdict], ...]
-    reason: Prose
+    reasons: tuple[Prose, ...]
     effect: str
 
 
@@ -114,16 +115,32 @@ def _title(title: str) -> str:
 def _erratum(repair: RepairView, claims: Sequence[ClaimView]) -> Erratum:
     statement = repair.statement.statement
     assert statement is not None  # noqa: S101 - a repair is of a statement
-    readings = [c.result for c in claims if c.result.id in statement.readings]
-    refuted = [reading for reading in readings if reading.verdict is Verdict.REFUTED]
+    by_id = {claim.result.id: claim.result for claim in claims}
     effects = [effect for _, _, effect in repair.repairs if effect]
     return Erratum(
         source=statement.source or statement.id,
         printed=statement.statement,
         repairs=tuple((words, claim.result.verdict) for claim, words, _ in repair.repairs),
-        reason=(refuted or readings)[0].evidence,
+        reasons=_reasons([by_id[name] for name in statement.readings]),
         effect=effects[0] if effects else EFFECTS[""],
     )
+
+
+def _reasons(readings: Sequence[ClaimResult]) -> tuple[Prose, ...]:
+    """Return what speaks against the letter, if that is a misprint, and against a fair reading.
+
+    The readings stand in the order of the file. Of a misprint that is true to the letter its remark
+    says what speaks against it.
+    """
+    reasons: dict[str, Prose] = {}
+    for reading in readings:
+        is_refuted = reading.verdict is Verdict.REFUTED
+        if reading.standing in ("fair", "misprint") and (is_refuted or reading.standing != "fair"):
+            reason = reading.evidence if is_refuted else reading.remark or reading.evidence
+            if is_refuted and reading.reading:
+                reason = prose_of("read “", reading.reading, "”: ", reason)
+            reasons.setdefault(reading.standing, reason)
+    return tuple(reasons.values()) or (readings[0].evidence,)
 
 
 def _wrong_tables(view: PageView) -> list[ClaimView]:

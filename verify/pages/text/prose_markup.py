@@ -124,8 +124,10 @@ def notation(text: str) -> Markup:
     'e<sup>p</sup><sub>k+1</sub> + C̃<sub>p</sub>'
     >>> str(notation("10^-6.3010"))
     '10<sup>−6.3010</sup>'
+    >>> str(notation("e^(hL_p)"))
+    'e<sup>hL<sub>p</sub></sup>'
     """
-    return apply_rules(text, (INDEX, INTERVAL, POWER, RAISED, MINUS))
+    return apply_rules(text, (RAISED_INDEX, INDEX, INTERVAL, POWER, RAISED, MINUS))
 
 
 def apply_rules(text: str, rules: Sequence[Rule]) -> Markup:
@@ -164,6 +166,8 @@ def _strip_brackets(text: str) -> str:
     return text[1:-1] if text[0] in "({" else text
 
 
+# A power with an index in it, which would else be torn by the index: e^(hL_p).
+RAISED_INDEX: Rule = (re.compile(r"(?<=\S)\^(\([^()]*_[^()]*\))"), _superscript)
 # A letter, perhaps with an accent, and its index: H_qq, z̄_(k+1), L_{H_p}, e^p_k.
 INDEX: Rule = (
     re.compile(

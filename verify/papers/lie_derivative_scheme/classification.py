@@ -8,9 +8,9 @@ from verify.papers.lie_derivative_scheme.determinant import PRESERVED, area_is_p
 def determinant_classification(flaw: int = 0) -> Argument:
     """Classify all H for which lie2 preserves area exactly; `flaw` spoils the conic family."""
     return proof(
-        "locally complete for smooth H, near the points of an open dense set, globally for "
-        "polynomial H and for H = T(p) + V(q); open is only how pieces of different families may "
-        "fit together in one H that is smooth but not analytic",
+        "the list is complete near the points of an open dense set for smooth H, and everywhere "
+        "for polynomial H and for H = T(p) + V(q); only how pieces of different families may fit "
+        "together in one H that is smooth but not analytic is left open",
         [
             step(
                 "By algebra for a generic H ``ΔJ = (h^3/2) X D + (h^4/4) det N'``, with N = "

@@ -15,7 +15,7 @@ def growth_of_lambda() -> Argument:
     return proof(
         "for even η log(1 + Λ) = `h^η` [G] + `h^(η+1)` (∫ g dt − ½ [X·G]) + O(`h^(η+2)` (1 + T)) "
         "while the orbit stays in a compact set, so |Λ| ≤ `C₁` `h^η` + `C₂` `h^(η+1)` T as long as "
-        "that is at most 1: O(`h^η`) for T up to 1/h; beyond, what grows is `h^(η+1)` ∫ g dt",
+        "that is at most 1: O(`h^η`) for T up to 1/h; what may grow beyond is `h^(η+1)` ∫ g dt",
         [
             step(
                 "ΔJ of `lieη` begins with a derivative along the flow: "

@@ -54,10 +54,10 @@ def eq_9(pair: tuple[RationalPoint, RationalPoint] = PAIR, mixed: str = MIXED) -
         ("h",),
     )
     return refutation(
-        f"for the Duffing oscillator (δ = 1, h = 0.1) two points with equal p and q = "
-        f"{text(pair[0].q)}, {text(pair[1].q)} have |p̃ − p| = {text(left)} after one step, where "
-        "the right side is 0 for every `L_p`; it holds for lieη, any H and all small h only if "
-        "`H_pp` = 0 and `H_qq` = 0",
+        f"for the Duffing oscillator (δ = 1, h = 0.1) two points with the same p, with q = "
+        f"{text(pair[0].q)} and q = {text(pair[1].q)}, have |p̃ − p| = {text(left)} after one step, "
+        "where the right side is 0 for every `L_p`; for p alone and for q alone Eq. 9 holds, for "
+        "all small h, only where `H_pp` = 0 and `H_qq` = 0",
         [
             step(
                 "Take two points with the same p and different q: the right side is 0 whatever "
@@ -204,9 +204,10 @@ def _stretch(h: Fraction, norm: float) -> Check:
 def convergence_inference() -> Argument:
     """Refute that convergence follows from Eq. 9–11 as they are printed."""
     return refutation(
-        "the printed way leads through Eq. 9 with the p-difference alone on the right, for which "
-        "no constant `L_p` will do along a run of the oscillator: an `L_p` above 1/h makes "
-        "`e^(L_p T)` of Eq. 11 useless; with both components together the same steps prove it",
+        "the printed argument goes through Eq. 9 with the p-difference alone on the right, for "
+        "which no constant `L_p` will do along a run of the oscillator: it takes an `L_p` above "
+        "1/h, with which the bound of Eq. 11 does not tend to 0; with both components together the "
+        "same steps prove it",
         [
             step(
                 "Eq. 9 with one component on its right side asks for an `L_p` above 1/h along the "

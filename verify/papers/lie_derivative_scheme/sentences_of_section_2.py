@@ -13,8 +13,8 @@ def taylor_method() -> Argument:
     """Prove that lieη is the Taylor series method of order η, step for step."""
     return proof(
         "for every H a step of lieη is the Taylor polynomial of degree η of the exact flow: the "
-        "Taylor series method of order η; by the paper’s own account references 23 to 29 have "
-        "applied it as the Lie derivative method",
+        "Taylor series method of order η, which references 23 to 29 of the paper apply as the Lie "
+        "derivative method",
         [
             step(
                 "By Eq. 2, 4 and 5 ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n z``, X the derivative along "
@@ -26,8 +26,8 @@ def taylor_method() -> Argument:
                 "is the n-th time derivative of the solution.",
             ),
         ],
-        remark="What may be new are the four criteria, and what is said of areas: claims of "
-        "their own. Who was first is not for a computation to say.",
+        remark="The four criteria, and what the paper says of areas, may be new; they are judged "
+        "each by itself. Who was first, a computation cannot say.",
     )
 
 
@@ -114,7 +114,7 @@ def higher_derivatives_nonlinearity(
         "the linear system of H = `p²/2 + pq + q²` has L q = p + q, a function, whose derivative "
         "`L²` q is; and the nonlinear one of H = `p²/2 + q⁴/4` has L q = p, a variable",
         [
-            step("The system of the first H is linear, and L q = `H_p` is none of p and q.",
+            step("The system of the first H is linear, and L q = `H_p` is neither p nor q.",
                  is_linear),
             step("That of the second is not, and L q = p, so that `L²` q = L p is the derivative "
                  "of a variable.", is_curved),

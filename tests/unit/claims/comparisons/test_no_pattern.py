@@ -34,13 +34,27 @@ def test_one_order_at_every_step_size_is_a_pattern() -> None:
     ],
 )
 def test_that_it_is_the_order_of_h_is_said_where_it_is(starts: Any, said: bool) -> None:
-    assert ("which is that of H" in check(NONE, growing, starts=starts).evidence) is said
+    assert (
+        "which is also their order by H" in check(NONE, growing, starts=starts).evidence
+    ) is said
 
 
 def test_two_orders_at_two_step_sizes_are_none() -> None:
     found = check(NONE, turned)
     assert found.verdict in (Verdict.MEASURED, ENCLOSED)
-    assert "1, 2, 3 with h = 0.008 and 2, 1, 3 with h = 0.01" in found.evidence
+    assert (
+        "in the order 1, 2, 3 with h = 0.008 and in the order 2, 1, 3 with h = 0.01"
+        in found.evidence
+    )
+
+
+def test_a_claim_of_one_order_has_the_contrary_verdicts() -> None:
+    one = NoPatternClaim(**CLAIM, kind="no_pattern", same_order=True)
+    for values, verdicts in ((growing, (Verdict.MEASURED, ENCLOSED)), (turned, (REFUTED,))):
+        found = check(one, values)
+        assert found.verdict in verdicts
+        assert found.verdict.holds is not check(NONE, values).verdict.holds
+    assert check(one, growing, starts=[("0.1", "0")]).verdict is UNDECIDED
 
 
 def test_values_that_are_not_told_apart_have_no_known_order() -> None:

@@ -43,7 +43,7 @@ def test_a_factor_a_shift_or_another_power_is_seen() -> None:
 def test_one_claim_that_does_not_hold_is_enough() -> None:
     result = check(replaced("1/N", TABLE, {**RATIO, "direction": "increases"}), growing)
     assert result.verdict is Verdict.REFUTED
-    assert "1 of 2 of these claims hold" in result.evidence
+    assert "1 of 2 claims hold" in result.evidence
     assert [row[-1] for row in result.details[1:]] == ["holds", "refuted"]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.constructed.papers import R, U, each_category, paper, reading, repair
+from tests.helpers.constructed.papers import P, R, U, each_category, paper, reading, repair
 from tests.helpers.pages.read_errata import corrections, written
 from tests.unit.pages.test_page import claim
 from tests.unit.pages.test_page import report as plain_report
@@ -62,6 +62,31 @@ def test_the_reason_is_the_evidence_against_the_printed_words(tmp_path: Path) ->
     assert reasons["Eq. B"].startswith("*Why:* Because of B-letter.")
     assert reasons["Eq. C"] == "*Why:* Because of C-narrow."
     assert reasons["Eq. F"] == "*Why:* Because of F.", "the only evidence that there is"
+
+
+def test_the_reason_is_against_the_letter_first_and_then_against_a_fair_reading(
+    tmp_path: Path,
+) -> None:
+    made_by_hand = paper(
+        reading("A", P, id="A-right", repairs="A"),
+        reading("A", R, id="A-strictly", standing="strict"),
+        reading("A", R, id="A-letter", standing="misprint"),
+        reading("A", R, id="A-narrow"),
+        reading("A", R, id="A-narrower"),
+    )
+    lines = corrections(written(made_by_hand, tmp_path)["errata.md"])["Eq. A"]
+    assert lines[-1].strip() == "*Why:* Because of A-letter. Because of A-narrow."
+
+
+def test_the_reason_against_a_misprint_that_is_true_to_the_letter_is_its_remark(
+    tmp_path: Path,
+) -> None:
+    made_by_hand = paper(
+        reading("A", P, id="A-letter", standing="misprint", remark="The next line says no."),
+        reading("A", P, id="A-right", repairs="A"),
+    )
+    lines = corrections(written(made_by_hand, tmp_path)["errata.md"])["Eq. A"]
+    assert lines[-1].strip() == "*Why:* The next line says no."
 
 
 def test_several_repairs_stand_below_each_other(tmp_path: Path) -> None:

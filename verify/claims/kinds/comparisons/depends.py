@@ -46,7 +46,7 @@ class DependsClaim(RunClaim):
         ]
         verdicts = [verdict for _, _, (verdict, _) in comparisons]
         parts = (
-            prose(f"{QUANTITIES[name].label} over the {_NAMES[on]}: ", values)
+            prose(f"{QUANTITIES[name].label} with two {_NAMES[on]}: ", values)
             for name, on, (_, values) in comparisons
         )
         return self.result(all_hold(verdicts), join_prose("; ", parts))

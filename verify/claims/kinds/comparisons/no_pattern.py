@@ -28,11 +28,13 @@ _QUANTITY = "abs_lambda"
 
 
 class NoPatternClaim(RunClaim):
-    """No one order of the initial values by |Λ|."""
+    """No one order of the initial values by |Λ|, or one."""
 
     compares = (_QUANTITY,)
     obstacle = "a pattern is over the initial values of its own scene"
     kind: Literal["no_pattern"]
+    same_order: bool = False
+    """True: there is one order, the same at every step size; else there is none."""
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
@@ -43,25 +45,29 @@ class NoPatternClaim(RunClaim):
         for (column, first_order), (other_column, other_order) in pairwise(certain):
             if first_order != other_order:
                 disagreement = prose(
-                    "by |Λ| the initial values stand in the order ", _format_order(first_order),
-                    " with h = ", Number(column[0].step_size), " and ", _format_order(other_order),
+                    "by |Λ| the initial values, as they are numbered in the table, stand in the "
+                    "order ", _format_order(first_order), " with h = ",
+                    Number(column[0].step_size), " and in the order ", _format_order(other_order),
                     " with h = ", Number(other_column[0].step_size),
-                    ", as they are counted in the table: none is that of every step size",
+                    ": there is no one order for every step size",
                 )  # fmt: skip
-                return self.result(Verdict.MEASURED, disagreement, details)
+                verdict = Verdict.REFUTED if self.same_order else Verdict.MEASURED
+                return self.result(verdict, disagreement, details)
         if len(rows) < 2 or len(certain) < len(columns):
             evidence = f"the order is known at {len(certain)} of {len(columns)} step sizes alone"
             return self.result(Verdict.UNDECIDED, evidence, details)
         order = certain[0][1]
         hamiltonian = findings.scene(self.scene).exact_hamiltonian()
         energies = [_energy(hamiltonian, row[0]) for row in rows]
-        of_h = ", which is that of H" if order == _order(energies) else ""
+        of_h = ", which is also their order by H" if order == _order(energies) else ""
         starts = join_prose(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
         evidence = prose(
             f"at all {len(columns)} step sizes the initial values stand in one order by |Λ|: ",
             starts, of_h,
         )  # fmt: skip
-        return self.result(Verdict.REFUTED, evidence, details)
+        return self.result(
+            Verdict.MEASURED if self.same_order else Verdict.REFUTED, evidence, details
+        )
 
 
 def _order(values: Sequence[Ball]) -> tuple[int, ...]:

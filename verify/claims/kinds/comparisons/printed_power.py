@@ -59,7 +59,7 @@ class PrintedPowerClaim(Claim):
             evidence = prose(
                 "each printed value divided by ", Formula(power), " has the same logarithm, ",
                 Number(constant), ", within the rounding of what is printed, for all "
-                f"{len(quotients)} step sizes: the printed numbers do not fall faster",
+                f"{len(quotients)} step sizes: they fall as that does, and no faster",
             )  # fmt: skip
             return self.result(Verdict.REFUTED, evidence)
         evidence = prose("the printed values divided by ", Formula(power), " are not all the same")

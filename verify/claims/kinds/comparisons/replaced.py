@@ -61,7 +61,7 @@ class ReplacedClaim(AgainClaim):
         details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(pairs)]
         verdicts = [after.verdict for _, after in pairs]
         holds = [None if v is Verdict.UNDECIDED else v.holds for v in verdicts]
-        evidence = introduction + f"{holds.count(True)} of {len(pairs)} of these claims hold"
+        evidence = introduction + f"{holds.count(True)} of {len(pairs)} claims hold"
         return self.result(all_hold(holds), evidence, details)
 
 

@@ -54,9 +54,9 @@ class ShiftedClaim(AgainClaim):
         details = [["claim", "k = 0 … N − 1", "k = 1 … N"], *self.rows(pairs)]
         verdicts: list[bool | None] = [x.verdict is y.verdict for x, y in pairs]
         evidence = prose(
-            f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count "
-            "Λ changes by ", number(format_ball(changes["lambda"], 2)),
-            " of itself at most, MSE by ", number(format_ball(changes["mse"], 2)),
+            f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other "
+            "count Λ changes by ", number(format_ball(changes["lambda"], 2)),
+            " of itself at most, and MSE by ", number(format_ball(changes["mse"], 2)),
             f" of itself, in {len(tasks)} runs",
         )  # fmt: skip
         return self.result(all_hold(verdicts), evidence, details)

@@ -126,14 +126,13 @@ class SolutionErrorClaim(RunClaim):
         if len(errors) == 1:
             evidence = prose(
                 "the largest error over the last period is ", Number(_format_error(greatest)),
-                " of the orbit’s reach, half of how far p and q go along it (", _place(greatest),
-                ")",
+                " of the orbit’s reach, half the range of p or of q on it (", _place(greatest), ")",
             )  # fmt: skip
             return self.result(all_hold(holds), evidence, details)
         evidence = prose(
-            f"{holds.count(True)} of {len(holds)} errors, each the largest over the last period, "
-            f"lie {relation}", Number(text(self.within or self.beyond or Fraction(0))),
-            " of the orbit’s reach, half of how far p and q go along it: from ",
+            f"in {holds.count(True)} of {len(holds)} runs the largest error over the last period "
+            f"is {relation}", Number(text(self.within or self.beyond or Fraction(0))),
+            " of the orbit’s reach, half the range of p or of q on it; it goes from ",
             Number(_format_error(least)), " (", _place(least), ") to ",
             Number(_format_error(greatest)), " (", _place(greatest), ")",
         )  # fmt: skip

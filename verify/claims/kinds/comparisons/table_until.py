@@ -54,10 +54,15 @@ class TableUntilClaim(PrintedTableClaim):
             evidence = f"none of {total} printed values is known to be greater than lg (max ΔJ²)"
             return self.result(Verdict.UNDECIDED, evidence, details)
         finite = [x for x in largest if is_representable(x)]
+        printed_values = (
+            f"all {len(self.step_sizes)} printed values, from each of {len(rows)} initial values,"
+            if self.printed and refuted == total
+            else f"{refuted} of {total} printed values"
+        )
         evidence = prose(
-            f"{refuted} of {total} printed values are greater than lg (max ΔJ²) of the longest "
-            "run", *((", T = ", Number(text(grid.time))) if grid and grid.time else ()),
-            ", so for every shorter one too; that is at most ",
+            printed_values, " are greater than lg (max ΔJ²) of the longest run",
+            *((", T = ", Number(text(grid.time))) if grid and grid.time else ()),
+            ", which the lg MSE of no shorter one exceeds; that is at most ",
             number(format_ball(max(finite, key=middle), 5)),
         )  # fmt: skip
         return self.result(Verdict.REFUTED, evidence, details)

@@ -71,9 +71,9 @@ def _check_regions(formula: str = TRIANGULAR) -> list[Check]:
 def area_definition(formula: str = TRIANGULAR) -> Argument:
     """Prove that area preservation, the same area for each region's image, is decided by det J."""
     return proof(
-        "a continuously differentiable map leaves the area of every region, on which it is "
-        "one-to-one, as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that "
-        "det J − 1 measures it, as Eq. 14 does",
+        "the area of every region on which a continuously differentiable map is one-to-one stays "
+        "as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that det J − 1 "
+        "measures the change, as in Eq. 14",
         [
             step(
                 "By the change of variables, for every region U on which Φ is one-to-one, "
