@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting import plot_work_precision as plot_work_precision
     from verify.proof.plane.modified_equation import ModifiedEquation as ModifiedEquation
     from verify.proof.proof_for_one_h import Proof as Proof
+    from verify.proof.structures.structures_proof import StructuresProof as StructuresProof
     from verify.scenes.results.run import OrbitTable as OrbitTable
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationGridInDegrees as SeparationGridInDegrees
@@ -91,6 +92,10 @@ _NAMES = {
     "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
     "Proof": ("verify.proof.proof_for_one_h", "what is proved of a step map"),
+    "StructuresProof": (
+        "verify.proof.structures.structures_proof",
+        "what is proved of what a step keeps",
+    ),
     "ModifiedEquation": ("verify.proof.plane.modified_equation", "what is known of a scheme's H̃"),
     "RunResult": ("verify.calls.run_result", "what a run gave"),
     "OrbitTable": ("verify.scenes.results.run", "the states of a run"),

@@ -10,16 +10,20 @@
         assert_area_preserving(step, "pendulum")
         assert_convergence_order(step, "pendulum", 1)
 
+`assert_keeps` is for any structure: volume, reversibility, energy, 2-forms of one's own.
+
 If the code of the step works with symbols, the assertion is proved, otherwise measured; see
 `verify.integrators.step_check`. The step is called, also with p, q and h that are not floats.
 """
 
+import inspect
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
-from verify.calls.check import request_of
+from verify.calls.check import check, check_map, request_of
 from verify.calls.inputs import hamiltonian_from
-from verify.errors import InputError, unknown_name
+from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.step_check import check_integrator
@@ -28,10 +32,14 @@ from verify.integrators.user_code.step import TIME_LIMIT
 from verify.verdict import Verdict
 
 __all__ = [
-    "assert_area_order", "assert_area_preserving", "assert_convergence_order", "assert_symplectic",
+    "assert_area_order", "assert_area_preserving", "assert_convergence_order", "assert_keeps",
+    "assert_symplectic",
 ]  # fmt: skip
 
 StepFunction = Callable[..., Any]
+_REFINEMENTS = "form", "density", "poisson", "casimirs", "reverses", "factor"
+# Arguments of `verify.check` that are claims of another kind, or are given otherwise.
+_NO_OPTIONS = "system", "step", "function", "keeps", "order", "area_preserving", "symplectic"
 
 
 def assert_area_preserving(
@@ -88,6 +96,42 @@ def assert_convergence_order(
     """
     __tracebackhide__ = True
     return _assert_claims(step, hamiltonian, Claims(order=_check_order(order)), options)
+
+
+def assert_keeps(
+    step: StepFunction, *structures: str, system: Hamiltonian | str | None = None, **options: Any
+) -> Finding:
+    """Assert that a step, or without a `system` a map, keeps all of these structures.
+
+        def test_boris():
+            assert_keeps(push, "volume", coordinates="v1,v2,v3,x1,x2,x3", parameters={"h": 0.1})
+
+        def test_step():
+            assert_keeps(step, "area", "reversible", "energy: 3", system="pendulum")
+
+    `structures`, and the options `form`, `density`, `poisson`, `casimirs`, `reverses` and `factor`,
+    which refine them, are those of `verify.prove`; `system`: a Hamiltonian, a formula, the name of
+    a system, or equations "u_dot = …; v_dot = …". The other options are those of `verify.check`,
+    or of `verify.check_map`. Nothing but the structures is judged.
+
+    Returns the Finding, whose `keeps` has the verdict on each. Raises AssertionError with the
+    counterexample, also if a structure is UNDECIDED, and InputError for a bad argument.
+    """
+    __tracebackhide__ = True
+    if not callable(step):
+        raise InputError("step", step, "is no function")
+    call = check_map if system is None else partial(check, system)
+    allowed = inspect.signature(call).parameters
+    for name in options:
+        if name not in allowed or name in _NO_OPTIONS:
+            raise unknown_name(name, options[name], sorted({*allowed} - {*_NO_OPTIONS}))
+    if not structures and not {*options} & {*_REFINEMENTS}:
+        raise InputError("structures", NOT_GIVEN, "name one at least, such as 'volume'")
+    finding = call(step, keeps=structures, **options)
+    assert isinstance(finding, Finding)  # noqa: S101 - of a function
+    if not finding.verdict.holds:
+        raise AssertionError(_format_message(finding))
+    return finding
 
 
 def _check_order(order: int) -> int:

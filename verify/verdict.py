@@ -1,5 +1,6 @@
 """The verdict on a claim."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 
@@ -16,3 +17,13 @@ class Verdict(StrEnum):
     def holds(self) -> bool:
         """True if the claim holds: it is PROVED, ENCLOSED or MEASURED."""
         return self in (Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED)
+
+
+_FROM_BEST = (
+    Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED, Verdict.UNDECIDED, Verdict.REFUTED,
+)  # fmt: skip
+
+
+def worst_of(verdicts: Iterable[Verdict]) -> Verdict:
+    """Return the worst of several verdicts."""
+    return max(verdicts, key=_FROM_BEST.index)

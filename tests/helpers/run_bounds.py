@@ -45,7 +45,7 @@ class Noted:
     of_matrix: Real
     of_entry: Real
     steep: Callable[[Real], Real]  # the gradient of H
-    risen: Real  # max |H − H₀|
+    energy: Callable[[Real], Real]  # the greatest |H|
     of_energy: Real
     squares: Real  # the mean of ΔJ²
     scale: Real  # 2^−s
@@ -165,10 +165,9 @@ def of_defect(noted: Noted) -> Real:
 
 
 def of_energy_error(noted: Noted) -> Real:
-    """Of max |H − H₀|, over the box that is widened by a step's rounding more."""
+    """Of H − H₀ at the end: H at the state as it is, and four times the last bits of 1 + |H|."""
     error, _ = of_state(noted)
-    slope = noted.steep(error + noted.state)
-    return 2 * slope * error + noted.steps * (slope * noted.state + noted.of_energy)
+    return noted.steep(error) * error + 4 * noted.unit * (1 + noted.energy(error))
 
 
 # -- numbers to try them with ---------------------------------------------------------------------
@@ -228,7 +227,8 @@ def drawn(seed: int, size: int) -> Noted:
         form=lambda margin: (forms[0](margin), forms[1](margin)),
         of_matrix=between(0.02, 0.1) * m.least / m.path,
         of_entry=between(0.05, 0.2) * m.top**2 / n,
-        steep=wider(between(0.5, 2)), risen=between(0.1, 1), of_energy=between(0.2, 1) * tiny,
+        steep=wider(between(0.02, 0.5) / tiny), energy=wider(between(1, 9)),
+        of_energy=between(0.001, 0.02),
         squares=between(0.1, 0.5), scale=scale, unit=between(0.005, 0.02) / n,
         absolute=draw.random() < 0.5,
     )  # fmt: skip

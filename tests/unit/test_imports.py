@@ -27,8 +27,8 @@ from tests.paths import ROOT
 ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "audits",
          "claims", "papers", "studies", "integrators", "runs", "flows", "kernels", "execution",
-         "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic",
-         "functions", "observables", "structures")  # fmt: skip
+         "scenes", "proof", "schemes", "hamiltonians", "structures", "algebra", "arithmetic",
+         "functions", "observables")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "lazy_sympy", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 

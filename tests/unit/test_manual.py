@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 import verify
 from docs._generate.attribute_texts import texts
+from docs._generate.classical_methods import METHODS
 from docs._generate.commands import contexts
 from docs._generate.docstrings import as_rst
 from docs._generate.keys import keys
@@ -68,6 +69,7 @@ def test_a_mark_becomes_its_part_and_one_of_no_part_fails() -> None:
 NAMED = {
     "command-line": [context.command_path for context in contexts()],
     "claim-kinds": [*models()],
+    "classical-methods": [method.name for method in METHODS],
     "functions": functions.names(),
     "number-systems": arithmetic.names(),
     "python-api": [f"verify.{name}" for name in verify.__all__],

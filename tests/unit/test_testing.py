@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 import verify
+from tests.helpers.programs import kept_steps
 from tests.helpers.programs import user_steps as own_steps
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -12,6 +13,7 @@ from verify.testing import (
     assert_area_order,
     assert_area_preserving,
     assert_convergence_order,
+    assert_keeps,
     assert_symplectic,
 )
 
@@ -134,3 +136,24 @@ def test_bad_orders_are_named(order: Any) -> None:
 def test_a_wrong_signature_is_named(function: Any) -> None:
     with pytest.raises(InputError, match=r"wanted: step\(p, q, h\)"):
         assert_area_preserving(function, "pendulum")
+
+
+def test_a_step_or_a_map_keeps_what_is_claimed_of_it() -> None:
+    found = assert_keeps(own_steps.verlet, "area", "reversible", "energy: 3", system="pendulum")
+    assert [str(x.verdict) for x in found.keeps] == ["PROVED", "MEASURED", "PROVED"]
+    lotka = {"system": kept_steps.LOTKA, "form": kept_steps.LOTKA_FORM}
+    assert_keeps(kept_steps.lotka, **lotka)
+    with pytest.raises(AssertionError, match=r"(?s)REFUTED: du\^dv/\(u\*v\): .*at u = "):
+        assert_keeps(kept_steps.lotka_wrong, **lotka)
+    assert_keeps(kept_steps.two, "volume", coordinates="v1,v2,x1,x2")
+    with pytest.raises(AssertionError, match="UNDECIDED, which is neither"):
+        assert_keeps(kept_steps.midpoint, "area", system="pendulum")
+
+
+def test_bad_arguments_of_what_is_kept_are_told() -> None:
+    with pytest.raises(InputError, match="name one at least"):
+        assert_keeps(own_steps.verlet, system="pendulum")
+    with pytest.raises(InputError, match="unknown"):
+        assert_keeps(own_steps.verlet, "area", system="pendulum", order=2)
+    with pytest.raises(InputError, match="is no function"):
+        assert_keeps("lie2", "area", system="pendulum")  # type: ignore[arg-type]

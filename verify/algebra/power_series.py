@@ -8,18 +8,23 @@ in which zero is decided, or the jets of every H, in which only the zero polynom
 
 The step of a scheme that solves linear equations is a quotient of polynomials in h. With
 D = d₀ + d₁ h + …, d₀ a number, the series r₀ + r₁ h + … of 1/D has r₀ = 1/d₀ and
-r_n = −(d₁ r_{n−1} + … + d_n r₀)/d₀. Derivatives of the quotient, which have more and more terms,
-are not needed.
+r_n = −(d₁ r_{n−1} + … + d_n r₀)/d₀. A step that turns has functions such as sin(h a), whose series
+is that of Taylor at 0. Derivatives of either, which have more and more terms, are not needed.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Protocol
 
+from verify.algebra.formula import function, symbol
 from verify.algebra.identities.polynomials import Poly, split
 from verify.algebra.ring import Ring
 from verify.algebra.zero_test import Decision
+from verify.functions import in_rings
+from verify.lazy_sympy import sympy
 
 
 class CoefficientRing(Protocol):
@@ -199,6 +204,21 @@ def _taylor_terms(
         x, power, share = x.by(name), power * move, share / n
 
 
+@lru_cache(maxsize=64)
+def _taylor_numbers(name: str, most: int) -> list[Fraction] | None:
+    """Return the Taylor coefficients at 0 of a function, up to that of x^most; None if it has
+    others than rational numbers there."""
+    x = symbol("x")
+    derivative, numbers = function(name)(x), []
+    for n in range(most + 1):
+        value = derivative.subs(x, 0)
+        if not value.is_Rational:
+            return None
+        numbers.append(Fraction(int(value.p), int(value.q) * math.factorial(n)))
+        derivative = derivative.diff(x)
+    return numbers
+
+
 class QuotientSeries:
     """An expander of a ring's elements in powers of h, up to `length` coefficients."""
 
@@ -208,19 +228,19 @@ class QuotientSeries:
         self._cache: dict[int, Series | None] = {}
 
     def expand(self, x: Poly) -> Series | None:
-        """Return the series of x; None if h is in a function other than an inverse, or a divisor
-        is no number ≠ 0 at h = 0."""
+        """Return the series of x; None if at h = 0 a divisor with h is no number ≠ 0, a radicand no
+        power of a rational one, or the argument of another function not 0."""
         inner = self._with_h(x)
         if inner is None:
             powers = self.ring.powers(x, "h")
             return self._series([powers.get(n, self.ring.zero) for n in range(self.most + 1)])
-        inverse = self._inverse(inner)
-        if inverse is None:
+        value = self._value(inner)
+        if value is None:
             return None
         total, factor, power = self._series([]), self._series([self.ring.one]), 0
         for n, coefficient in sorted(split(x, inner).items()):
             while power < n:
-                factor, power = factor * inverse, power + 1
+                factor, power = factor * value, power + 1
             part = self.expand(coefficient)
             if part is None:
                 return None
@@ -239,12 +259,48 @@ class QuotientSeries:
                 return g.index
         return None
 
-    def _inverse(self, index: int) -> Series | None:
+    def _value(self, index: int) -> Series | None:
+        """Return the series of a generator."""
         if index not in self._cache:
             g = self._by_index[index]
-            divisor = self.expand(g.inner) if g.kind == "inverse" else None
-            self._cache[index] = None if divisor is None else self._one_over(divisor)
+            inner = self.expand(g.inner)
+            if inner is None:
+                self._cache[index] = None
+            elif g.kind == "inverse":
+                self._cache[index] = self._one_over(inner)
+            elif g.kind == "root":
+                self._cache[index] = self._root(inner, g.degree)
+            else:
+                numbers = _taylor_numbers(g.kind, self.most) if g.kind in in_rings() else None
+                self._cache[index] = self._at(numbers, inner)
         return self._cache[index]
+
+    def _root(self, inner: Series, degree: int) -> Series | None:
+        """Return the root of c + O(h), c the power of a rational number; None for another series.
+
+        It is r (1 + x)^(1/n), rⁿ = c, with binomial coefficients.
+        """
+        first = inner.coefficients[0]
+        if not first.is_constant() or first.is_zero():
+            return None
+        c = first.leading_coefficient()
+        root = sympy.Rational(int(c.p), int(c.q)) ** sympy.Rational(1, degree)
+        if not (root.is_Rational and root > 0):
+            return None
+        numbers = [Fraction(int(root.p), int(root.q))]
+        for n in range(self.most):
+            numbers.append(numbers[-1] * (Fraction(1, degree) - n) / (n + 1))
+        share = inner.times(Fraction(int(c.q), int(c.p)))
+        return self._at(numbers, share - self._series([self.ring.one]))
+
+    def _at(self, numbers: list[Fraction] | None, inner: Series) -> Series | None:
+        """Return Σ numbers[n] xⁿ for a series x that is O(h); None for another series."""
+        if numbers is None or not inner.coefficients[0].is_zero():
+            return None
+        total, power = self._series([]), self._series([self.ring.one])
+        for number in numbers:
+            total, power = total + power.times(number), power * inner
+        return total
 
     def _one_over(self, divisor: Series) -> Series | None:
         d0 = divisor.coefficients[0]

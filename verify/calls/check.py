@@ -1,7 +1,7 @@
 """`verify.check` and `verify.check_map`: verification of a user's step function or map.
 
-`check` also takes a scheme, which it proves; `check_map` decides whether a map is symplectic, and
-needs no H.
+`check` also takes a scheme, which it proves; `check_map` decides whether a map is symplectic, or
+what else it keeps, and needs no H.
 """
 
 from __future__ import annotations
@@ -16,22 +16,31 @@ from verify.calls.inputs import (
     ParametersLike,
     SchemeLike,
     SystemLike,
+    Texts,
     hamiltonian_from,
     scheme_from,
     step_map_from,
+    texts_from,
 )
+from verify.calls.prove import prove as prove_structures_of
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import check_degrees, coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.map_claims import MapSystem, coordinates_from
 from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
-from verify.integrators.step_check import check_integrator
 from verify.integrators.step_check import check_map as judge_map
-from verify.integrators.user_code.loading import callee_from
+from verify.integrators.structure_check import check_map_keeps
+from verify.integrators.system_check import check_system
+from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
+from verify.integrators.user_code.loading import Callee, callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
 from verify.proof.order_for_one_h import prove
 from verify.proof.proof_for_one_h import Proof
+from verify.proof.structures.structures_proof import StructuresProof
+from verify.scenes.keeps_section import read_claims
 from verify.schemes.scheme import Scheme
+from verify.structures.reading import KeepsRequest
 
 
 def check(
@@ -47,8 +56,16 @@ def check(
     q: NumberOrList | None = None,
     step_size: Number | None = None,
     within: Number | None = None,
+    keeps: Texts = (),
+    form: str = "",
+    density: str = "",
+    poisson: str = "",
+    casimirs: Texts = (),
+    reverses: str = "",
+    factor: str = "",
+    point: Sequence[Number] | None = None,
     time_limit: float = TIME_LIMIT,
-) -> Finding | Proof:
+) -> Finding | Proof | StructuresProof:
     """Decide whether a step is a scheme for H and what it preserves: by proof, or by measuring.
 
     Parameters
@@ -65,23 +82,42 @@ def check(
     q, p: the first state to try, numbers or, in n degrees of freedom, lists of n numbers.
     step_size: the largest step size to try.
     within: an allowed defect.
+    keeps, form, …, factor: structures that the step is meant to keep, as in `verify.prove`. Then
+        only they are judged, and the order if it is claimed. The system may be equations, as
+        'u_dot = u*(v - 2); v_dot = v*(1 - u)', and the step is then step(u, v, h) or step(z, h).
+    point: the first state to try, all coordinates, in place of `q` and `p`.
     time_limit: seconds for the whole check.
 
     For a function, returns a Finding: its `verdict` with the `reason`, its `order` and
-    `convergence_order`, and a `counterexample` if it is refuted at a point. For a scheme, returns a
-    Proof, as `verify.prove` does. Raises InputError, one line.
+    `convergence_order`, and a `counterexample` if it is refuted at a point; `keeps` has the verdict
+    on each structure. For a scheme, returns a Proof or a StructuresProof, as `verify.prove` does.
+    Raises InputError, one line.
 
     >>> euler = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
     >>> str(euler.verdict), euler.area_preserving, euler.order
     ('PROVED', False, 2)
+    >>> lotka = check(
+    ...     "u_dot = u*(v - 2); v_dot = v*(1 - u)",
+    ...     lambda u, v, h: (u / (1 - h * (v - 2)), v + h * v * (1 - u / (1 - h * (v - 2)))),
+    ...     form="du^dv/(u*v)",
+    ... )
+    >>> str(lotka.verdict), str(lotka.keeps[0].reason)
+    ('PROVED', "S = Jᵀω(z')J − ω(z) is 0 at every step")
     """
-    hamiltonian = hamiltonian_from(system, parameters)
+    request = KeepsRequest(
+        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
+        reverses, factor,
+    )  # fmt: skip
+    hamiltonian = hamiltonian_from(system, parameters, takes_field=True)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
     for name, claimed in (("area_preserving", area_preserving), ("symplectic", symplectic)):
         if not isinstance(claimed, bool):
             raise InputError(name, claimed, "must be True or False")
     if not callable(step) or isinstance(step, Scheme):
+        if request:
+            refinements = {name: x for name, x in vars(request).items() if name != "keeps"}
+            return prove_structures_of(hamiltonian, step, keeps=request.keeps, **refinements)
         scheme = scheme_from(step)
         step_map = step_map_from(scheme, hamiltonian)
         claims_symplectic = symplectic or (area_preserving and hamiltonian.degrees == 1)
@@ -93,14 +129,28 @@ def check(
         if isinstance(scheme, Scheme) and order is None and not claims_symplectic:
             return prove(step_map, scheme)
         return prove(step_map, _with_claims(scheme, order, claims_symplectic))
-    callee = callee_from(
-        step, hamiltonian.coordinates, arguments=arguments, parameters=dict(hamiltonian.values),
+    callee = callee_of_system(hamiltonian, step, arguments, time_limit)
+    claims = Claims(order=order, area_preserving=area_preserving, symplectic=symplectic)
+    structures = read_claims(request, hamiltonian) if request else ()
+    where = request_of(hamiltonian, p, q, step_size, within, point)
+    return check_system(callee, hamiltonian, claims, structures, where)
+
+
+def callee_of_system(
+    system: Hamiltonian, step: Callable[..., Any], arguments: str | None, time_limit: float
+) -> Callee:
+    """Return a step of H, or of equations, as a callee. Raises InputError."""
+    if system.energy is not None:
+        return callee_from(
+            step, system.coordinates, arguments=arguments, parameters=dict(system.values),
+            time_limit=time_limit,
+        )  # fmt: skip
+    if arguments is not None:
+        raise InputError("arguments", arguments, "goes with an H; the names of coordinates tell")
+    return callee_of_coordinates(
+        step, system.coordinates, stepped=True, parameters=dict(system.values),
         time_limit=time_limit,
     )  # fmt: skip
-    claims = Claims(order=order, area_preserving=area_preserving, symplectic=symplectic)
-    return check_integrator(
-        callee, hamiltonian, claims, request_of(hamiltonian, p, q, step_size, within)
-    )
 
 
 def check_map(
@@ -111,9 +161,20 @@ def check_map(
     parameters: Mapping[str, Number] | None = None,
     point: Sequence[Number] | None = None,
     within: Number | None = None,
+    coordinates: str | None = None,
+    keeps: Texts = (),
+    form: str = "",
+    density: str = "",
+    poisson: str = "",
+    casimirs: Texts = (),
+    reverses: str = "",
+    factor: str = "",
     time_limit: float = TIME_LIMIT,
 ) -> Finding:
     """Decide whether a map is symplectic, JᵀΩJ = Ω everywhere: by proof, or by measuring.
+
+    With `coordinates` or `keeps` other structures are judged, and only those that are named;
+    volume, if none is.
 
     Parameters
     ----------
@@ -124,6 +185,9 @@ def check_map(
     parameters: the exact values of further arguments, which the function takes by name.
     point: the first point to try, 2·degrees numbers p1, …, pn, q1, …, qn.
     within: an allowed defect.
+    coordinates: the names of the arguments, flattened, in their order, as "v1,v2,x1,x2"; any
+        number. By default p1, …, pn, q1, …, qn.
+    keeps, form, …, factor: structures that the map is meant to keep, as in `verify.prove`.
     time_limit: seconds for all calls.
 
     Returns a Finding: its `verdict` with the `reason`, `symplectic` and `area_preserving`, and the
@@ -135,24 +199,49 @@ def check_map(
     >>> mixed = check_map(lambda p, q: ([2 * p[0], p[1]], [q[0], q[1] / 2]), degrees=2)
     >>> str(mixed.verdict), mixed.entry, mixed.area_preserving
     ('REFUTED', 'dp1∧dq1', True)
+    >>> logistic = check_map(lambda x, y: (2 * x, y / 2), coordinates="x,y", density="1/(x*y)")
+    >>> str(logistic.verdict), logistic.keeps[0].structure.label
+    ('PROVED', 'volume with the density 1/(x*y)')
     """
     if not callable(function):
         raise InputError("map", function, "is no function; wanted: map(p, q), which returns p', q'")
     check_degrees(degrees)
-    names = coordinates_in(degrees)
-    values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
-    callee = callee_from(
-        # `stepped=False`: the map has no step size h among its arguments.
-        function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
-        time_limit=time_limit,
+    request = KeepsRequest(
+        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
+        reverses, factor,
     )  # fmt: skip
-    z = None
-    if point is not None:
-        z = tuple(rational(x, "point") for x in point)
-        if len(z) != len(names):
-            raise InputError("point", point, f"has {len(z)} numbers; allowed: {len(names)}")
+    names = coordinates_in(degrees) if coordinates is None else coordinates_from(coordinates)
+    values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
+    if coordinates is None:
+        callee = callee_from(
+            # `stepped=False`: the map has no step size h among its arguments.
+            function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
+            time_limit=time_limit,
+        )  # fmt: skip
+    elif arguments is not None:
+        raise InputError("arguments", arguments, "goes without coordinates")
+    else:
+        callee = callee_of_coordinates(
+            function, names, stepped=False, parameters=values, time_limit=time_limit
+        )
     tolerance = None if within is None else positive(within, "within")
-    return judge_map(callee, Request(z=z, within=tolerance))
+    where = Request(z=_point_of(names, point), within=tolerance)
+    if request or coordinates is not None:
+        try:
+            return check_map_keeps(callee, MapSystem(names, values).read(request), where)
+        except InputError as error:  # it names an option of the command line
+            name = error.name.removeprefix("--")
+            raise type(error)(name, error.value, error.problem) from None
+    return judge_map(callee, where)
+
+
+def _point_of(names: Sequence[str], point: Sequence[Number] | None) -> tuple[Fraction, ...] | None:
+    if point is None:
+        return None
+    z = tuple(rational(x, "point") for x in point)
+    if len(z) != len(names):
+        raise InputError("point", point, f"has {len(z)} numbers; allowed: {len(names)}")
+    return z
 
 
 def request_of(
@@ -161,11 +250,14 @@ def request_of(
     q: NumberOrList | None,
     step_size: Number | None = None,
     within: Number | None = None,
+    point: Sequence[Number] | None = None,
 ) -> Request:
     """Return the request for a first place to try, from a caller's arguments; or InputError."""
     if (p is None) != (q is None):
         raise InputError("p, q", p if p is not None else q, "give both or none")
-    z: list[Fraction] = []
+    if p is not None and (point is not None or hamiltonian.energy is None):
+        raise InputError("p, q", p, "goes with an H, and without point")
+    z = list(_point_of(hamiltonian.coordinates, point) or ())
     for name, values in (("p", p), ("q", q)):
         coordinates: list[Any] = [] if values is None else _as_list(values)
         if values is not None and len(coordinates) != hamiltonian.degrees:

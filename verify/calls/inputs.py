@@ -1,9 +1,10 @@
 """Arguments of callers in their several forms: a system, a scheme, exact numbers, lists.
 
-A system is a `Hamiltonian`, a `System`, the name of a system in any case, or a formula such as
-"p**2/2 - cos(q)". A scheme is a name or an alias, formulas 'p_next = …; q_next = …', a splitting
-'kick 1/2; drift 1; kick 1/2', a `Scheme`, or a `StepMap` of the same Hamiltonian. Numbers are read
-as `verify.arithmetic.exact` describes; those of numpy are read like those of Python.
+A system is a `Hamiltonian`, a `System`, the name of a system in any case, a formula such as
+"p**2/2 - cos(q)", or equations "u_dot = …; v_dot = …" where what is asked for takes them. A scheme
+is a name or an alias, formulas 'p_next = …; q_next = …', a splitting 'kick 1/2; drift 1; kick 1/2',
+a `Scheme`, or a `StepMap` of the same Hamiltonian. Numbers are read as `verify.arithmetic.exact`
+describes; those of numpy are read like those of Python.
 """
 
 import re
@@ -20,6 +21,7 @@ from verify.execution.execute import Store, execute
 from verify.execution.executors import Placement
 from verify.execution.plan import Need, plan_of
 from verify.hamiltonians import systems
+from verify.hamiltonians.equations import Equations, read_system
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.named_system import System
 from verify.scenes.frozen import Frozen
@@ -34,6 +36,7 @@ SchemesLike = SchemeLike | Sequence[SchemeLike]
 NumbersLike = Number | Iterable[Number]
 # Values by the names of parameters; None leaves a parameter a symbol.
 ParametersLike = Mapping[str, Number | None] | None
+Texts = str | Sequence[str]
 
 # A word, or words with dashes or blanks between them: rather a name than a formula.
 _NAME_PATTERN = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")
@@ -45,9 +48,12 @@ _NO_SCHEME = (
 )
 
 
-def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> Hamiltonian:
+def hamiltonian_from(
+    system: SystemLike, parameters: ParametersLike = None, *, takes_field: bool = False
+) -> Hamiltonian:
     """Return the Hamiltonian of a system, with these values of parameters added to its own.
 
+    `takes_field`: it may be equations without an H, as 'u_dot = …; v_dot = …'.
     Raises InputError for a value that is no system, an unknown name, a bad formula or parameter.
 
     >>> hamiltonian_from("Duffing", {"delta": 0.1}).texts
@@ -55,6 +61,14 @@ def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> H
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError("parameters", parameters, "is not a mapping of names to values")
+    result = _read(system, parameters)
+    if isinstance(result, Equations) and not takes_field:
+        problem = "has no H, which is needed here; verify.prove takes it, with keeps=[…]"
+        raise InputError("system", result.formula, problem)
+    return result
+
+
+def _read(system: SystemLike, parameters: ParametersLike) -> Hamiltonian:
     if isinstance(system, Hamiltonian):
         values = {**dict(system.values), **(parameters or {})}
         return system.with_values(values) if parameters else system
@@ -68,7 +82,7 @@ def hamiltonian_from(system: SystemLike, parameters: ParametersLike = None) -> H
     # A longer word that names no system is mistyped; as a formula it would be a single parameter.
     if len(system.strip()) >= _MIN_NAME_LETTERS and _NAME_PATTERN.fullmatch(system.strip()):
         raise unknown_name("system", system, systems.names(), "; or a formula in p and q")
-    return Hamiltonian.parse(system, parameters)
+    return read_system(system, parameters)
 
 
 def scheme_from(scheme: SchemeLike) -> Scheme | StepMap:
@@ -121,6 +135,14 @@ def is_list(value: object) -> bool:
     return (isinstance(value, Sequence | range) and not isinstance(value, str | bytes)) or (
         type(value).__module__ == "numpy" and getattr(value, "ndim", 0) == 1
     )
+
+
+def texts_from(name: str, values: Texts) -> tuple[str, ...]:
+    """Return one text or several. InputError for anything else."""
+    texts = [values] if isinstance(values, str) else values
+    if not isinstance(texts, Sequence) or not all(isinstance(text, str) for text in texts):
+        raise InputError(name, values, "is no text, and no list of texts")
+    return tuple(texts)
 
 
 def as_list(name: str, value: Any) -> list[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from verify import schemes
 from verify.arithmetic.exact import whole
@@ -10,19 +10,47 @@ from verify.calls.inputs import (
     ParametersLike,
     SchemeLike,
     SystemLike,
+    Texts,
     hamiltonian_from,
     scheme_from,
     step_map_from,
+    texts_from,
 )
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians import systems
 from verify.proof.order_for_one_h import prove as prove_map
 from verify.proof.proof_for_one_h import Proof
+from verify.scenes.keeps_section import read_claims
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
+from verify.structures.reading import KeepsRequest
 
 if TYPE_CHECKING:
     from verify.proof.plane.modified_equation import ModifiedEquation
+    from verify.proof.structures.structures_proof import StructuresProof
+
+
+@overload
+def prove(
+    system: SystemLike | StepMap,
+    scheme: SchemeLike | None = None,
+    *,
+    parameters: ParametersLike = None,
+) -> Proof: ...
+@overload
+def prove(
+    system: SystemLike | StepMap,
+    scheme: SchemeLike | None = None,
+    *,
+    parameters: ParametersLike = None,
+    keeps: Texts,
+    form: str = "",
+    density: str = "",
+    poisson: str = "",
+    casimirs: Texts = (),
+    reverses: str = "",
+    factor: str = "",
+) -> StructuresProof: ...
 
 
 def prove(
@@ -30,22 +58,39 @@ def prove(
     scheme: SchemeLike | None = None,
     *,
     parameters: ParametersLike = None,
-) -> Proof:
+    keeps: Texts = (),
+    form: str = "",
+    density: str = "",
+    poisson: str = "",
+    casimirs: Texts = (),
+    reverses: str = "",
+    factor: str = "",
+) -> Proof | StructuresProof:
     """Prove the order in h of ΔJ = det J − 1, the order of the map, and the claims of the scheme.
 
     For an H in p1 … pn and q1 … qn, the order of S = JᵀΩJ − Ω is proved in place of that of ΔJ.
+    With `keeps`, only what it names is judged, and the claims of the scheme are not.
 
     Parameters
     ----------
     system: a Hamiltonian, a system's name, a formula in p, q (or p1, p2, …) and t; or a StepMap,
-        the map to be proved. It is held to the claims of `scheme`, if there is one.
+        the map to be proved. It is held to the claims of `scheme`, if there is one. With `keeps`
+        also equations without an H, as 'u_dot = u*(v - 2); v_dot = v*(1 - u)'.
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     parameters: exact values by name; a parameter without a value stays a symbol, and the proof
         holds for all its values but those that `domain` names.
+    keeps: a structure that the step is meant to keep, or several: area, symplectic, volume, energy,
+        momentum, angular-momentum, reversible, symmetric, conformal, poisson, or the formula of a
+        first integral; with ': 3' behind it, its defect in one step is meant to be O(h^3), else 0.
+    form, density, poisson, casimirs, reverses, factor: what refines a structure, as `verify prove`
+        has it: the 2-form of symplectic, the density of volume, the bracket and its Casimirs, the
+        involution of reversible, the factor of conformal.
 
-    Returns a Proof: `verdict` with its `reason`; `order` of ΔJ or S and its `leading` coefficient,
-    an expression; `convergence_order` of the map; `area_preserving` and `symplectic`, each None if
-    it is undecided. Raises InputError, one line, for a bad argument.
+    With `keeps` it returns a StructuresProof, whose `keeps` has for each structure a `verdict` with
+    its `reason`, the `order` of the defect, its `leading` coefficient as a text, and whether this
+    `telescopes`. Else it returns a Proof: `verdict` with its `reason`; `order` of ΔJ or S and its
+    `leading` coefficient, an expression; `convergence_order` of the map; `area_preserving` and
+    `symplectic`, each None if it is undecided. Raises InputError, one line, for a bad argument.
 
     >>> proof = prove("duffing", "lie2")
     >>> str(proof.verdict), proof.order, proof.leading
@@ -53,7 +98,14 @@ def prove(
     >>> several = prove("p1**2/2 + p2**2/2 - cos(q1 - q2)", "lie2")
     >>> several.order, several.symplectic, several.telescopes
     (3, False, True)
+    >>> energy, area = prove("pendulum", "lie2", keeps=["energy: 3", "area"]).keeps
+    >>> str(energy.verdict), energy.leading, str(area.verdict)
+    ('PROVED', '-p**3*sin(q)/6', 'REFUTED')
     """
+    request = KeepsRequest(
+        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
+        reverses, factor,
+    )  # fmt: skip
     if isinstance(system, StepMap):
         claims = None if scheme is None else scheme_from(scheme)
         if isinstance(claims, StepMap) or parameters:
@@ -61,15 +113,24 @@ def prove(
             raise InputError(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
-        return prove_map(system, claims)
-    hamiltonian = hamiltonian_from(system, parameters)
+        return _prove(system, claims, request)
+    hamiltonian = hamiltonian_from(system, parameters, takes_field=bool(request))
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     scheme_or_map = scheme_from(scheme)
-    return prove_map(
-        step_map_from(scheme_or_map, hamiltonian),
-        scheme_or_map if isinstance(scheme_or_map, Scheme) else None,
-    )
+    claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
+    return _prove(step_map_from(scheme_or_map, hamiltonian), claims, request)
+
+
+def _prove(
+    step_map: StepMap, scheme: Scheme | None, request: KeepsRequest
+) -> Proof | StructuresProof:
+    if request:
+        from verify.proof.structures.structures_proof import prove_structures
+
+        return prove_structures(step_map, read_claims(request, step_map.hamiltonian), scheme)
+    hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
+    return prove_map(step_map, scheme)
 
 
 def modified_hamiltonian(

@@ -14,23 +14,27 @@ from verify.calls.inputs import (
     SchemeLike,
     SchemesLike,
     SystemLike,
+    Texts,
     as_list,
     hamiltonian_from,
     is_list,
     scheme_name,
     schemes_from,
+    texts_from,
 )
 from verify.calls.progress import Progress, progress_of
 from verify.calls.run_result import RunResult
 from verify.errors import InputError
 from verify.execution.plan import MOST_AT_ONCE
-from verify.hamiltonians.run_domain import check_start
+from verify.hamiltonians.run_domain import check_point, start_of
 from verify.lockstep import Course, run_alone, run_together
 from verify.runs.requested_run import RequestedRun
-from verify.scenes.observables import CLOSED_FORM
+from verify.scenes.measured_structures import measured_structures
+from verify.scenes.observables import CLOSED_FORM, observables_aside, select_observables
 from verify.scenes.results.run import MOST_POINTS
 from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import AUTO, steps_from
+from verify.structures.reading import KeepsRequest
 
 _DEFAULT_DIGITS = 17
 _MAX_RUNS = 100_000  # the limit for a sweep
@@ -40,8 +44,9 @@ def run(
     system: SystemLike,
     scheme: SchemeLike,
     *,
-    q: NumberOrList,
-    p: NumberOrList,
+    q: NumberOrList | None = None,
+    p: NumberOrList | None = None,
+    start: Mapping[str, Number] | None = None,
     step_size: Number,
     steps: int | None = None,
     time: Number | None = None,
@@ -50,6 +55,8 @@ def run(
     arithmetic: str | None = None,
     digits: int | None = None,
     observables: Sequence[str] | None = None,
+    keeps: Texts = (),
+    reverses: str = "",
     points: int = 0,
     progress: Progress = None,
 ) -> RunResult:
@@ -57,21 +64,28 @@ def run(
 
     Parameters
     ----------
-    system: a Hamiltonian, a system's name, or a formula such as "p**2/2 - cos(q)".
+    system: a Hamiltonian, a system's name, a formula such as "p**2/2 - cos(q)", or equations
+        without an H, as "u_dot = u*(v - 2); v_dot = v*(1 - u)".
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10. In n
         degrees of freedom q and p are lists of n numbers. All numbers are without units.
+    start: of equations, the initial values by name in place of q and p, as {"u": 1, "v": 2}.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
     t0: the time at the start, for an H that depends on t.
     parameters: exact values by name, in addition to those that the Hamiltonian has.
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
         By default float64, or auto if `digits` is given.
     digits: the requested significant digits; float64 gives those that it can certify.
-    observables: names among delta_j_max, mse, lambda, lambda_plain, lambda_max and
-        energy_error_max, the greatest |H − H₀|; in n degrees of freedom also symplectic_defect_max,
-        the greatest |entry| of S = JᵀΩJ − Ω in any step, and symplectic_defect, that of W, the
-        defect of all steps together. By default delta_j_max, mse and lambda, and in n degrees
-        of freedom both symplectic defects too.
+    observables: names among delta_j_max, mse, lambda, lambda_plain, lambda_max, energy_error,
+        which is H − H₀ at the end, and energy_error_max, the greatest |H − H₀|; in n degrees of
+        freedom also symplectic_defect_max, the greatest |entry| of S = JᵀΩJ − Ω in any step, and
+        symplectic_defect, that of W, the defect of all steps together. By default delta_j_max, mse
+        and lambda, in n degrees of freedom both symplectic defects, and for an H without t both
+        energy errors, with the digits that they have then.
+    keeps: what is measured of what the step is meant to keep, a text or several: area, symplectic,
+        volume, energy, momentum, angular-momentum, reversible, or the formula of a first integral.
+        Nothing is judged; see `keeps` of the result.
+    reverses: the involution of reversible, as '-p, q', which is the default.
     points: the limit on the states in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
     progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
         called with the number of steps done.
@@ -91,22 +105,24 @@ def run(
     """
     return run_alone(
         run_in_turn(
-            system, scheme, q=q, p=p, step_size=step_size, steps=steps, time=time, t0=t0,
-            parameters=parameters, arithmetic=arithmetic, digits=digits, observables=observables,
-            points=points, progress=progress,
+            system, scheme, q=q, p=p, start=start, step_size=step_size, steps=steps, time=time,
+            t0=t0, parameters=parameters, arithmetic=arithmetic, digits=digits,
+            observables=observables, keeps=keeps, reverses=reverses, points=points,
+            progress=progress,
         )
     )  # fmt: skip
 
 
 def run_in_turn(
-    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList, step_size: Number,
-    steps: int | None, time: Number | None, t0: Number = 0, parameters: ParametersLike,
-    arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
-    points: int = 0, progress: Progress,
+    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList | None, p: NumberOrList | None,
+    step_size: Number, start: Mapping[str, Number] | None = None, steps: int | None,
+    time: Number | None, t0: Number = 0, parameters: ParametersLike, arithmetic: str | None = None,
+    digits: int | None = None, observables: Sequence[str] | None,
+    keeps: Texts = (), reverses: str = "", points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
     """Do `run` as a course, a generator that can be stepped together with others."""
-    hamiltonian = hamiltonian_from(system, parameters)
-    check_start(hamiltonian, q, p, t0)
+    hamiltonian = hamiltonian_from(system, parameters, takes_field=True)
+    check_point(hamiltonian, start_of(hamiltonian, q, p, start), t0)
     name = scheme_name(scheme, hamiltonian)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
@@ -115,14 +131,19 @@ def run_in_turn(
     arithmetic = arithmetic or (float64.NAME if digits is None else AUTO)
     if not isinstance(arithmetic, str):
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
+    keeps_request = KeepsRequest(texts_from("keeps", keeps), reverses=reverses)
+    measured = measured_structures(hamiltonian, keeps_request) if keeps_request else ()
+    requested = select_observables(hamiltonian, _observable_names(observables))
+    requested += tuple(x for structure in measured for x in structure.observables)
     with progress_of(progress, f"{name[:30]}, steps", count) as report:
         request = RequestedRun(
-            hamiltonian, name, q=q, p=p, step_size=step_size, steps=count, t0=t0,
+            hamiltonian, name, q=q, p=p, start=start, step_size=step_size, steps=count, t0=t0,
             arithmetic=arithmetic, digits=digits or _DEFAULT_DIGITS,
-            observables=_observable_names(observables), points=int(points),
+            observables=tuple(dict.fromkeys(requested)), points=int(points),
+            aside=observables_aside(hamiltonian) if observables is None else (),
         )  # fmt: skip
         result = yield from request.result(report)
-    return RunResult.from_result(result).with_points(int(points))
+    return RunResult.from_result(result).with_points(int(points)).with_measured(measured)
 
 
 def _observable_names(observables: Sequence[str] | None) -> tuple[str, ...] | None:

@@ -1,13 +1,28 @@
 """Results of runs, and reports of them, that can repeat a run to compute more than its values."""
 
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Self
 
+from pydantic import PrivateAttr
+
+from verify.scenes.measured_structures import MeasuredStructure
 from verify.scenes.results import report as report_models
 from verify.scenes.results import run as run_models
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import EnergyDrift, OrbitTable
+
+
+@dataclass(frozen=True)
+class KeptValues:
+    """The values of one structure in a run: `at_end` is what has accumulated at its end, `largest`
+    the greatest on the way. None if there is no such value."""
+
+    structure: str
+    label: str
+    at_end: Value | None
+    largest: Value | None
 
 
 class RunResult(run_models.RunResult):
@@ -17,6 +32,20 @@ class RunResult(run_models.RunResult):
     run ended, and `error_kind` whether every bound is rigorous.
     `verify.scenes.results.run.RunResult` describes all fields.
     """
+
+    _measured: tuple[MeasuredStructure, ...] = PrivateAttr(())
+
+    def with_measured(self, measured: tuple[MeasuredStructure, ...]) -> Self:
+        """Return the result with these structures in `keeps`."""
+        copy = self.model_copy()
+        copy._measured = measured
+        return copy
+
+    @property
+    def keeps(self) -> tuple[KeptValues, ...]:
+        """The values of each structure that was asked for, in their order."""
+        structures = self._measured
+        return tuple(KeptValues(x.structure, x.label, **x.select(self.values)) for x in structures)
 
     @classmethod
     def from_result(cls, result: run_models.RunResult) -> Self:

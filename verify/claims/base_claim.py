@@ -77,7 +77,8 @@ class Claim(Frozen):
 
     `exact`: algebra alone decides it, so that it costs no run. `on_scene`: it is about a scheme
     and a scene. `run_keys`: the keys that select its runs; `one_run`: it is about one run only.
-    `autonomous`: H must not depend on time; `planar`: H must have one degree of freedom.
+    `autonomous`: H must not depend on time; `planar`: H must have one degree of freedom;
+    `of_fields`: it may be about equations without an H.
     `obstacle`: the reason why the claim cannot be transferred to other scenes; empty if it can.
     `warning`: how a reader may misunderstand the claim; empty if there is no such danger.
     Formulas in `statement` and `reading` stand between backticks. `reading_of`, `reading` and
@@ -90,6 +91,7 @@ class Claim(Frozen):
     one_run: ClassVar[bool] = False
     autonomous: ClassVar[bool] = False
     planar: ClassVar[bool] = False
+    of_fields: ClassVar[bool] = False
     obstacle: ClassVar[str] = ""
     warning: ClassVar[str] = ""
 

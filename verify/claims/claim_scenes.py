@@ -1,7 +1,7 @@
 """The scenes of claims: built from a claim's own Hamiltonian and runs, or looked up by name.
 
-One of the keys `scene`, `system`, `hamiltonian` and `every`, with `parameters`, selects H; see
-`verify.claims.run_claims` for the keys of runs.
+One of the keys `scene`, `system`, `hamiltonian` and `every`, with `parameters`, selects H, and
+`field` equations without an H; see `verify.claims.run_claims` for the keys of runs.
 """
 
 import re
@@ -19,17 +19,20 @@ from verify.scenes.scene import Scene, load_scene, scene_from
 from verify.scenes.toml_file import Lines, tables_of
 from verify.scenes.values import ExactNumber, SystemName
 
-HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
+HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "field", "every")
 HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters", "t0")
 
 
 class ClaimedHamiltonian(Frozen):
-    """The keys that define H; `parameters` belong to `system` or `hamiltonian`."""
+    """The keys that define H, or a field; `parameters` belong to them."""
 
     system: SystemName | None = None
     """A named system."""
     hamiltonian: str | None = None
     """H as a formula in p, q and parameters."""
+    field: str | None = None
+    """Equations without an H, as `u_dot = u*(v - 2); v_dot = v*(1 - u)`, for a claim of kind
+    `keeps`."""
     parameters: dict[str, ExactNumber] = Field(default_factory=dict)
     """The values of H's parameters; those without one stay symbols."""
     t0: ExactNumber = Fraction(0)
@@ -55,15 +58,25 @@ def scene_for(
     if "scene" not in hamiltonian_keys:
         hamiltonian = ClaimedHamiltonian.model_validate(hamiltonian_keys)
         scene = Scene(**hamiltonian.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
+        _check_field(claim, scene)
         named_scene = claim.separate_scene(hamiltonian.system or "own", scene, runs)
     else:
         for key in ("parameters", "t0"):
             if key in hamiltonian_keys:
                 raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
         name = hamiltonian_keys["scene"]
-        named_scene = claim.selected_scene(name, find_scene(name), runs)
+        scene = find_scene(name)
+        _check_field(claim, scene)
+        named_scene = claim.selected_scene(name, scene, runs)
     _check_hamiltonian(claim, named_scene[1])
     return named_scene
+
+
+def _check_field(claim: Claim, scene: Scene) -> None:
+    """Raise InputError if the scene is of equations without an H, and the claim's kind is not."""
+    if scene.field is not None and not claim.of_fields:
+        problem = "is of an H; of equations without one speak claims of kind keeps"
+        raise InputError("kind", claim.kind, problem)
 
 
 def _check_hamiltonian(claim: Claim, scene: Scene) -> None:

@@ -132,7 +132,7 @@ def order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     order_in = {AREA: _delta_j_order, SYMPLECTIC: _order_in_degrees}[hamiltonian.structure]
     order = order_in(hamiltonian, claim.scheme, of_s=form == "S")
-    form_name = hamiltonian.structure.defect if form == "S" else form
+    form_name = hamiltonian.structure.symbol if form == "S" else form
     return _with_printed(order, claim.scheme, hamiltonian, form_name)
 
 

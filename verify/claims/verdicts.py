@@ -273,7 +273,9 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         source=systems.get(scene.system).source if scene.system else "the user's formula",
         time=text(scene.grid.time) if scene.grid and scene.grid.time else None,
         t0=text(scene.t0),
-        proofs=tuple(findings.proof(scene, scheme) for scheme in scene.schemes),
+        proofs=tuple(
+            findings.proof(scene, scheme) for scheme in scene.schemes if scene.field is None
+        ),
         criteria=tuple(
             findings.criterion(scene, scheme, number)
             for scheme in scene.schemes

@@ -91,6 +91,7 @@ def _describe_flow(task: TaskData) -> str:
 # The function that describes a task, by its kind. "separation" is that of Λ, in the plane;
 # "separation in degrees" is that of W, in n degrees of freedom.
 _DESCRIBERS: Mapping[str, Callable[[TaskData], str]] = {
+    "keeps": lambda task: f"prove what {task['scheme']} keeps of {task['hamiltonian']}",
     "proof": lambda task: f"prove {task['scheme']} for H = {task['hamiltonian']}",
     "every": lambda task: f"prove {task['scheme']} for every H{' in time' * task['timed']}",
     "growth": _describe_growth,

@@ -11,12 +11,13 @@ from verify.commands.shared import proof_output as show
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import (
     every_options,
-    hamiltonian_options,
     one_or_every,
     scheme_option,
+    system_options,
 )
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
-from verify.errors import InputError
+from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,10 +27,11 @@ if TYPE_CHECKING:
     from verify.proof.proof_for_one_h import Proof
     from verify.proof.special_values import SpecialValue
     from verify.schemes.scheme import Scheme
+    from verify.structures.reading import KeepsRequest
 
 
 @click.command()
-@hamiltonian_options
+@system_options
 @scheme_option
 @answering
 @every_options
@@ -51,6 +53,8 @@ if TYPE_CHECKING:
     help="Write the identities of the proof, for `verify certificate check`; if H has functions "
     "other than sin, cos, exp and quotients, those of the proof for every H.",
 )
+@structure_options
+@split_option
 def prove(
     scheme: str,
     every_hamiltonian: bool,
@@ -58,6 +62,8 @@ def prove(
     time_dependent: bool,
     degrees: int | None,
     certificate: Path | None,
+    keeps: "KeepsRequest",
+    splits: tuple[str, ...],
     **options: Any,
 ) -> CommandAnswer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
@@ -66,6 +72,8 @@ def prove(
     that it names: ΔJ may be smaller if a parameter is 0. For an H in p1 … pn and q1 … qn the orders
     of S = JᵀΩJ − Ω, which is 0 for a symplectic map, and of det J − 1 are proved.
 
+    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order.
+
     \b
     verify prove --system duffing --scheme lie2
     verify prove --hamiltonian "p**2/2 - (1 + cos(2*t)/2)*cos(q)" --scheme lie2
@@ -73,6 +81,8 @@ def prove(
     verify prove --every-hamiltonian --scheme lie6
     verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
+    verify prove --system pendulum --scheme lie2 --keeps "energy: 3" --keeps reversible
+    verify prove --field "u_dot = u*(v - 2); v_dot = v*(1 - u)" --scheme rk4 --form "du^dv/(u*v)"
     """
     options_of_every = {
         "separable": separable,
@@ -80,9 +90,46 @@ def prove(
         "degrees": degrees,
     }
     hamiltonian = one_or_every(every_hamiltonian, options, **options_of_every)
+    if hamiltonian is not None and (keeps or hamiltonian.energy is None):
+        if certificate is not None:
+            raise InputError("--certificate", str(certificate), "goes without --keeps and --field")
+        return _prove_structures(hamiltonian, compose_scheme(scheme, splits, hamiltonian), keeps)
+    if keeps or splits:
+        option = "--keeps" if keeps else "--split"
+        raise InputError(option, NOT_GIVEN, "goes with one system, and --split with --field")
     if hamiltonian is not None:
         return _prove_one(hamiltonian, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
+
+
+def _prove_structures(
+    hamiltonian: "Hamiltonian", scheme: str, keeps: "KeepsRequest"
+) -> CommandAnswer:
+    from verify.commands.shared.structure_output import print_structures, structure_json
+    from verify.proof.structures.structures_proof import prove_structures
+    from verify.schemes import get
+    from verify.structures.reading import KeepsRequest, read_structures
+
+    start_time = time.perf_counter()
+    integrator = get(scheme)
+    request = keeps or KeepsRequest(keeps=("volume",))
+    claims = read_structures(request, hamiltonian)
+    proof = prove_structures(integrator.step_map(hamiltonian), claims, integrator)
+    seconds = f"{time.perf_counter() - start_time:.6f}"
+
+    def data() -> dict[str, Any]:
+        return {
+            **pick(proof, "verdict", "reason"), **hamiltonian.texts, "scheme": integrator.name,
+            **show.agreement_json(proof), "keeps": list(map(structure_json, proof.keeps)),
+            "seconds": seconds,
+        }  # fmt: skip
+
+    def show_proof() -> None:
+        show.print_head(hamiltonian, integrator.name, proof)
+        print_structures(proof.keeps)
+        click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
+
+    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED")
 
 
 def _prove_every(

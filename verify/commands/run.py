@@ -19,22 +19,31 @@ from verify.commands.shared.execution_options import cache_option, counting_bar
 from verify.commands.shared.input import (
     parse_coordinates,
     scheme_option,
-    start_options,
-    with_kept_hamiltonian,
+    values_of,
+    with_kept_system,
 )
 from verify.commands.shared.output import CommandAnswer, answering
-from verify.errors import InputError
+from verify.commands.shared.structure_options import (
+    compose_scheme,
+    split_option,
+    structure_options,
+)
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.measured_structures import MeasuredStructure
     from verify.scenes.results.run import OrbitTable, RunResult
+    from verify.structures.reading import KeepsRequest
 
 
 @click.command()
-@with_kept_hamiltonian
+@with_kept_system
 @scheme_option
 @answering
 @cache_option
+@structure_options
+@split_option
 @click.option("--step-size", required=True, metavar="H", help="The step size, greater than 0.")
 @click.option(
     "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
@@ -43,7 +52,9 @@ if TYPE_CHECKING:
 @click.option(
     "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
 )
-@start_options
+@click.option("--q", metavar="Q", help="Initial displacement; of q1, q2, … one each, as 0.1,0.2.")
+@click.option("--p", metavar="P", help="Initial momentum; as --q.")
+@click.option("--start", metavar="NAME=VALUE,…", help="Of --field: the initial values, as u=1,v=2.")
 @click.option(
     "--digits", type=int, metavar="D", help="The number of significant digits that are requested."
 )
@@ -72,8 +83,17 @@ if TYPE_CHECKING:
     metavar="DIR",
     help="Keep checkpoints in this folder; the same command continues from them.",
 )
-def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswer:
-    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
+def run(
+    hamiltonian: "Hamiltonian",
+    scheme: str,
+    keeps: "KeepsRequest",
+    splits: tuple[str, ...],
+    **options: Any,
+) -> CommandAnswer:
+    """Run N steps and report Λ, MSE, max |ΔJ|, H − H₀ and the last state, each with its bound.
+
+    With --keeps, what the step keeps is measured too, and not judged: the change of a first
+    integral, the defect of area, of volume or of the symplectic form, the way back.
 
     With --keep, an interruption costs at most some seconds of work. The file of --csv begins with
     the initial state, and has every step of a run of up to 10,000; of a longer run it has every
@@ -84,6 +104,7 @@ def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswe
            --csv orbit.csv
     """
     from verify.arithmetic.exact import whole
+    from verify.scenes.measured_structures import measured_structures
     from verify.scenes.results.run import MOST_POINTS
 
     csv_path, points = options.pop("table"), options.pop("points")
@@ -93,12 +114,14 @@ def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswe
         raise InputError("--points", points, "goes with --csv")
     if points is not None:
         whole("points", points, 1, MOST_POINTS)
-    result, note = _run_scheme(hamiltonian, scheme, **options)
+    measured = measured_structures(hamiltonian, keeps) if keeps else ()
+    scheme = compose_scheme(scheme, splits, hamiltonian)
+    result, note = _run_scheme(hamiltonian, scheme, measured, **options)
     if csv_path is not None:
         _write_orbit(result, csv_path, MOST_POINTS if points is None else points)
 
     def show_run() -> None:
-        show.print_run(result)
+        show.print_run(result, measured)
         if note:
             click.echo(note)
 
@@ -108,7 +131,7 @@ def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswe
             click.echo(line, err=True)
 
     return CommandAnswer(
-        lambda: show.run_json(result),
+        lambda: show.run_json(result, measured),
         show_status if csv_path == STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
     )
@@ -117,6 +140,7 @@ def run(hamiltonian: "Hamiltonian", scheme: str, **options: Any) -> CommandAnswe
 def _run_scheme(
     hamiltonian: "Hamiltonian",
     scheme: str,
+    measured: "tuple[MeasuredStructure, ...]",
     *,
     steps: int | None,
     time: str | None,
@@ -124,24 +148,30 @@ def _run_scheme(
     digits: int | None,
     arithmetic: str | None,
     keep: Path | None,
-    q: str,
-    p: str,
+    q: str | None,
+    p: str | None,
+    start: str | None,
     t0: str,
 ) -> "tuple[RunResult, str]":
     """Return the run, and a note if --time is no multiple of the step size; else an empty text."""
     from verify.arithmetic.exact import positive
     from verify.execution.keeper import Keeper, name_of
-    from verify.hamiltonians.run_domain import check_start
+    from verify.hamiltonians.run_domain import check_point, start_of
     from verify.runs.requested_run import run as run_scheme
-    from verify.scenes.observables import REPORTED, carries
+    from verify.scenes.observables import REPORTED, carries, observables_aside, select_observables
     from verify.scenes.values import AUTO, describe_rounding, steps_from
 
-    start: dict[str, Any] = {
-        "q": parse_coordinates(q, hamiltonian),
-        "p": parse_coordinates(p, hamiltonian),
-        "t0": t0,
+    pairs = None if start is None else tuple(part.strip() for part in start.split(","))
+    for name, value in (("q", q), ("p", p)):
+        if value is None and hamiltonian.has_energy:
+            raise InputError(f"--{name}", NOT_GIVEN, f"is missing; write --{name} {name.upper()}")
+    begin: dict[str, Any] = {
+        "q": q and parse_coordinates(q, hamiltonian),
+        "p": p and parse_coordinates(p, hamiltonian),
+        "start": pairs and values_of(pairs, "--start"),
     }
-    check_start(hamiltonian, **start)
+    check_point(hamiltonian, start_of(hamiltonian, **begin), t0)
+    begin["t0"] = t0
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:
@@ -153,14 +183,20 @@ def _run_scheme(
         scheme,
         step_size,
         count,
-        start,
+        begin,
         digits,
         arithmetic,
+        measured,
     )
     keeper, has_all_reported = (
         Keeper(keep, name_of(run_identity)),
         all(carries(hamiltonian, n) for n in REPORTED),
     )
+    # In float64 the plain evaluation of Λ shows the effect of rounding, so it is reported too; at
+    # many digits the effect cannot be seen.
+    is_plain = arithmetic == "float64" and has_all_reported
+    names = REPORTED if is_plain else select_observables(hamiltonian, None)
+    names += tuple(name for structure in measured for name in structure.observables)
     with counting_bar("stepping", count) as advance:
         result = run_scheme(
             hamiltonian,
@@ -169,12 +205,11 @@ def _run_scheme(
             steps=count,
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
-            # In float64 the plain evaluation of Λ shows the effect of rounding, so it is reported
-            # too; at many digits the effect cannot be seen.
-            observables=REPORTED if arithmetic == "float64" and has_all_reported else None,
+            observables=tuple(dict.fromkeys(names)),
+            aside=observables_aside(hamiltonian),
             progress=advance,
             keeper=keeper,
-            **start,
+            **begin,
         )
     keeper.clear()
     end_time = None if time is None else positive(time, "time")

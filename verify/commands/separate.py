@@ -24,12 +24,26 @@ from verify.commands.shared.input import (
     start_options,
     with_kept_hamiltonian,
 )
-from verify.commands.shared.output import CommandAnswer, answering, pick, plain_json, print_once
+from verify.commands.shared.output import (
+    CommandAnswer,
+    answering,
+    pick,
+    plain_json,
+    print_once,
+)
+from verify.commands.shared.separated_integrals import (
+    change_json,
+    integrals_of,
+    print_change,
+    split_change,
+)
+from verify.commands.shared.structure_options import structure_options
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.results.separation import AnyGrid, CrossoverResult, Separation
     from verify.scenes.results.separation_parts import AnyEvaluation, PartsOfRun
+    from verify.structures.reading import KeepsRequest
 
 _LINE_WIDTH = 88  # characters, of prose
 _EVALUATION_LABELS = {"plain": "plain", "closed_form": "closed form"}
@@ -174,6 +188,7 @@ def _describe_crossover(crossover: "CrossoverResult") -> str:
     "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
 )
 @start_options
+@structure_options
 @click.option(
     "--digits", type=int, default=17, metavar="D", help="Significant digits of every part."
 )
@@ -183,7 +198,11 @@ def _describe_crossover(crossover: "CrossoverResult") -> str:
     help="The number system that stands for exact arithmetic, as for `verify run`; not float64.",
 )
 def separate(
-    hamiltonian: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
+    hamiltonian: "Hamiltonian",
+    scheme: str,
+    step_sizes: tuple[str, ...],
+    keeps: "KeepsRequest",
+    **options: Any,
 ) -> CommandAnswer:
     """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
 
@@ -197,6 +216,9 @@ def separate(
     determinant.
 
     With several step sizes, the one below which rounding is larger than truncation is given too.
+
+    With --keeps, the change of a first integral is split too: rounding of the inputs, of the
+    trajectory, and of the evaluation of the integral at its ends.
     """
     from verify.arithmetic.exact import positive
     from verify.hamiltonians.run_domain import check_start
@@ -207,14 +229,27 @@ def separate(
     options |= {name: parse_coordinates(options[name], hamiltonian) for name in ("q", "p")}
     check_start(hamiltonian, options["q"], options["p"], options["t0"])
     step_counts = count_steps(step_sizes, options["steps"], options["time"])  # pairs of h and N
+    integrals = integrals_of(hamiltonian, keeps)
     with progress_bar("stepping", RUNS * sum(n for _, n in step_counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
         grid = separate_grid(hamiltonian, scheme, **options)
+    start = {name: options[name] for name in ("q", "p", "t0", "digits", "arithmetic")}
+    changes = [
+        (structure, split_change(hamiltonian, scheme, structure, *count, **start))
+        for count in step_counts
+        for structure in integrals
+    ]
     time = options["time"]
     note = describe_rounding(time and positive(time, "time"), [h for h, _ in step_counts])
 
     def show() -> None:
         print_grid(grid)
+        for structure, parts in changes:
+            print_change(structure, parts)
         print_once([note])
 
-    return CommandAnswer(lambda: grid_json(grid), show)
+    def data() -> dict[str, Any]:
+        keeps_json = [change_json(*change) for change in changes]
+        return {**grid_json(grid), **({"keeps": keeps_json} if changes else {})}
+
+    return CommandAnswer(data, show)

@@ -110,7 +110,8 @@ class Study:
     `order`: its position among the studies, for their tasks. `need_of_scheme(plan, scene, scheme,
     preserves)`: adds the tasks for one scheme of the scene; `preserves` is True if ΔJ ≡ 0 is
     proved. `need(plan, scene)`: adds the tasks for the whole scene. `results_for_scene(scene,
-    results)`: returns the study's part of a `SceneResult`, by its keys.
+    results)`: returns the study's part of a `SceneResult`, by its keys. `takes_field`: it also
+    takes scenes of equations without an H.
     """
 
     order: int
@@ -118,6 +119,7 @@ class Study:
     need_of_scheme: Callable[[Plan, Scene, str, bool], None] | None = None
     need: Need | None = None
     results_for_scene: Callable[[Scene, Results], dict[str, Any]] | None = None
+    takes_field: bool = False
 
 
 def scene_name(scene: Scene) -> str:

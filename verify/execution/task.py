@@ -9,6 +9,7 @@ from abc import abstractmethod
 from typing import Any, ClassVar
 
 from verify.execution.keeper import Keeper
+from verify.hamiltonians.equations import read_system
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lockstep import Course
 from verify.scenes.frozen import Frozen
@@ -90,13 +91,13 @@ class Task(Frozen):
 
 
 class HamiltonianTask(Task):
-    """A task on H, which is given by its formula, with its parameter values."""
+    """A task on H, which is given by its formula, or on equations, with parameter values."""
 
     hamiltonian: str
     parameters: dict[str, ExactNumber]
 
     def exact_hamiltonian(self) -> Hamiltonian:
-        return Hamiltonian.parse(self.hamiltonian, self.parameters)
+        return read_system(self.hamiltonian, self.parameters)
 
     def other_fields(self, *without: str) -> dict[str, Any]:
         """Return its fields other than those of H, by their names."""

@@ -15,7 +15,7 @@ from typing import Any
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.compiled_functions import ElementCode
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
@@ -53,7 +53,7 @@ class NumericalFlow:
     A state has all coordinates, and t where H depends on it.
     """
 
-    def __init__(self, field: CanonicalField, digits: int) -> None:
+    def __init__(self, field: PlainField, digits: int) -> None:
         names, self.timed = field.names, field.timed
         self.arithmetic = mpfr.make(digits + GUARD)
         self.names = (*names, "t") if self.timed else tuple(names)

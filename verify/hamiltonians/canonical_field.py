@@ -17,7 +17,9 @@ from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.jets import Jets, JetsInDegrees
 from verify.algebra.power_series import CoefficientRing, Derivatives
 from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
 from verify.hamiltonians.coordinates import numbered_names
+from verify.hamiltonians.equations import Equations
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 
@@ -95,25 +97,27 @@ class VectorField(ABC):
         return tuple(self.ring.diff(x, name) for name in self.names)
 
 
-class CanonicalField(VectorField):
-    """The canonical field of one H, `energy`: an element of a ring with the coordinates, h, t if H
-    has it, and parameters."""
+class PlainField(VectorField):
+    """A field in a ring with the coordinates, h, t if the system has it, and parameters."""
 
-    def __init__(self, ring: Ring, names: tuple[str, ...], energy: Poly) -> None:
-        self._ring, self.names, self.energy = ring, names, energy
+    def __init__(self, ring: Ring, names: tuple[str, ...], slopes: Sequence[Poly]) -> None:
+        self._ring, self.names, self._slopes = ring, names, tuple(slopes)
 
     @property
     def ring(self) -> Ring:
         """The ring, in which zero is decided."""
         return self._ring
 
-    @cached_property
+    @property
     def slopes(self) -> tuple[Poly, ...]:
         """The components of f, one for each name."""
-        # z = (p, q): the first n components are p' = −∂H/∂q, the others q' = ∂H/∂p.
-        n, diff = self.degrees, self.ring.diff
-        forces = [-diff(self.energy, name) for name in self.names[n:]]
-        return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
+        return self._slopes
+
+    @property
+    def degrees(self) -> int:
+        """The number of degrees of freedom; of a field without an H that of its coordinates."""
+        # Two at least: what one degree of freedom has is of p and q.
+        return max(len(self.names), 2)
 
     def flow_changes(self, eta: int) -> list[Poly]:
         """Return Σ hⁿ/n! Xⁿz, n = 1 … η: z′ − z of `lieη`, the exact flow's Taylor polynomial."""
@@ -135,6 +139,32 @@ class CanonicalField(VectorField):
         depends = self.ring.depends
         return not self.timed and not any(depends(y, name) for y in second for name in self.names)
 
+    @property
+    def separable(self) -> bool:
+        """False: a plain field has no H = T(p) + V(q)."""
+        return False
+
+
+class CanonicalField(PlainField):
+    """The canonical field of one H, `energy`, an element of its ring."""
+
+    def __init__(self, ring: Ring, names: tuple[str, ...], energy: Poly) -> None:
+        super().__init__(ring, names, ())
+        self.energy = energy
+
+    @property
+    def degrees(self) -> int:
+        """The number of degrees of freedom, half the number of names."""
+        return len(self.names) // 2
+
+    @cached_property
+    def slopes(self) -> tuple[Poly, ...]:
+        """The components of f, one for each name."""
+        # z = (p, q): the first n components are p' = −∂H/∂q, the others q' = ∂H/∂p.
+        n, diff = self.degrees, self.ring.diff
+        forces = [-diff(self.energy, name) for name in self.names[n:]]
+        return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
+
     @cached_property
     def separable(self) -> bool:
         """True if H = T(p) + V(q): all mixed derivatives are the zero function."""
@@ -143,26 +173,53 @@ class CanonicalField(VectorField):
         return all(ring.vanishes(x) is True for x in mixed)
 
 
-def canonical_field(
+def field_of(
     hamiltonian: Hamiltonian, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
-) -> tuple[CanonicalField, list[Poly]]:
-    """Return the field of `hamiltonian.exact`, and other expressions as elements of its ring.
+) -> tuple[PlainField, list[Poly]]:
+    """Return the field of a system, and other expressions as elements of its ring.
 
-    Symbols that H does not have are variables of the ring too. Raises InputError as
+    Symbols that the system does not have are variables of the ring too. Raises InputError as
     `Hamiltonian.embed_in_ring` does.
     """
     if not expressions and most_terms == MAX_TERMS:
         return _cached_field(hamiltonian), []
-    ring, energy, elements = hamiltonian.embed_in_ring(*expressions, most_terms=most_terms)
-    return CanonicalField(ring, hamiltonian.coordinates, energy), elements
+    return _new_field(hamiltonian, expressions, most_terms)
 
 
 # Proofs of several schemes for one H share its field. The cache is small, since a field keeps all
 # derivatives along it.
 @lru_cache(maxsize=8)
-def _cached_field(hamiltonian: Hamiltonian) -> CanonicalField:
-    ring, energy, _ = hamiltonian.embed_in_ring()
-    return CanonicalField(ring, hamiltonian.coordinates, energy)
+def _cached_field(hamiltonian: Hamiltonian) -> PlainField:
+    return _new_field(hamiltonian, (), MAX_TERMS)[0]
+
+
+def _new_field(
+    hamiltonian: Hamiltonian, expressions: Sequence[sympy.Expr], most_terms: int
+) -> tuple[PlainField, list[Poly]]:
+    names = hamiltonian.coordinates
+    if isinstance(hamiltonian, Equations):
+        ring, slopes, elements = hamiltonian.embed_slopes(*expressions, most_terms=most_terms)
+        return PlainField(ring, names, slopes), elements
+    # Without expressions the defaults may be read from a record.
+    limit = {} if not expressions and most_terms == MAX_TERMS else {"most_terms": most_terms}
+    ring, energy, elements = hamiltonian.embed_in_ring(*expressions, **limit)
+    return CanonicalField(ring, names, energy), elements
+
+
+def canonical_field(
+    hamiltonian: Hamiltonian, *expressions: sympy.Expr, most_terms: int = MAX_TERMS
+) -> tuple[CanonicalField, list[Poly]]:
+    """Return the field of `hamiltonian.exact`, as `field_of`; InputError for equations."""
+    field, elements = field_of(hamiltonian, *expressions, most_terms=most_terms)
+    return require_canonical(field), elements
+
+
+def require_canonical(field: PlainField) -> CanonicalField:
+    """Return the field itself; InputError if it is not that of an H."""
+    if not isinstance(field, CanonicalField):
+        slopes = ", ".join(map(field.ring.text, field.slopes))
+        raise InputError("field", slopes, "has no H, which is needed here")
+    return field
 
 
 def energy_of(hamiltonian: Hamiltonian) -> tuple[Ring, Poly]:

@@ -26,33 +26,36 @@ from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.lazy_sympy import sympy
 from verify.notebook import aligned_latex, cut, short_latex
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
 
 # Cached: every task of a report parses its Hamiltonian, one of a few.
 @lru_cache(maxsize=64)
 def _parse_formula(formula: str) -> Hamiltonian:
-    """Return H with an expression whose text is read back as the same expression: tasks, stored
+    """Return H with an expression whose text is read back as the same expression."""
+    expression, requirements = read(formula, source="hamiltonian")
+    hamiltonian = Hamiltonian(settle(expression, formula))
+    text_domain = FormulaDomain.from_requirements(requirements) if requirements else EVERYWHERE
+    is_implied = hamiltonian.domain & text_domain == hamiltonian.domain
+    return hamiltonian if is_implied else replace(hamiltonian, text_domain=text_domain)
+
+
+def settle(expression: sympy.Expr, formula: str, source: str = "hamiltonian") -> sympy.Expr:
+    """Return an equal expression whose text is read back as the same expression: tasks, stored
     results and certificates have that text.
 
-    It can be much longer than the formula: each time that it is read, sympy multiplies a number
-    into a sum one level deeper.
+    `formula`: what was read from the `source`. It can be much shorter than the text: each time that
+    this is read, sympy multiplies a number into a sum one level deeper.
     """
-    expression, requirements = read(formula, source="hamiltonian")
     # The loop ends at a fixed point, at which the text of the expression is read as the expression.
     for _ in range(MAX_DEPTH):
         read_again = expression
         if not reads_back(expression, MAX_LENGTH):
-            read_again = parse(to_text(expression), source="hamiltonian, written out")
+            read_again = parse(to_text(expression), source=f"{source}, written out")
         if read_again == expression:
-            hamiltonian = Hamiltonian(expression)
-            text_domain = (
-                FormulaDomain.from_requirements(requirements) if requirements else EVERYWHERE
-            )
-            is_implied = hamiltonian.domain & text_domain == hamiltonian.domain
-            return hamiltonian if is_implied else replace(hamiltonian, text_domain=text_domain)
+            return expression
         expression = read_again
-    raise InputError("hamiltonian", formula, "is read otherwise each time that it is written out")
+    raise InputError(source, formula, "is read otherwise each time that it is written out")
 
 
 @lru_cache(maxsize=64)
@@ -173,7 +176,7 @@ class Hamiltonian:
         return self.coordinates == PLANE
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that a canonical step preserves."""
         return AREA if self.planar else SYMPLECTIC
 
@@ -211,6 +214,16 @@ class Hamiltonian:
         for them."""
         return self.substitute_values(self.expression)
 
+    @property
+    def has_energy(self) -> bool:
+        """True if there is an H; it is answered without the expression."""
+        return True
+
+    @property
+    def energy(self) -> sympy.Expr | None:
+        """The expression `exact`; None for a system without a Hamiltonian."""
+        return self.exact
+
     @cached_property
     def domain(self) -> FormulaDomain:
         """The conditions under which `exact` is smooth, and the text of H is defined."""
@@ -240,14 +253,18 @@ class Hamiltonian:
 
     def __repr__(self) -> str:
         values = (f", {name} = {text(value)}" for name, value in self.values)
-        return f"Hamiltonian({cut(self.formula)}{''.join(values)})"
+        return f"{type(self).__name__}({cut(self.formula)}{''.join(values)})"
 
     def _repr_latex_(self) -> str:
-        """Return H with its parameters as symbols, and the values of those that have one."""
-        lines = [f"H &= {short_latex(sympy.latex(self.expression))}"]
+        """Return the system with parameters as symbols, and the values of those that have one."""
+        lines = self._latex_lines
         for name, value in self.values:
             lines.append(f"{sympy.latex(symbol(name))} &= {sympy.latex(sympy.Rational(value))}")
         return aligned_latex(lines)
+
+    @property
+    def _latex_lines(self) -> list[str]:
+        return [f"H &= {short_latex(sympy.latex(self.expression))}"]
 
     @property
     def texts(self) -> dict[str, Any]:  # Any: arguments of models, which check them

@@ -18,7 +18,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import Number, NumberOrList, rational, text
 from verify.arithmetic.flint_precision import working_precision
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _BITS = 96
@@ -53,6 +53,40 @@ def point_of(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList) -> dict
     return {name: point[name] for name in hamiltonian.coordinates}
 
 
+def start_of(
+    system: Hamiltonian,
+    q: NumberOrList | None,
+    p: NumberOrList | None,
+    start: Mapping[str, Number] | None,
+) -> dict[str, Fraction]:
+    """Return the exact values of the coordinates by name: of an H from `q` and `p`, of equations
+    from `start`. Raises InputError for what is missing or does not belong.
+    """
+    if system.has_energy:
+        if start:
+            raise InputError("start", list(start), "is of equations; an H has q and p")
+        for name, value in (("q", q), ("p", p)):
+            if value is None:
+                raise InputError(name, None, "not a number; give the initial value")
+        assert q is not None and p is not None  # noqa: S101, PT018 - for mypy
+        return point_of(system, q, p)
+    names = system.coordinates
+    for name, value in (("q", q), ("p", p)):
+        if value is not None:
+            problem = f"is of an H; equations have a start, as {names[0]}=1"
+            raise InputError(name, value, problem)
+    if not isinstance(start, Mapping):
+        problem = f"is no values by name; equations have one of each of {', '.join(names)}"
+        raise InputError("start", start or NOT_GIVEN, problem)
+    for name in start:
+        if name not in names:
+            raise unknown_name("start", name, names)
+    for name in names:
+        if name not in start:
+            raise InputError("start", ", ".join(start), f"has no value of {name}")
+    return {name: rational(start[name], name) for name in names}
+
+
 def coordinate_texts(
     hamiltonian: Hamiltonian, point: Mapping[str, Fraction], letter: str
 ) -> str | tuple[str, ...]:
@@ -82,15 +116,21 @@ def check_start(hamiltonian: Hamiltonian, q: NumberOrList, p: NumberOrList, t0: 
     Traceback (most recent call last):
     verify.errors.InputError: q, p=-1, 0: H is not smooth there; it is where q > 0
     """
-    values = point_of(hamiltonian, q, p)
+    check_point(hamiltonian, point_of(hamiltonian, q, p), t0)
+
+
+def check_point(hamiltonian: Hamiltonian, values: Mapping[str, Fraction], t0: Number) -> None:
+    """Raise InputError if the system is not smooth at a point and t0, as `check_start` does."""
     # q comes first in messages, as in the arguments.
-    point = {name: values[name] for name in sorted(values, key=lambda name: name[0] != "q")}
+    names = sorted(values, key=lambda name: hamiltonian.has_energy and name[0] != "q")
+    point = {name: values[name] for name in names}
     if hamiltonian.time_dependent:
         point["t"] = rational(t0, "t0")
     domain = hamiltonian.domain
     if domain.names <= set(point) and domain.contains(point) is False:
         values_text = ", ".join(map(text, point.values()))
-        problem = f"H is not smooth there; it is where {', '.join(domain.texts)}"
+        system = "H is" if hamiltonian.has_energy else "the field is"
+        problem = f"{system} not smooth there; it is where {', '.join(domain.texts)}"
         raise InputError(", ".join(point), values_text, problem)
 
 

@@ -17,7 +17,7 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Ring
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.distances import LADDERS, end_of_flow, flow_of
 from verify.integrators.measures.error_powers import Row, find_stretches
@@ -152,7 +152,7 @@ def _order_in_time(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int 
     return order if rounded is None else max(order, rounded)
 
 
-def _rounded_order(field: CanonicalField, step: State) -> int | None:
+def _rounded_order(field: PlainField, step: State) -> int | None:
     """Return the power of h up to which the map agrees with the flow; None if all terms agree.
 
     Residuals below 2⁻⁴⁴ of the coefficients count as 0, as they come from rounded numbers:

@@ -83,7 +83,7 @@ def _finding_of_step(
     is_kept: bool | None,
     text: str,
 ) -> Finding:
-    step, order = trial.step, _judge_order(distances, structure.sides, trial.claims)
+    step, order = trial.step, judge_order(distances, structure.sides, trial.claims)
     verdict, reason = Verdict.MEASURED, order.text
     # A scheme agrees with the flow up to h at least. With an order below 1 the map approximates
     # another flow, or none, however well it preserves Ω.
@@ -141,7 +141,7 @@ def _describe_structure(
     step: UserMap, structure: StructureMeasurement, is_kept: bool | None, request: Request
 ) -> str:
     """Describe S, or ΔJ in the plane: that it is 0 up to the noise, or else its power or size."""
-    name = structure_in(step.degrees).defect
+    name = structure_in(step.degrees).symbol
     largest, noise = structure.largest.defect, structure.noise
     size = _format_size(largest)
     if request.within is not None:
@@ -181,7 +181,7 @@ def _format_size(x: float) -> str:
 # -- the order ------------------------------------------------------------------------------------
 
 
-def _judge_order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
+def judge_order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     places = distances.places
     if all(x.exact for x in places):
         if max(x.distance for x in places) < _MIN_VISIBLE_DISTANCE:

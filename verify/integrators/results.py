@@ -4,12 +4,14 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import NamedTuple
 
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.integrators.measures.reading import DefectReading
+from verify.integrators.measures.way_back import WayBack
 from verify.integrators.places.trial_places import TrialPlace
 from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof_for_one_h import Proof
 from verify.prose import Prose, prose, read_prose
-from verify.structures import structure_in
+from verify.structures import Structure, structure_in
 from verify.verdict import Verdict
 
 MOST_CLAIMED = 12
@@ -62,6 +64,36 @@ class Counterexample:
 
 
 @dataclass(frozen=True)
+class KeptStructure:
+    """The verdict on one structure, None if it is not kept and nothing is claimed of it.
+
+    `claimed`: the order of its defect, None if it has to vanish.
+    `how`: "proof", "duals", "floats" or "calls". `exact`: True if the defect is 0, or 0 up to the
+    noise; None if that is open. `order`: the first power of h in the defect, None where it is 0 or
+    not known. `leading`, `telescopes`, `potential`, `domain`: of a proof. `largest`: the largest
+    measured defect, in natural units, and `probe_error` its noise. `way_back`: what is lost on the
+    way back in the code's own numbers.
+    """
+
+    structure: Structure
+    verdict: Verdict | None
+    reason: Prose
+    how: str
+    claimed: int | None = None
+    exact: bool | None = None
+    order: int | None = None
+    leading: str = ""
+    component: str = ""
+    telescopes: bool | None = None
+    potential: str | None = None
+    domain: FormulaDomain = EVERYWHERE
+    largest: float | None = None
+    probe_error: float | None = None
+    counterexample: Counterexample | None = None
+    way_back: WayBack | None = None
+
+
+@dataclass(frozen=True)
 class Finding:
     """The finding on a user's step or map: `verdict` with its `reason`, one sentence.
 
@@ -77,6 +109,8 @@ class Finding:
 
     Of the map: `convergence_order`, None where no difference from the exact flow is seen, or, with
     `order_decided` False, where it is not known.
+
+    `keeps`: the verdicts on structures, those that are claimed if any are.
 
     Of a proof: `proof` itself, and the formulas `leading`, the leading coefficient of the defect,
     and `delta_j`. Of a measurement: `places`, where was looked.
@@ -104,6 +138,7 @@ class Finding:
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
     places: tuple[TrialPlace, ...] = field(default=(), repr=False)
+    keeps: tuple[KeptStructure, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         return f"Finding({self.verdict}: {self.reason})"
@@ -158,7 +193,7 @@ def judge_claims(claims: Claims, finding: Finding) -> list[JudgedClaim]:
 
 
 def _describe_defect(finding: Finding) -> str:
-    name = structure_in(finding.degrees).defect
+    name = structure_in(finding.degrees).symbol
     if finding.order is not None:
         return f"{name} has order {finding.order}"
     if finding.area_at_least is not None:

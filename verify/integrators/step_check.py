@@ -5,141 +5,30 @@
 3. Faults are looked for, such as results that change from call to call.
 4. The code is traced with symbols and the map proved, else it is measured at the places.
 5. The user's claims are judged.
-
-With an H, each layout is tried by a step that is compared with one explicit midpoint step along
-Hamilton's equations; the likeliest layout is kept unless another fits far better, and a note
-reports an order that the arguments' names do not tell. Without an H, the first layout is kept in
-which a call returns a state. If no layout returns a state, the call is in error, and nothing is
-refuted.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
+from functools import partial
 
-from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.examination import examine
+from verify.integrators.kept_list import add_list
 from verify.integrators.measured_finding import finding_from_measurement
+from verify.integrators.measures.form_notes import note_constants, note_slopes
 from verify.integrators.measures.measurement_notes import masses_of, note_digits, note_masses
-from verify.integrators.measures.survey import (
-    NO_REQUEST,
-    Request,
-    check_request,
-    find_map_unit,
-    places_of_field,
-    places_of_map,
-    shorten_steps,
-)
-from verify.integrators.places.trial_places import USER, TrialPlace
-from verify.integrators.places.units import FloatField
+from verify.integrators.measures.reading import DefectReading
+from verify.integrators.measures.survey import NO_REQUEST, Request
+from verify.integrators.preparation import note_time, prepare_map, prepare_step
 from verify.integrators.results import NO_CLAIMS, Claims, Finding
 from verify.integrators.trial import Trial, apply_claims, counterexample, counterexample_of_reading
 from verify.integrators.user_code.faults import Fault, find_changes, find_faults
-from verify.integrators.user_code.layout import CallLayout
 from verify.integrators.user_code.loading import Callee
 from verify.integrators.user_code.repetition import find_repetition_faults
-from verify.integrators.user_code.step import StepError, last_line, unless_it_fails
-from verify.integrators.user_code.user_map import UserMap
+from verify.integrators.user_code.step import unless_it_fails
+from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import prose
 from verify.verdict import Verdict
-
-_STEP_DIVISOR = 64  # a layout is tried with the largest step size divided by this number
-_LARGEST_MISFIT = 0.2  # a layout fits H if its step is off by less, relative to the distance moved
-_TIMES_BETTER = 10  # the ratio of misfits at which another layout replaces the likeliest
-_MAX_LAYOUT_PLACES = 3  # more than one, since a step may be undefined at a place
-
-
-def settle_layout(
-    callee: Callee, places: Sequence[TrialPlace], field: FloatField | None
-) -> list[str]:
-    """Set the layout, and return notes on how the arguments are understood.
-
-    Raises InputError if no call returns a state.
-    """
-    step, errors = callee.step, list[Exception]()
-    # The misfit of each layout in which a call returns a state, at the first place where one does.
-    misfits = dict[CallLayout, float]()
-    for layout in callee.layouts:
-        step.layout = layout
-        for place in places[:_MAX_LAYOUT_PLACES]:
-            try:
-                misfits[layout] = _measure_misfit(step, place, field)
-                break
-            except Exception as error:  # the user's code may raise anything
-                errors.append(error)
-            if step.seconds_left <= 0:
-                break
-        # Without an H nothing tells the layouts apart, and the first one that works is kept.
-        if misfits and field is None:
-            break
-    if not misfits:
-        step.layout = callee.layouts[0]
-        raise no_state_error(step, errors[0], places[0])
-    # `callee.layouts` begins with the likeliest, and `misfits` keeps that order.
-    likeliest, best = next(iter(misfits)), min(misfits, key=lambda layout: misfits[layout])
-    # Another layout must fit, and far better: otherwise a bad scheme would be mistaken for one with
-    # its arguments exchanged.
-    is_far_better = misfits[best] * _TIMES_BETTER < misfits[likeliest]
-    replaces = misfits[best] < _LARGEST_MISFIT and is_far_better
-    step.layout = best if replaces else likeliest
-    return _describe_layout(callee, step, misfits[step.layout])
-
-
-def _describe_layout(callee: Callee, step: UserMap, misfit: float) -> list[str]:
-    """Return a note on how the arguments are understood, unless this is as usual; the misfit is 0
-    if the layout was not compared with an H."""
-    usual = ("p", "q", "h"), ("p", "q", "t", "h"), ("p", "q"), ("z",)
-    layout = step.layout
-    if step.foreign or (layout.roles in usual and callee.named):
-        return []
-    names = ", ".join(callee.arguments)
-    reason = "" if callee.named or misfit == 0 else ", the order that fits"
-    if not callee.named and misfit >= _LARGEST_MISFIT:
-        reason = ", as no order of them fits"
-    if layout.roles in usual and not reason:
-        return []
-    return [f"its arguments ({names}) are taken as ({layout}){reason}"]
-
-
-def _measure_misfit(step: UserMap, place: TrialPlace, field: FloatField | None) -> float:
-    """Return the distance of a small step's end from that of an explicit midpoint step, in parts of
-    the distance moved; 0 without a field, and 1 if the field is undefined at the place."""
-    h = float(place.step) / _STEP_DIVISOR
-    z, t = [float(x) for x in place.z], float(place.t)
-    end = step.evaluate(z, h, t)
-    if field is None:
-        return 0.0
-    slopes = field(z, t)
-    if slopes is None:
-        return 1.0
-    units = [float(u) for u in place.units]
-    # The distance moved is O(h). The midpoint step is off by O(h³), and a consistent step by O(h²),
-    # so that the misfit of a consistent step is O(h), and small for a small step.
-    middle = field([x + h / 2 * f for x, f in zip(z, slopes, strict=True)], t + h / 2) or slopes
-    moved = max(abs(h * f) / u for f, u in zip(middle, units, strict=True))
-    gap = max(abs(y - x - h * f) / u for x, y, f, u in zip(z, end, middle, units, strict=True))
-    return gap / moved if moved else gap
-
-
-def no_state_error(step: UserMap, error: Exception, place: TrialPlace) -> InputError:
-    """Return the error of a function that returns no state at any place: what came instead.
-
-    `error`: the first one that was raised, at the first place and in the likeliest layout.
-    """
-    kind = "integrator" if step.takes_step_size else "map"
-    # A step of another language is an object with a program, which has the user's name for it.
-    name = getattr(step.function, "__name__", None) or getattr(
-        getattr(step.function, "program", None), "display_name", "the program"
-    )
-    if isinstance(error, StepError):
-        return InputError(kind, name, str(error.clause))
-    message = f"raises {last_line(error)}{step.describe_call(place.z, place.step / 8)}"
-    n = step.degrees
-    if n > 1:
-        message += f"; it was given p and q as arrays of {n} numbers, and in other shapes"
-    return InputError(kind, name, message)
-
 
 NO_PLACES_TEXT = "H has no exact solution from any of the places that are tried"
 
@@ -155,23 +44,14 @@ def check_integrator(
     Raises InputError if a parameter of H has no value, if Hamilton's equations are undefined at the
     user's state, or if no call returns a state.
     """
-    if hamiltonian.symbols:
-        raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
-    step, field = callee.step, FloatField(hamiltonian)
-    check_request(step.names, request)
-    step.time_dependent = hamiltonian.time_dependent
-    places = places_of_field(field, step.time_dependent, request)
-    if request.z is not None and not any(x.source == USER for x in places):
-        raise InputError("--q, --p", _format_state(step, request.z), "H has no motion there")
+    places, notes = prepare_step(callee, hamiltonian, request)
+    step = callee.step
     if not places:
         text, degrees = prose(NO_PLACES_TEXT), hamiltonian.degrees
         return Finding(Verdict.UNDECIDED, text, how="calls", degrees=degrees)
-    notes = settle_layout(callee, places, field)
-    # The user's step size is kept; steps of our choice that throw the state far away are shortened.
-    if request.step_size is None:
-        places = shorten_steps(step, places)
     finding = _check_trial(Trial(step, hamiltonian, places, claims, request))
-    return finding.noting(*notes, *_note_time(step))
+    finding = finding.noting(*notes, *note_time(step))
+    return add_list(finding, step, hamiltonian, places)
 
 
 def check_map(callee: Callee, request: Request = NO_REQUEST) -> Finding:
@@ -179,17 +59,10 @@ def check_map(callee: Callee, request: Request = NO_REQUEST) -> Finding:
 
     Raises InputError if no call returns a state.
     """
-    step = callee.step
-    check_request(step.names, request)
-    # The map's unit of length is measured by calls, which need the layout: here the unit is 1.
-    notes = settle_layout(callee, places_of_map(step.names, Fraction(1), request), None)
-    places = places_of_map(step.names, find_map_unit(step), request)
+    places, notes = prepare_map(callee, request)
     claims = Claims(symplectic=True)
-    return _check_trial(Trial(step, None, places, claims, request)).noting(*notes)
-
-
-def _format_state(step: UserMap, z: Sequence[Fraction]) -> str:
-    return ", ".join(f"{name} = {x}" for name, x in zip(step.names, z, strict=True))
+    finding = _check_trial(Trial(callee.step, None, places, claims, request)).noting(*notes)
+    return add_list(finding, callee.step, None, places)
 
 
 def _check_trial(trial: Trial) -> Finding:
@@ -225,23 +98,30 @@ def _note_other_place(finding: Finding, request: Request) -> list[str]:
 
 
 def _suggest_other_forms(finding: Finding, trial: Trial) -> list[str]:
-    """Return notes on likely reasons of a refutation: a matrix of few digits, or velocities in the
-    place of momenta."""
+    """Return notes on likely reasons of a refutation: what is turned, a matrix of few digits, or
+    velocities or slopes in the place of momenta."""
     step = trial.step
+    evidence = trial.evidence if finding.symplectic is False else None
+    # The evidence is a pair: the measurement of the structure, and that of the distances.
+    readings = evidence[0].readings if evidence else ()
+    constants = note_constants(readings, step.names) if readings else []
     if trial.hamiltonian is None:
-        evidence = trial.evidence if finding.symplectic is False else None
-        # The evidence is a pair: the measurement of the structure, and that of the distances.
-        readings = evidence[0].readings if evidence else ()
-        return [*note_digits(readings), *note_masses(readings, step.names)] if readings else []
-    masses = masses_of(trial.hamiltonian)
+        if not readings:
+            return []
+        slopes = note_slopes(readings, partial(_end_of, step), step.names)
+        masses = note_masses(readings, step.names)
+        return note_digits(readings) or [*constants, *slopes, *masses]
+    if constants:
+        return constants
+    masses_of_h = masses_of(trial.hamiltonian)
     if (
         finding.verdict is not Verdict.REFUTED
-        or not masses
+        or not masses_of_h
         or step.masses
         or step.seconds_left <= 0
     ):
         return []
-    trial_in_momenta = replace(trial, step=replace(step, masses=masses), claims=NO_CLAIMS)
+    trial_in_momenta = replace(trial, step=replace(step, masses=masses_of_h), claims=NO_CLAIMS)
     how = step.probe_kinds[0]
     finding_in_momenta = unless_it_fails(
         lambda: finding_from_measurement(trial_in_momenta, *trial_in_momenta.measure(how))
@@ -249,9 +129,13 @@ def _suggest_other_forms(finding: Finding, trial: Trial) -> list[str]:
     if finding_in_momenta is None or not finding_in_momenta.scheme:
         return []
     symplectic_text = " and symplectic" if finding_in_momenta.symplectic else ""
-    masses_text = ", ".join(map(str, masses))
+    masses_text = ", ".join(map(str, masses_of_h))
     order = finding_in_momenta.convergence_order
     return [f"in momenta p = m·v, m = ({masses_text}), it is of order {order}{symplectic_text}"]
+
+
+def _end_of(step: UserMap, reading: DefectReading) -> State | None:
+    return unless_it_fails(partial(step.at_place, reading.place, reading.h))
 
 
 def _add_counterexample(finding: Finding, trial: Trial) -> Finding:
@@ -277,15 +161,6 @@ def _limit_verdict(faults: Sequence[Fault], finding: Finding) -> Finding:
     return replace(finding, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False,
                    symplectic=finding.symplectic and None,
                    area_preserving=finding.area_preserving and None)  # fmt: skip
-
-
-def _note_time(step: UserMap) -> list[str]:
-    """Return a note if H or the step does not depend on time."""
-    if step.takes_time and not step.time_dependent:
-        return ["H does not depend on time: it is called with t = 0"]
-    if step.time_dependent and not step.takes_time:
-        return ["it takes no t, and H depends on it: its force stands still"]
-    return [] if step.takes_time else ["it takes no t: it is judged for a force without time alone"]
 
 
 def _finding_of_fault(trial: Trial, faults: Sequence[Fault]) -> Finding:

@@ -68,7 +68,7 @@ def trace_of(step: UserMap) -> Trace:
     return Trace(tape, tuple(x.node for x in lift_numbers(symbols[0], result)))
 
 
-def _notes(tape: Tape) -> list[Prose]:
+def notes_of(tape: Tape) -> list[Prose]:
     """Return notes on how the floats in a user's code were read, and on other assumptions."""
     notes = [prose("h > 0 is taken for granted")] if tape.positive else []
     if tape.readings:
@@ -108,7 +108,7 @@ def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         convergence_order=proof.convergence_order,
         order_decided=proof.convergence_decided,
         domain=(proof.domain & domain_of(trace.tape)).texts,
-        notes=(prose(text), *_notes(trace.tape)),
+        notes=(prose(text), *notes_of(trace.tape)),
         entry=proof.entry,
         **fields,
     )
@@ -119,13 +119,13 @@ def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
 
 def prove_map(trace: Trace, names: tuple[str, ...]) -> Finding:
     """Decide by exact algebra if S = JᵀΩJ − Ω vanishes. Raises StepError if the map is too long."""
-    ring, closed = _embed_closed_form(trace, names)
+    ring, closed = embed_closed_form(trace, names)
     form = closed_form.defect_of(ring, names, closed)
     decision, place = form.decide()
     domain = domain_of(trace.tape)
     base = Finding(
         Verdict.UNDECIDED, prose("whether S vanishes is not decided"), "proof", len(names) // 2,
-        domain=domain.texts, notes=(prose("traced with symbols"), *_notes(trace.tape)),
+        domain=domain.texts, notes=(prose("traced with symbols"), *notes_of(trace.tape)),
     )  # fmt: skip
     if decision.zero is True:
         text = prose("S is the zero form: the map is symplectic")
@@ -146,7 +146,7 @@ def prove_map(trace: Trace, names: tuple[str, ...]) -> Finding:
     )
 
 
-def _embed_closed_form(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
+def embed_closed_form(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     """Return the map as elements of a ring."""
     forms = write_expressions(trace.outputs, _MAX_MAP_OPERATIONS)
     if forms is None:

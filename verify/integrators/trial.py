@@ -150,17 +150,23 @@ def counterexample(name: str, trial: Trial) -> Counterexample | None:
         power = trial.claims.area_order or 1
         ladders = zip(structure.ladder, structure.rows, strict=True) if structure else ()
         candidates = [
-            _find_slow_shrinking(step, place, list(rows), power, "|det J − 1|")
+            find_slow_shrinking(step, place, list(rows), power, "|det J − 1|")
             for place, rows in ladders
         ]
         return next((x for x in candidates if x is not None), None)
-    power = (trial.claims.order or 1) + 1
+    return counterexample_of_order(step, distances, trial.claims.order or 1)
+
+
+def counterexample_of_order(
+    step: UserMap, distances: Distances | None, order: int
+) -> Counterexample | None:
+    """Return a place at which the distance from the exact flow refutes the order, or None."""
     failing = sorted(
         (x for x in (distances.places if distances else ()) if x.rows),
         # The places of the lowest power come first, those without a power last.
         key=lambda x: x.power if x.power is not None else 99,
     )
-    candidates = [_counterexample_of_place(step, x, power) for x in failing[:_MAX_PLACES_SHOWN]]
+    candidates = [_counterexample_of_place(step, x, order + 1) for x in failing[:_MAX_PLACES_SHOWN]]
     return next((x for x in candidates if x is not None), None)
 
 
@@ -183,10 +189,10 @@ def _counterexample_of_place(
     step: UserMap, place_order: PlaceOrder, power: int
 ) -> Counterexample | None:
     quantity = f"the distance of {place_order.component}' from the exact flow after one step"
-    return _find_slow_shrinking(step, place_order.place, list(place_order.rows), power, quantity)
+    return find_slow_shrinking(step, place_order.place, list(place_order.rows), power, quantity)
 
 
-def _find_slow_shrinking(
+def find_slow_shrinking(
     step: UserMap, place: TrialPlace, rows: list[tuple[float, float, float]], power: int, name: str
 ) -> Counterexample | None:
     """Return the counterexample of a quantity that shrinks more slowly than h^power.

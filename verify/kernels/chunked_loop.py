@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple
 
@@ -15,7 +16,9 @@ from verify.arithmetic.exact import decimal
 from verify.arithmetic.number_system import Arithmetic, State, SystemNumber
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.kernels.kernel import Kernel, clock_inputs, initial_remainder
+from verify.kernels.last_in_range import last_good
 from verify.kernels.notes import LazyNote, Notes, ReachedPoint, checkpoint_adapter
+from verify.kernels.run_changes import RunChanges
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
 from verify.lockstep import Course, clock
@@ -36,20 +39,6 @@ class _RunningPoint(NamedTuple):
     trail: Notes[Mapping[str, Fraction]]
     tangents: Notes[Mapping[str, Fraction]]
     series: Notes[SeriesPoint]
-
-
-def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) -> Course[int]:
-    """Return the greatest number of steps below `count` that stay in range, by bisection.
-    `advance(n)` returns no states if one of n steps leaves the range, as one of `count` does."""
-    # Raising the count never brings an orbit back into range, so the property is monotonic.
-    good, bad = 0, count
-    while bad - good > 1:
-        middle = (good + bad) // 2
-        if (yield from advance(middle)):
-            good = middle
-        else:
-            bad = middle
-    return good
 
 
 class ChunkedLoop:
@@ -74,12 +63,12 @@ class ChunkedLoop:
         # If H is periodic in t, whole periods are taken off t before every chunk: a fixed-point t
         # would leave its format.
         self.turns = run.turns(arithmetic)
+        self._observables = {each.name: each for each in observables.select(run.observables)}
+        self._changes = RunChanges(run, arithmetic, [*self._observables.values()])
         self.state: State = self._first_state()
         self._position = {name: k for k, name in enumerate(kernel.state_names)}
         self._extreme = [name for name in _EXTREMES if name in self._position]
-        observable_names = sorted(run.observables & observables.by_name().keys())
-        self._observables = {name: observables.by_name()[name] for name in observable_names}
-        self._note_names = (*kernel.coordinates, *observable_names)
+        self._note_names = (*kernel.coordinates, *sorted(self._observables))
         accumulators = (name for name in kernel.state_names if f"d{name}" in kernel.outputs)
         self._form = [name for name in accumulators if name.startswith("w_")]
         tangent_names = tangent_map.names_of(kernel.coordinates)
@@ -101,14 +90,15 @@ class ChunkedLoop:
         self._latest = _RunningPoint(*reached, *notes)
 
     def _first_state(self) -> State:
-        start, number = self.run.start, self.arithmetic.number
+        start = self.run.start | self._changes.start
+        number = partial(self.run.start_number, self.arithmetic)
         if self.kernel.timed:
             start = start | self._clock_after(0)
         state: list[SystemNumber] = []
         start_names = (*self.kernel.coordinates, *self.kernel.start)
         for kind, source in zip(self.kernel.kinds, start_names, strict=True):
             value = start[source] if isinstance(source, str) else Fraction(source)
-            state.append(nearest_double(value) if kind == "float" else number(value))
+            state.append(nearest_double(value) if kind == "float" else number(source, value))
         return tuple(state)
 
     def _clock_after(self, steps: int) -> dict[str, Fraction]:
@@ -225,6 +215,8 @@ class ChunkedLoop:
 
     def _exact_value(self, name: str, state: State, done: int) -> Fraction:
         """Return a coordinate or an observable after the steps done, as an exact rational."""
+        if name in self._changes.observables:
+            return self._change(name, state, done)[0]
         value = self._observe(name, state, done, self._exact)
         return value - self._observables[name].begins if name in self._observables else value
 
@@ -240,6 +232,12 @@ class ChunkedLoop:
         # W has several accumulators, others one, of the value times 2^(run's · observable's shift).
         totals = (self._total(entry, state, convert) for entry in carried)
         return observable.read([self._unscale(observable.shift, x) for x in totals], done)
+
+    def _change(self, name: str, state: State, done: int) -> tuple[Fraction, Fraction]:
+        """Return the change of a function of the state, and how far it may be off."""
+        radius = self.arithmetic.radius or (lambda _: Fraction(0))
+        parts = (partial(self._total, state=state, convert=x) for x in (self._exact, radius))
+        return self._changes.change(name, done, *parts)
 
     def _total(
         self, name: str, state: State, convert: Callable[[SystemNumber], Fraction]
@@ -263,7 +261,9 @@ class ChunkedLoop:
         if radius is None or self.done < self.run.steps:
             return {}
         state, done = self.state, self.done
-        return {n: self._observe(n, state, done, radius) for n in self._note_names}
+        changes = {n: self._change(n, state, done)[1] for n in self._changes.observables}
+        names = (n for n in self._note_names if n not in changes)
+        return {n: self._observe(n, state, done, radius) for n in names} | changes
 
     def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:

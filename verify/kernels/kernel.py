@@ -20,7 +20,7 @@ from functools import lru_cache
 from verify.arithmetic.number_system import Arithmetic, SystemNumber, UnsupportedError
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.statements import TANGENT, Statements, is_scaled, needs_of
+from verify.kernels.statements import TANGENT, Statements, integrals_of, is_scaled, needs_of
 from verify.kernels.step.computation import Computation, StepRequest, computation_of, step_map_of
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.step.lowering import Lowering, newton_constants
@@ -150,6 +150,7 @@ class KernelWriter:
             scaled=self.scaled,
             tangent=TANGENT in observables,
             needs=frozenset(needs_of(observables)),
+            integrals=integrals_of(observables),
         )
         self.computation: Computation = computation_of(step_map, request)
         self.coordinates = self.computation.coordinates
@@ -258,7 +259,7 @@ class KernelWriter:
             template = self.arithmetic.guard
             inside = (template.format(x=x) for x in self.coordinates) if template else ()
             return " and ".join(inside)
-        limit_of = {name: f"reach_{name[0]}" for name in self.coordinates}
+        limit_of = {name: "reach_p" if name[0] == "p" else "reach_q" for name in self.coordinates}
         products = [name for name, _, _ in self.state if name in ("part", "plain")]
         limit_of |= dict.fromkeys(products, "reach_part")
         limit_of |= dict.fromkeys(self.computation.matrix, _MATRIX_LIMIT)

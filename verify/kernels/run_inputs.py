@@ -7,15 +7,18 @@ to at most 2^−20 of the format's unit, whatever m is.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Self
+from typing import Any, Self, TypeVar
 
 import flint
 
-from verify.arithmetic.arb import Ball, midpoint_and_radius, rational_ball
+from verify import observables as kinds
+from verify.algebra.domain import EVERYWHERE
+from verify.arithmetic.arb import Ball, make_ball, midpoint_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
@@ -23,15 +26,20 @@ from verify.execution.keeper import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 from verify.kernels.kernel import Kernel
+from verify.kernels.statements import integrals_of
 from verify.kernels.step.computation import step_map_of
+from verify.kernels.step.integral import Integral, integral_of
+from verify.kernels.step.shared_part import source_names
 from verify.lazy_sympy import sympy
 
 _MAX_TIME = 2**12  # for t and for the angle 2π t/P; the format has numbers below 2^15
 _SMALL_TIME = 16  # up to this t no period is taken off
 _PERIODS_PER_LOOP = 256  # after so many, periods are taken off t again
 _GUARD_BITS = 24  # t − m P is computed with so many bits more than the format has
+_MOST_CERTIFIED = {True: 16, False: 9}  # coordinates: p and q, or those of equations
 _PI_BOUND = Fraction(22, 7)  # is greater than π
 
+T = TypeVar("T")
 Times = tuple[Fraction, Fraction]
 
 
@@ -86,7 +94,9 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
     a = 1.
     """
     generic = hamiltonian.with_symbols()
-    return generic if _accepts(generic, scheme) else Hamiltonian(hamiltonian.exact)
+    if _accepts(generic, scheme):
+        return generic
+    return replace(hamiltonian, expression=hamiltonian.exact, values=(), text_domain=EVERYWHERE)
 
 
 @lru_cache(maxsize=256)
@@ -104,7 +114,8 @@ class RunInputs:
 
     `start`: the coordinates, the step size h, and the time t if H depends on it. The state is noted
     `points` times if a series is kept (`points` > 0), else `sections` times. `shares_kernel`: so
-    many other runs use the same kernel that it is worth compiling.
+    many other runs use the same kernel that it is worth compiling. `aside`: the observables that
+    are computed beside the others, with the digits that they have then.
     """
 
     def __init__(
@@ -118,13 +129,39 @@ class RunInputs:
         keeper: Keeper = NOTHING,
         sections: int = DEFAULT_SECTIONS,
         shares_kernel: bool = False,
+        aside: frozenset[str] = frozenset(),
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
         self._hamiltonian_of_user = hamiltonian
-        self.parameters, self.start = dict(hamiltonian.values), start
+        self.parameters = dict(hamiltonian.values)
+        self._names = dict(zip(self.coordinates, hamiltonian.coordinates, strict=True))
+        sources = {name: source for source, name in self._names.items()}
+        self.start = {sources.get(name, name): x for name, x in start.items()}
         self.steps, self.observables, self.points = steps, observables, points
         self.sections = points or sections
         self.keeper, self.shares_kernel = keeper, shares_kernel
+        self.aside = aside & observables
+        self.start_radii: Mapping[str, Fraction] = {}  # how far the coordinates may be off
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of the coordinates in kernels and in their notes."""
+        return source_names(self.hamiltonian)
+
+    @property
+    def certifiable(self) -> bool:
+        """True if there is a certificate of such runs; the number of terms in a Pfaffian, or in a
+        determinant, of the tangent map bounds the number of coordinates."""
+        most = _MOST_CERTIFIED[self.hamiltonian.has_energy]
+        return not self.implicit and len(self.coordinates) <= most
+
+    def in_user_names(self, values: Mapping[str, T]) -> dict[str, T]:
+        """Return values by the names of the system's coordinates in place of those in kernels."""
+        return {self._names.get(name, name): x for name, x in values.items()}
+
+    def integral(self, formula: str) -> Integral:
+        """Return a function of the state, by its formula."""
+        return integral_of(self.hamiltonian, formula)
 
     @property
     def section(self) -> int:
@@ -136,12 +173,55 @@ class RunInputs:
         """True if a step solves equations; there is no certificate of such runs."""
         return step_map_of(self.hamiltonian, self.scheme).implicit
 
-    def with_observables(self, observables: frozenset[str]) -> Self:
-        """Return the same run with other observables, and without a series."""
+    def with_observables(
+        self, observables: frozenset[str], sections: int = DEFAULT_SECTIONS
+    ) -> Self:
+        """Return the same run with other observables and `sections`, and without a series."""
         run = copy(self)
         run.observables, run.points = observables, 0
-        run.sections = DEFAULT_SECTIONS
+        run.sections, run.aside = sections, self.aside & observables
         return run
+
+    def from_box(self, box: Mapping[str, tuple[Fraction, Fraction]]) -> Self:
+        """Return a run of as many steps from a box around a state, for its last state alone.
+
+        `box`: the middle of each coordinate and how far it may be off, which no digits help.
+        """
+        run = self.with_observables(frozenset())
+        run.start = self.start | {name: x for name, (x, _) in box.items()}
+        run.start_radii = {name: radius for name, (_, radius) in box.items()}
+        run.aside, run.keeper = frozenset(box), NOTHING
+        return run
+
+    def start_number(self, arithmetic: Arithmetic, name: str | int, value: Fraction) -> Any:
+        """Return the start value of a carried number, by its name if it has one."""
+        radius = self.start_radii.get(name) if isinstance(name, str) else None
+        if radius and arithmetic.radius:
+            with arithmetic.context():
+                return make_ball(value, radius)
+        return arithmetic.number(value)
+
+    def without(self, names: frozenset[str]) -> Self:
+        """Return the same run, with a series if it has one, without these observables."""
+        run = copy(self)
+        run.observables, run.aside = self.observables - names, self.aside - names
+        return run
+
+    @property
+    def lighter(self) -> Self:
+        """The same run without the observables aside that the loop carries: the greatest |H| may
+        need more room than a step does."""
+        carried = (each for each in kinds.select(self.aside) if not each.at_end)
+        return self.without(frozenset(each.name for each in carried))
+
+    def size_at_start(self, name: str) -> Fraction:
+        """Return |I₀| for an observable that is the change of a function I; 0 for another."""
+        observable = kinds.find(name)
+        if observable is None or not observable.integral:
+            return Fraction(0)
+        point = {**self.parameters, **self.in_user_names(self.start)}
+        value = self.integral(observable.integral).evaluate(point, 53)
+        return Fraction(0) if value is None else abs(midpoint_and_radius(value)[0])
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
         """Return h, the parameters and the scales, by their names in the kernel's source."""
@@ -155,7 +235,12 @@ class RunInputs:
         """Return the period that is taken off t in this arithmetic; None if there is none."""
         if not (arithmetic.absolute and self.hamiltonian.time_dependent):
             return None
-        return turns_of(self._hamiltonian_of_user, self._all_times(), self.start["h"])
+        # A function of the state need not have the period of H.
+        if any(
+            self.integral(formula).depends_on_time for formula in integrals_of(self.observables)
+        ):
+            return None
+        return turns_of(self._hamiltonian_of_user, self.span, self.start["h"])
 
     def times(self, arithmetic: Arithmetic) -> Times | None:
         """Return bounds of the times at which steps are made in this arithmetic; None if H does not
@@ -163,8 +248,10 @@ class RunInputs:
         if not self.hamiltonian.time_dependent:
             return None
         turns = self.turns(arithmetic)
-        return turns.times if turns else self._all_times()
+        return turns.times if turns else self.span
 
-    def _all_times(self) -> Times:
+    @property
+    def span(self) -> Times:
+        """The times at the beginning and at the end of the run."""
         first = self.start["t"]
         return first, first + self.steps * self.start["h"]

@@ -30,8 +30,15 @@ EXTREMES, TANGENT = "extremes", "tangent"
 
 def needs_of(requests: Set[str]) -> set[Need]:
     """Return the quantities of a step that the requested observables need."""
-    needs: set[Need] = {observable.needs for observable in kinds.select(requests)}
+    needs: set[Need] = {each.needs for each in kinds.select(requests) if each.needs}
     return needs | ({"delta_j"} if EXTREMES in requests else set())
+
+
+def integrals_of(requests: Set[str]) -> tuple[str, ...]:
+    """Return the functions whose least and greatest values are carried; the k-th as `e{k}_low` and
+    `e{k}_high`, from `e{k}_start`."""
+    spans = {x.integral for x in kinds.select(requests) if x.integral and not x.at_end}
+    return tuple(sorted(spans))
 
 
 def is_scaled(requests: Set[str]) -> bool:
@@ -76,13 +83,14 @@ class Statements:
                     self.carry(end, 0, kind)
                     lines.append(self.keep_extreme(end, name, order, reset="k == 0 or "))
         if self.computation.tangent:
-            for name, start in tangent_map.initial_values(self.computation.coordinates):
+            coordinates, is_canonical = self.computation.coordinates, self.computation.canonical
+            for name, start in tangent_map.initial_values(coordinates, is_canonical):
                 self.carry(name, start, "float")
             change = [
                 self.computation.tangent.lowering.name(index)
                 for index in self.computation.tangent.change
             ]
-            lines += tangent_map.statements(change, self.computation.coordinates)
+            lines += tangent_map.statements(change, coordinates, is_canonical)
         for name in self.computation.coordinates:
             lines += self.accumulate(name, self.value[f"d{name}"])
         return lines
@@ -115,6 +123,15 @@ class Statements:
             self.carry(name, 0, kind)
         size = f"{name.removesuffix('top')}size"
         return [f"{size} = abs({term})", self.keep_extreme(name, size, ">")]
+
+    def extremes(self, integral: str) -> list[str]:
+        """Return the statements that keep the least and the greatest value of a function."""
+        name = f"e{integrals_of(self.observables).index(integral)}"
+        for end in ("low", "high"):
+            self.carry(f"{name}_{end}", f"{name}_start")
+        value = self.value[name]
+        pairs = ((f"{name}_low", "<"), (f"{name}_high", ">"))
+        return [self.keep_extreme(end, value, order) for end, order in pairs]
 
     def keep_extreme(self, name: str, candidate: str, order: str, reset: str = "") -> str:
         """Return the statement that makes `name` the least (for "<") or greatest (for ">") of its

@@ -63,7 +63,10 @@ def limits(
     the steps' times, if H depends on time.
     """
     sizes = {name: abs(start[name]) for name in kernel.coordinates}
-    start_sizes = [max(x for name, x in sizes.items() if name[0] == kind) for kind in PLANE]
+    # Coordinates that are no p and q have the limit of the displacements.
+    p_sizes = [x for name, x in sizes.items() if name[0] == PLANE[0]]
+    q_sizes = [x for name, x in sizes.items() if name[0] != PLANE[0]]
+    start_sizes = [max(kind, default=Fraction(0)) for kind in (p_sizes, q_sizes)]
     # First boxes with room in all directions, then the smallest one that contains the start.
     roomy = [[room * max(start_sizes)] * 2 for room in (16, 2)]
     boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, start_sizes))
@@ -207,7 +210,7 @@ class KernelRun(RunInputs):
 
         Raises UnsupportedError if the arithmetic lacks a function.
         """
-        observables = self.observables | {"tangent"}
+        observables = self.observables | ({"tangent"} if self.certifiable else set())
         kernel = kernel_for(self.hamiltonian, self.scheme, arithmetic, observables, False)
         return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
@@ -245,10 +248,9 @@ class KernelRun(RunInputs):
             # An outcome without a kernel is that of a run which `enough` has ended.
             if outcome.done == self.steps or outcome.kernel is None:
                 return outcome
-            reason = (
-                f"at step {outcome.done + 1} the orbit left |p| < {text(bounds.p)}, "
-                f"|q| < {text(bounds.q)}, or a value was too large for {arithmetic.name}"
-            )
+            box = f"|p| < {text(bounds.p)}, |q| <" if kernel.canonical else "|z| <"
+            large = f"or a value was too large for {arithmetic.name}"
+            reason = f"at step {outcome.done + 1} the orbit left {box} {text(bounds.q)}, {large}"
             outcome = replace(outcome, reason=reason)
         return outcome
 

@@ -10,8 +10,9 @@ from fractions import Fraction
 from typing import Any, Literal, Protocol, TypeAlias
 
 Ball: TypeAlias = Any  # an arb
-# Of a step: ΔJ; the determinant of J's four entries; the entries of S; M and W; the change of H.
-Need: TypeAlias = Literal["delta_j", "determinant", "symplectic", "carried", "energy"]
+# Of a step: ΔJ; the determinant of J's four entries; the entries of S; M and W.
+Need: TypeAlias = Literal["delta_j", "determinant", "symplectic", "carried"]
+ENERGY = "H"  # the name of H among the functions whose change along a run is asked for
 
 
 class Loop(Protocol):
@@ -19,7 +20,7 @@ class Loop(Protocol):
 
     @property
     def value(self) -> Mapping[str, str]:
-        """The names of a step's values: `dj`, `det`, `de`, the increments of M and of W."""
+        """The names of a step's values: `dj`, `det`, the increments of M and of W."""
 
     @property
     def entries(self) -> Sequence[str]:
@@ -39,6 +40,9 @@ class Loop(Protocol):
 
     def largest(self, name: str, term: str, kind: str = "wide") -> list[str]:
         """Return the statements that keep the greatest |term|."""
+
+    def extremes(self, integral: str) -> list[str]:
+        """Return the statements that keep the least and the greatest value of a function."""
 
 
 class Certificate(Protocol):
@@ -67,7 +71,8 @@ class Certificate(Protocol):
     def bound_of_product(self) -> Ball: ...
     def slope_of_form(self) -> Ball: ...
     def bound_of_form(self) -> Ball | None: ...
-    def bound_of_energy(self) -> Ball | None: ...
+    def bound_of_change(self, integral: str) -> Ball | None: ...
+    def bound_of_greatest_change(self, integral: str) -> Ball | None: ...
 
 
 class Map(Protocol):
@@ -95,7 +100,11 @@ class Observable:
 
     - `order`: its place among the others. `usual`: its place among those that are computed
       by default; None if it is not.
-    - `needs`: the quantity of a step that it is made of. `lines`: its statements in a loop.
+    - `needs`: the quantity of a step that it is made of; None if it is made of the state alone.
+      `lines`: its statements in a loop.
+    - `integral`: the function of the state of whose change along the run it is made: ENERGY or a
+      formula; "" for other observables. `at_end`: of the change from the start to the end alone.
+      `aside`: it is computed by default where it is for the system, with the digits that it has.
     - `carried`: the accumulator that it is read from, or the prefix of the names of several;
       `shift`: so many times 2^s it carries there; `begins`: its start value, which is subtracted.
       `read`: its value, from the carried numbers after so many steps.
@@ -114,9 +123,12 @@ class Observable:
     label: str
     tex: str
     order: int
-    needs: Need
+    needs: Need | None
     lines: Callable[[Loop], list[str]]
     carried: str
+    integral: str = ""
+    at_end: bool = False
+    aside: bool = False
     usual: int | None = None
     shift: int = 0
     begins: int = 0
@@ -135,6 +147,16 @@ class Observable:
     def fits(self, degrees: int) -> bool:
         """Return True if it is available in so many degrees of freedom."""
         return self.most_degrees is None or degrees <= self.most_degrees
+
+    @property
+    def of_any_field(self) -> bool:
+        """True if it is also of equations without an H: of ΔJ, or of a formula of one's own."""
+        return self.needs in (None, "delta_j") and self.integral != ENERGY
+
+    @property
+    def of_one_run(self) -> bool:
+        """True if one run of N steps gives it."""
+        return bool(self.carried or self.integral)
 
     @property
     def is_signed(self) -> bool:

@@ -124,6 +124,9 @@ def finding(report: Report, refutation: Refutation | None = None) -> str:
         claims = _finding_of_claims([c.verdict for c in report.claims])
         return f"{claims}{_describe_refuted_table(refutation)}."
     proofs, judged_runs = _proofs(report), _stability_tiles(report)
+    if kept := _kept_verdicts(report):
+        counts = join_and(f"{n} {v.lower()}" for v, n in Counter(kept).items())
+        return f"Of {len(kept)} statements on what steps keep: {counts}."
     sentences = [_finding_of_runs(judged_runs)] if judged_runs else []
     if proofs and (len(proofs) <= _FEW_PROOFS or not judged_runs):
         sentences = [_finding_of_proofs(proofs), *sentences]
@@ -132,6 +135,12 @@ def finding(report: Report, refutation: Refutation | None = None) -> str:
 
 def _proofs(report: Report) -> list[ProofResult]:
     return [proof for scene in report.scenes for proof in scene.proofs]
+
+
+def _kept_verdicts(report: Report) -> list[Verdict]:
+    """Return the verdicts on what steps are meant to keep, in the order of verdicts."""
+    kept = [x.verdict for scene in report.scenes for result in scene.keeps for x in result.keeps]
+    return sorted(kept, key=list(Verdict).index)
 
 
 def _stability_tiles(report: Report) -> list[StabilityResult]:
@@ -205,8 +214,7 @@ def _build_tiles(report: Report) -> list[Tile]:
             for c, (sign, meaning) in _CATEGORIES.items()
             if counts[c]
         ]
-    if report.claims:
-        verdicts = Counter(c.verdict for c in report.claims)
+    if verdicts := Counter([c.verdict for c in report.claims] or _kept_verdicts(report)):
         return [
             Tile(v, sign, whole(verdicts[v]), v.lower(), meaning, verdicts[v])
             for v, (sign, meaning) in SIGNS.items()

@@ -130,6 +130,9 @@ def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
 def _build_scene_view(scene: SceneResult, anchor: str) -> SceneView:
     names = mathml.free_names(scene.hamiltonian)
     decided_names = {*coordinates_of(names), *scene.parameters, "t"}
+    for name in names:  # u_dot on the left of an equation without an H
+        if name.endswith("_dot"):
+            decided_names |= {name, name.removesuffix("_dot")}
     return SceneView(
         result=scene,
         anchor=anchor,

@@ -16,7 +16,7 @@ from verify.algebra.limits import check_expression
 from verify.algebra.power_series import QuotientSeries, Series
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import PlainField, field_of
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
@@ -27,6 +27,7 @@ from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
 from verify.schemes.steps.two_form import Place, TwoForm
 
+_SHORT = 6  # coefficients that are expanded at once
 MOST_ORDERS = 12  # Taylor coefficients examined if a map is not a polynomial in h
 
 
@@ -124,13 +125,16 @@ class TaylorExpansion:
         self.polynomial = not h_inside(ring, x)
         self._powers = ring.powers(x, "h") if self.polynomial else {}
         self._derivatives = [x]
+        self._coefficients: dict[int, tuple[Ring, Poly]] = {}
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
-        """Return the coefficient of hⁿ, with its ring."""
+        """Return the coefficient of hⁿ, with its ring; it is computed once."""
         if not self._smooth:
             text = self.ring.text(self._derivatives[0])
             raise LimitError("map", f"({text})/h**{self.pole}", "is not smooth in h at h = 0")
-        return self._without_pole(n + self.pole)
+        if n not in self._coefficients:
+            self._coefficients[n] = self._without_pole(n + self.pole)
+        return self._coefficients[n]
 
     @cached_property
     def _smooth(self) -> bool:
@@ -140,23 +144,29 @@ class TaylorExpansion:
     def _without_pole(self, n: int) -> tuple[Ring, Poly]:
         if self.polynomial:
             return self.ring, self._powers.get(n, self.ring.zero)
-        if self._quotient is not None:
-            return self.ring, self._quotient.coefficients[n]
+        quotient = self._short if n < _SHORT else self._long
+        if quotient is not None:
+            return self.ring, quotient.coefficients[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         # Taylor's formula: the n-th derivative by h at h = 0, divided by n!.
         value = self.ring.expression_at_0(self._derivatives[n], symbol("h"))
         try:
-            check_expression(value, "map", str(value))
-        except InputError as error:
-            raise LimitError("map", error.value, "is not smooth in h at h = 0") from None
+            check_expression(value, "map", "")
+        except InputError:
+            raise LimitError("map", str(value), "is not smooth in h at h = 0") from None
         ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
         return ring, x
 
     @cached_property
-    def _quotient(self) -> Series | None:
-        """The series in h of a quotient of polynomials in h; None for other elements."""
-        return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).expand(self._derivatives[0])
+    def _short(self) -> Series | None:
+        """The first coefficients in h, if they need no derivatives; see `QuotientSeries`."""
+        return QuotientSeries(self.ring, _SHORT).expand(self._derivatives[0])
+
+    @cached_property
+    def _long(self) -> Series | None:
+        length = MOST_ORDERS + 2 + self.pole
+        return self._short and QuotientSeries(self.ring, length).expand(self._derivatives[0])
 
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
@@ -231,7 +241,7 @@ class ClosedSeries:
 
     def in_one_field(
         self, hamiltonian: Hamiltonian, most: int, *extra: sympy.Expr
-    ) -> tuple[CanonicalField, list[list[Poly]], list[Poly]]:
+    ) -> tuple[PlainField, list[list[Poly]], list[Poly]]:
         """Return a field, and over its ring the coefficients in z' and the expressions `extra`.
 
         A row has the coefficients of h⁰ … h^most in one coordinate's new value.
@@ -241,7 +251,7 @@ class ClosedSeries:
         # Generators differ from ring to ring: coefficients are added only in a common ring.
         if extra or not all(ring is field.ring for ring, _ in parts):
             expressions = (ring.expression(x) for ring, x in parts)
-            field, elements = canonical_field(hamiltonian, *expressions, *extra)
+            field, elements = field_of(hamiltonian, *expressions, *extra)
         size = len(parts)
         rows = [elements[start : start + most + 1] for start in range(0, size, most + 1)]
         return field, rows, elements[size:]
@@ -270,7 +280,13 @@ def _in_one_ring(parts: Sequence[tuple[Ring, Poly]], otherwise: Ring) -> tuple[R
     return embed([part_ring.expression(x) for part_ring, x in parts], otherwise.variables)
 
 
-AnySeries: TypeAlias = "DefectSeries[CanonicalField] | ClosedSeries"
+AnySeries: TypeAlias = "DefectSeries[PlainField] | ClosedSeries"
+
+
+@lru_cache(maxsize=4)
+def closed_series_of(step_map: StepMap) -> ClosedSeries:
+    """Return the series of a map that is written out; LimitError for another map."""
+    return ClosedSeries(step_map.flat)
 
 
 @lru_cache(maxsize=4)
@@ -281,9 +297,9 @@ def series_of(step_map: StepMap, first: int) -> AnySeries:
     """
     initial = step_map.series(first)
     if initial is None:
-        return ClosedSeries(step_map.flat)
+        return closed_series_of(step_map)
 
-    def extend(most: int) -> tuple[CanonicalField, State]:
+    def extend(most: int) -> tuple[PlainField, State]:
         longer = initial if most == first else step_map.series(most)
         assert longer is not None  # noqa: S101 - `initial` is one
         return longer

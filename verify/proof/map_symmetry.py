@@ -6,10 +6,10 @@ all examined coefficients vanish, nothing is proved, and the verdict is UNDECIDE
 
 from dataclasses import dataclass
 
-from verify.algebra.power_series import Derivatives, Series, expand_at
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.composition import compose, reverse, start_of
 from verify.schemes.steps.step_algebra import State
 from verify.verdict import Verdict
 
@@ -36,7 +36,8 @@ def judge_symmetry(step_map: StepMap, most: int) -> Symmetry:
         if expanded is None or not _begins_with_z(*expanded):
             return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
         field, step = expanded
-        residuals = [step_back_residual(field, x, step) for x in step]
+        ends, starts = compose(field, list(map(reverse, step)), step), start_of(field, reach)
+        residuals = [x - z for x, z in zip(ends, starts, strict=True)]
         for n in range(decided_up_to + 1, reach + 1):
             zero = [field.ring.decide(x.coefficients[n]).zero for x in residuals]
             if False in zero:
@@ -53,26 +54,6 @@ def judge_symmetry(step_map: StepMap, most: int) -> Symmetry:
     return Symmetry(Verdict.UNDECIDED, alike)
 
 
-def _begins_with_z(field: CanonicalField, step: State) -> bool:
+def _begins_with_z(field: PlainField, step: State) -> bool:
     pairs = zip(step, field.start, strict=True)
     return all(x.coefficients[0] == z for x, z in pairs)
-
-
-def step_back_residual(field: CanonicalField, x: Series, step: State) -> Series:
-    """Return the series of Σ (−h)ⁿ xₙ(z') − x₀(z), a coordinate of Φ_(−h)(Φ_h(z)) − z.
-
-    `x`: the series Σ hⁿ xₙ(z) of the coordinate in z'; `step`: that of z'. If H depends on time, xₙ
-    is taken at t + h, where the step of −h begins.
-    """
-    ring = field.ring
-    moves = [
-        (name, y - Series.from_coefficients(ring, [z], y.most))
-        for name, y, z in zip(field.names, step, field.start, strict=True)
-    ]
-    if field.timed:
-        moves.append(("t", Series.from_coefficients(ring, [ring.zero, ring.one], x.most)))
-    total = Series.from_coefficients(ring, [-x.coefficients[0]], x.most)
-    for n, coefficient in enumerate(x.coefficients):
-        shifted = expand_at(Derivatives(ring, coefficient), moves, x.most).shift(n)
-        total = total - shifted if n % 2 else total + shifted
-    return total

@@ -30,14 +30,14 @@ from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 RESIDUAL = Fraction(1, 2**100)  # a smaller relative residual is that of 90-digit coefficients
-_FIRST_ORDERS = 6  # the power of h up to which a map is expanded at once, if no order is claimed
+FIRST_ORDERS = 6  # the power of h up to which a map is expanded at once, if no order is claimed
 _MOST_IN_DEGREES = 8  # the power of h examined in n degrees, if the claimed order is below
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """Prove the orders of S and of the map by exact algebra, and judge what `scheme` claims."""
     claimed = SchemeClaims.from_scheme(scheme) if scheme else SchemeClaims()
-    first = scheme.order + 1 if scheme else _FIRST_ORDERS
+    first = scheme.order + 1 if scheme else FIRST_ORDERS
     planar = step_map.hamiltonian.planar
     most = MOST_ORDERS if planar else max(_MOST_IN_DEGREES, claimed.order + 1)
     convergence, near = convergence_of_scheme(step_map, scheme, first, most)
@@ -50,8 +50,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     if planar:
         reason = _with_conditions(reason, verdict, leading_inside, step_map)
     without = nearby_defect_of(scheme, step_map.hamiltonian, leading_inside.power)
-    verdict, reason = with_nearby((verdict, reason), near, without, step_map.structure.defect)
-    telescopes, potential = _telescoping(step_map, first, leading_inside)
+    verdict, reason = with_nearby((verdict, reason), near, without, step_map.structure.symbol)
+    telescopes, potential = telescoping_of(step_map, first, leading_inside)
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -87,7 +87,7 @@ def _by_conditions(conditions: Sequence[Condition]) -> Prose:
 # -- S, det J and telescoping ---------------------------------------------------------------------
 
 
-def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS, most: int = MOST_ORDERS) -> Leading:
+def leading_of(step_map: StepMap, first: int = FIRST_ORDERS, most: int = MOST_ORDERS) -> Leading:
     """Return the leading coefficient of S: the first in h that is not shown to vanish.
 
     `first`: the power of h up to which the map is expanded at once. `most`: the last power examined
@@ -133,7 +133,7 @@ def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leadin
     return Leading(None, Decision(None if closed is None else closed.preserves_volume()))
 
 
-def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool | None, str]:
+def telescoping_of(step_map: StepMap, first: int, defect: Leading) -> tuple[bool | None, str]:
     """Decide whether the leading coefficient of S telescopes; return its potential as a formula.
 
     It is decided for lieη in several degrees of freedom and for S ≡ 0, and undecided otherwise; for
@@ -151,7 +151,7 @@ def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool |
 
 def convergence_of(
     step_map: StepMap,
-    first: int = _FIRST_ORDERS,
+    first: int = FIRST_ORDERS,
     most: int = MOST_ORDERS,
     residues: bool = False,
 ) -> Convergence:
@@ -193,7 +193,7 @@ def convergence_by(series: AnySeries, begin: int, most: int, residues: bool = Fa
 def convergence_of_scheme(
     step_map: StepMap,
     scheme: Scheme | None,
-    first: int = _FIRST_ORDERS,
+    first: int = FIRST_ORDERS,
     most: int = MOST_ORDERS,
 ) -> tuple[Convergence, NearbyOrder | None]:
     """Return the order of the map, as `convergence_of`, and that of exact coefficients near it.

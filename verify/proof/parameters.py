@@ -73,8 +73,14 @@ def almost_all(parameters: Sequence[str], what: str, timed: bool) -> str:
     return f"{names} is outside of a set of measure 0, not found, on which {what} is 0 {everywhere}"
 
 
+def _state(ring: Ring) -> tuple[str, ...]:
+    """Return the coordinates, which stand before h among the variables."""
+    names = ring.variables
+    return names[: names.index("h")] if "h" in names else coordinates_of(names)
+
+
 def _coordinates(ring: Ring) -> tuple[str, ...]:
-    return (*coordinates_of(ring.variables), *_STEP_AND_TIME)
+    return (*_state(ring), *_STEP_AND_TIME)
 
 
 def _state_dependent(ring: Ring, x: Poly) -> list[int]:
@@ -117,7 +123,7 @@ def _not_all_zero(parts: Sequence[sympy.Expr]) -> list[Requirement]:
 
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
     """Yield points; some make the argument of a function 1, such as q = 1/a for sin(a q)."""
-    simple, names = [sympy.Integer(n) for n in _SIMPLE_COORDINATES], coordinates_of(ring.variables)
+    simple, names = [sympy.Integer(n) for n in _SIMPLE_COORDINATES], _state(ring)
     most = _MOST_POINTS if len(x) < _MANY_TERMS else _FEWEST_POINTS
     yield from islice(product(simple, repeat=len(names)), most)
     for g in ring.generators_in(x) if names == PLANE else ():
@@ -135,7 +141,7 @@ def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
 
 def _is_product_at(ring: Ring, x: sympy.Expr, factors: Sequence[Poly], point: _Point) -> bool:
     """Return True if x at the point is a product of some of the factors and a nonzero number."""
-    state = (*coordinates_of(ring.variables), "t")
+    state = (*_state(ring), "t")
     values = dict(zip(map(symbol, state), (*point, sympy.S.One), strict=True))
     value = x.xreplace(values)
     names = [name for name in ring.variables if name not in state]

@@ -14,7 +14,7 @@ from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import solvable
 from verify.schemes.steps.two_form import MOST_TERMS, TwoForm
-from verify.structures import AREA, SYMPLECTIC, Structure, structure_in
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm, structure_in
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -109,7 +109,7 @@ class ProofForEveryH:
         return self.degrees == 1
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that a canonical step preserves: area, or the symplectic form."""
         return structure_in(self.degrees)
 

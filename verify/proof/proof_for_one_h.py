@@ -17,7 +17,7 @@ from verify.prose import Prose, read_prose
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.structures import Structure
+from verify.structures import CanonicalForm
 from verify.verdict import Verdict
 
 
@@ -59,7 +59,7 @@ class Proof:
         return self.step_map.hamiltonian.planar
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that a canonical step preserves: area, or the symplectic form."""
         return self.step_map.structure
 
@@ -234,7 +234,7 @@ def judge_claims(
     convergence: Convergence,
     defect: tuple[int | None, bool | None],
     most: int,
-    structure: Structure,
+    structure: CanonicalForm,
 ) -> tuple[Verdict, Prose]:
     """Return the verdict on the claims, and the reason for it.
 
@@ -265,9 +265,9 @@ def _judge_order(claimed: SchemeClaims, convergence: Convergence) -> tuple[Verdi
 
 
 def _judge_defect(
-    claimed: SchemeClaims, power: int | None, zero: bool | None, most: int, structure: Structure
+    claimed: SchemeClaims, power: int | None, zero: bool | None, most: int, structure: CanonicalForm
 ) -> tuple[Verdict, str]:
-    name = structure.defect
+    name = structure.symbol
     if zero:
         return Verdict.PROVED, structure.vanishes
     if zero is None:

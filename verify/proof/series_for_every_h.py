@@ -71,7 +71,7 @@ def prove_by_series(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries) ->
         return _judge_claims(scheme, _with_symplecticity(proof, conditions))
     if order is not None:
         return _judge_claims(scheme, _with_leading(proof, series, every_h, order))
-    sentence = f"the coefficients of {blank.structure.defect} up to `h^{most}` vanish"
+    sentence = f"the coefficients of {blank.structure.symbol} up to `h^{most}` vanish"
     undecided = read_prose(f"{sentence}; whether all do is not decided")
     return _judge_claims(scheme, replace(proof, reason=undecided))
 
@@ -84,7 +84,7 @@ def _judge_claims(scheme: Scheme, proof: ProofForEveryH) -> ProofForEveryH:
     if scheme.area_preserving and proof.symplectic is False:
         structure = proof.structure
         sentence = (
-            f"{scheme.name} claims {structure.claim}; {structure.defect} has order {proof.order}"
+            f"{scheme.name} claims {structure.claim}; {structure.symbol} has order {proof.order}"
         )
         return replace(proof, verdict=Verdict.REFUTED, reason=prose(sentence))
     return proof
@@ -122,7 +122,7 @@ def _with_leading(
     proof: ProofForEveryH, series: DefectSeries[JetField], every_h: BySeries, order: int
 ) -> ProofForEveryH:
     """Return the proof with the coefficient of h^order, the first in S that is not zero."""
-    form, defect = series.form(order), proof.structure.defect
+    form, defect = series.form(order), proof.structure.symbol
     volume = form.divergence
     below = {
         AREA: f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial",

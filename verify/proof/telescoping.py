@@ -36,7 +36,7 @@ from verify.algebra.jets import Index, Jets, Poly
 from verify.algebra.limits import substitute
 from verify.algebra.linear_algebra import solve_combination
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, JetField, VectorField
+from verify.hamiltonians.canonical_field import JetField, PlainField, VectorField
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.steps.two_form import TwoForm, lie_derivative, wedge
 
@@ -59,7 +59,7 @@ def potential_of_lie(flow: VectorField, eta: int) -> TwoForm:
     return TwoForm.from_entries(ring, flow.names, entry)
 
 
-def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
+def telescopes_of_lie(flow: PlainField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
     """Decide whether the leading coefficient of lieη's S is a Lie derivative, with β as a formula.
 
     The decision is None if neither answer is proved. The formula is empty unless it is True.
@@ -71,7 +71,7 @@ def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple
     return (False if _has_divergence_at_rest(flow, leading) else None), ""
 
 
-def _has_divergence_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
+def _has_divergence_at_rest(flow: PlainField, leading: TwoForm) -> bool:
     """Return True if the origin is shown to be an equilibrium with a divergence other than 0."""
     ring = flow.ring
     if flow.timed:  # the argument is about equilibria of an H without t

@@ -46,7 +46,7 @@ from verify.arithmetic.arb import bounds, is_representable, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import PRECISION_BITS, Ball
-from verify.kernels.statements import needs_of
+from verify.kernels.statements import integrals_of, needs_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import matrix_growth
 from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
@@ -155,10 +155,11 @@ class _Certificate:
         return (top * start).abs_upper(), (start * path).abs_upper()
 
     def first_error(self) -> Ball:
-        """Return ‖e_0‖, the rounding of the initial values."""
+        """Return ‖e_0‖, the rounding of the initial values, and how far these may be off."""
         start, number, to_fraction = self.run.start, self.arithmetic.number, self.arithmetic.exact
         lost = [rational_ball(to_fraction(number(start[n])) - start[n]) for n in self.names]
-        return norm(lost)
+        radii = (rational_ball(x) for x in self.run.start_radii.values())
+        return norm(lost) + norm(radii)
 
     # -- the observables ----------------------------------------------------------------------
 
@@ -222,20 +223,26 @@ class _Certificate:
             entry_rounding=self.scale * largest,
         )
 
-    # -- the energy -------------------------------------------------------------------------------
+    # -- functions of the state -------------------------------------------------------------------
 
-    def bound_of_energy(self) -> Ball:
-        """Return a bound of the error of the greatest |H − H₀|.
+    def bound_of_change(self, integral: str) -> Ball:
+        """Return a bound of the error of I − I₀ at the end: G E, G the greatest gradient of I.
 
-        With Ĥ_k the sum of k computed changes of H,
-        |Ĥ_k − (H(z_k) − H(z_0))| ≤ 2 G E + k (G ε + η), G the greatest gradient of H, and η the
-        rounding of one step's change of H and of its addition to the sum.
+        I is evaluated at the computed state; it and I₀ are off by their last bits alone, also where
+        I₀ is rounded for the loop.
         """
-        box = self.rounding.box(self.error + self.rounded.state, last=True)
-        slope = self.derivatives.energy(self.rounding.constants(), box)
-        change = self.rounded.values["de"]
-        adding = self.rounding.error_of_addition(self.total("energy_error_max"), change)
-        return 2 * slope * self.error + self.steps * (slope * self.rounded.state + adding)
+        function, constants = self.run.integral(integral), self.rounding.constants()
+        box = constants | self.run.in_user_names(self.rounding.box(self.error, last=True))
+        slopes, value = function.slopes(box), function.enclose(box)
+        if slopes is None or value is None:
+            return flint.arb.nan()
+        last_bits = 4 * self.unit * (1 + value.abs_upper())
+        return norm(slopes) * self.error + last_bits
+
+    def bound_of_greatest_change(self, integral: str) -> Ball:
+        """Return a bound of the error of max |I − I₀|: G E and the rounding of I in the loop."""
+        name = f"e{integrals_of(self.run.observables).index(integral)}"
+        return self.bound_of_change(integral) + self.rounded.values[name].error
 
     # -- Λ ----------------------------------------------------------------------------------------
 

@@ -26,8 +26,7 @@ from verify.runs.a_posteriori_bound import METHOD, certify
 from verify.runs.estimates import (
     Bounds,
     digits_of,
-    missing_digits,
-    missing_of,
+    missing_in,
     resolve,
     working_digits,
 )
@@ -38,7 +37,6 @@ _LARGEST_PRECISION_RATIO = 64  # digits in balls, over those of the first attemp
 # The least number of steps that repay a compiled kernel: compiling takes 0.2–0.8 s, and a step in
 # mpfr 3–8 µs.
 WORTH_COMPILING = 60_000
-_MOST_CERTIFIED_DEGREES = 8  # beyond, the Pfaffian of a certificate's matrices has too many terms
 _SHORT_RUN_STEPS = 1000  # a shorter run takes less time than a certificate, and has no forecast
 _EXTRA_DIGITS = 20  # they cost a short run next to nothing, and a small observable needs them
 _W = "symplectic_defect"
@@ -105,6 +103,8 @@ def measure(
         reason = estimate.outcome.reason or estimate.bounds.method
     except UnsupportedError as error:
         reason = str(error)
+    if (lighter := kernel_run.lighter).observables < kernel_run.observables:
+        return (yield from measure(lighter, name, digits, progress))
     last = number_systems.automatic()[-1].name
     return replace((yield from measure(kernel_run, last, digits, progress)), fallback=reason)
 
@@ -127,7 +127,7 @@ def run_in_balls(
         has, next_digits = digits_of(arithmetic), 2 * digits_of(arithmetic)
         if run.done == kernel_run.steps:
             values = {n: (x, run.radii[n]) for n, x in run.values.items()}
-            missing = max(missing_of(n, *value, digits) for n, value in values.items())
+            missing = missing_in(kernel_run, values, digits)
             if missing <= 0:
                 return Bounds(values, f"ball arithmetic with {has} digits", rigorous=True), run
             next_digits = has + missing + 5
@@ -154,7 +154,7 @@ def certify_run(
     Raises UnsupportedError.
     """
     arithmetic = number_systems.get(name, _first_digits(name, digits, kernel_run))
-    if kernel_run.implicit or kernel_run.hamiltonian.degrees > _MOST_CERTIFIED_DEGREES:
+    if not kernel_run.certifiable:
         return arithmetic
     for _ in range(_ATTEMPTS):
         foreseen = (
@@ -171,14 +171,14 @@ def certify_run(
         errors = (
             certify(kernel_run, arithmetic, outcome) if outcome.done == kernel_run.steps else None
         )
-        if errors is None or len(errors) < len(outcome.values):
+        if errors is None or not outcome.values.keys() - kernel_run.aside <= errors.keys():
             break
         # The certified bound of W is far too wide: a second run of a short run gives a better one.
         bound_of_w = yield from difference_of_w(kernel_run, arithmetic, outcome)
         if bound_of_w is not None:
             errors[_W] = min(errors[_W], bound_of_w)
-        values = {n: (x, errors[n]) for n, x in outcome.values.items()}
-        missing = max(missing_digits(*pair, digits) for pair in values.values())
+        values = {n: (x, errors[n]) for n, x in outcome.values.items() if n in errors}
+        missing = missing_in(kernel_run, values, digits)
         if missing <= 0:
             method = METHOD if bound_of_w is None else METHOD_OF_W
             return Measurement(Bounds(values, method, rigorous=True), name, outcome)
@@ -231,7 +231,7 @@ def _finer(arithmetic: Arithmetic, missing: int) -> Arithmetic:
 
 def power_of(name: str) -> int:
     """Return the power of N by which a value's bound grows if the tangent map grows linearly."""
-    observable = observables.by_name().get(name)
+    observable = observables.find(name)
     return observable.growth if observable else 3
 
 
@@ -260,10 +260,7 @@ class _Foresight:
         sizes |= dict.fromkeys(outcome.coordinates, largest)
         if "lambda" in sizes:
             sizes["lambda"] = max(abs(records["least"]), abs(records["most"]))
-        short = [
-            missing_digits(sizes[n], error * growth ** power_of(n), self.digits)
-            for n, error in errors.items()
-            if sizes.get(n)
-        ]
-        self.missing = max(0, *short) if short else 0
+        bounds = {n: error * growth ** power_of(n) for n, error in errors.items()}
+        foreseen = {n: (sizes[n], bound) for n, bound in bounds.items() if n in sizes}
+        self.missing = max(0, missing_in(self.kernel_run, foreseen, self.digits))
         return self.missing == 0

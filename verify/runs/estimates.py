@@ -16,7 +16,6 @@ from verify import arithmetic as number_systems
 from verify import observables
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
-from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
 
@@ -25,6 +24,7 @@ Status = Literal["finished", "left range", "unresolved"]
 
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
+_DIGITS_OF_ZERO = 10  # more digits of a function than are asked for, where no change of it is seen
 LINEAR = Fraction(1, 100)  # largest difference, in orbit sizes, by which a rerun confirms a run
 
 
@@ -49,10 +49,10 @@ def spread(first: RunOutcome, second: RunOutcome, least: Fraction = Fraction(0))
     """Return the greatest relative difference of a coordinate at any checkpoint.
 
     It is relative to the greatest |coordinate| of the same letter, p or q, or to `least` if that is
-    greater.
+    greater; of equations to the greatest of all.
     """
     spread, notes = Fraction(0), (*first.trail, *second.trail)
-    for letter in PLANE:
+    for letter in sorted({name[0] for name in first.coordinates}):
         names = [name for name in first.coordinates if name[0] == letter]
         size = max(least, *(abs(a[name]) for a in notes for name in names))
         pairs = list(zip(first.trail, second.trail, strict=False))
@@ -92,18 +92,15 @@ def resolve(
         # not.
         unit = Fraction(1, 2 ** (arithmetic.bits - 2))
         values = {
-            n: (second.values[n], abs(x - second.values[n]) + unit * _rounded_size(n, x))
+            n: (
+                second.values[n],
+                abs(x - second.values[n]) + unit * _rounded_size(kernel_run, n, x),
+            )
             for n, x in first.values.items()
         }
-        lacking = (
-            missing_of(name, *value, digits)
-            for name, value in values.items()
-            if not (
-                # Such a coordinate is 0 as far as the runs tell.
-                name in first.coordinates and abs(value[0]) <= value[1] <= noise
-            )
-        )
-        missing = max(lacking, default=0)
+        # Such a coordinate is 0 as far as the runs tell.
+        zeros = {n for n in first.coordinates if abs(values[n][0]) <= values[n][1] <= noise}
+        missing = missing_in(kernel_run, {n: values[n] for n in values if n not in zeros}, digits)
         if missing <= 0:
             return Bounds(values, method)
         arithmetic = number_systems.get(arithmetic.name, digits_of(arithmetic) + missing + 5)
@@ -111,14 +108,15 @@ def resolve(
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
 
 
-def _rounded_size(name: str, value: Fraction) -> Fraction:
-    """Return the size of the number whose rounding a value has: 1 + Λ for Λ by the product."""
-    return abs(value) + _initial_offset(name)
+def _rounded_size(run: KernelRun, name: str, value: Fraction) -> Fraction:
+    """Return the size of the number whose rounding a value has: 1 + Λ for Λ by the product, I for
+    the change of a function I."""
+    return abs(value) + _initial_offset(name) + run.size_at_start(name)
 
 
 def _initial_offset(name: str) -> int:
     """Return the number that the run subtracts in the end: 1 for Λ by the plain product, else 0."""
-    observable = observables.by_name().get(name)
+    observable = observables.find(name)
     return observable.begins if observable else 0
 
 
@@ -136,8 +134,18 @@ def missing_digits(value: Fraction, bound: Fraction, digits: int) -> int:
     return digits - (magnitude(value) - magnitude(2 * bound))
 
 
-def missing_of(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
-    """Return the number of missing digits of the observable `name`."""
-    if _initial_offset(name) and abs(value) <= bound:
+def missing_in(run: KernelRun, values: BoundedValues, digits: int) -> int:
+    """Return the greatest number of digits that a value lacks, of those that are asked for."""
+    demanded = ((name, value) for name, value in values.items() if name not in run.aside)
+    return max((_missing_of(run, name, *value, digits) for name, value in demanded), default=0)
+
+
+def _missing_of(run: KernelRun, name: str, value: Fraction, bound: Fraction, digits: int) -> int:
+    if abs(value) > bound:
+        return missing_digits(value, bound, digits)
+    if _initial_offset(name):
         value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
+    elif size := run.size_at_start(name):
+        # So may the change of a function that is kept: a bound far below the function is enough.
+        value, digits = size, digits + _DIGITS_OF_ZERO
     return missing_digits(value, bound, digits)

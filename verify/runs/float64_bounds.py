@@ -17,8 +17,16 @@ full length, in twenty times the time.)
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import reduce
+
+import flint
 
 from verify import arithmetic as number_systems
+from verify import observables
+from verify.arithmetic.arb import bounds, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.kernels.rounding import FLOAT64_ROUNDING, PRECISION_BITS, RoundedValue, analyse
+from verify.kernels.statements import integrals_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measurement, certify_run, choose
@@ -41,18 +49,18 @@ def bound_errors(run: KernelRun, first: RunOutcome, proved_values: BoundedValues
         return Bounds({}, "none", "left range", first.done + 1)
     # A compensated run has the same clock, so that the difference would not show its rounding.
     direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
-    bounds = (
+    compared = (
         (yield from _compare_with_certified(run, first))
         if direct
         else _compare_with_compensated(run, first)
     )
-    values = dict(bounds.values)
+    values = dict(compared.values)
     better = (proved_values | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:
         # Λ by the closed form is the more accurate value of the same product.
         plain, (closed_value, bound) = first.values["lambda_plain"], better
         values["lambda_plain"] = plain, abs(plain - closed_value) + bound
-    return replace(bounds, values={n: x for n, x in values.items() if n in first.values})
+    return replace(compared, values={n: x for n, x in values.items() if n in first.values})
 
 
 def _compare_with_certified(run: KernelRun, first: RunOutcome) -> Course[Bounds]:
@@ -65,7 +73,9 @@ def _compare_with_certified(run: KernelRun, first: RunOutcome) -> Course[Bounds]
         return Bounds(_distances(first, true.bounds.values), method, rigorous=True)
     if run.steps > _RERUN_STEPS:
         return _compare_with_compensated(run, first)
-    return (yield from _compare_with_rerun(exact_run, first))
+    # Two runs are compared note by note, so that both must have noted the same steps.
+    rerun = run.with_observables(exact_run.observables, run.sections)
+    return (yield from _compare_with_rerun(rerun, first))
 
 
 def _comparable_observables(observables: frozenset[str]) -> frozenset[str]:
@@ -117,8 +127,32 @@ def _compare_with_compensated(run: KernelRun, first: RunOutcome) -> Bounds:
         else:
             pairs = zip(first.trail, second.trail, strict=True)
             difference = 4 * max(abs(a[name] - b[name]) for a, b in pairs)
-        values[name] = x, difference + _floor(x, run.steps)
+        rounding = _rounding_in_loop(run, first, name)
+        if rounding is not None:
+            values[name] = x, difference + rounding + _floor(x, run.steps)
     return Bounds(values, method)
+
+
+def _rounding_in_loop(run: KernelRun, outcome: RunOutcome, name: str) -> Fraction | None:
+    """Return a bound of the rounding of a function of the state that float64 evaluates in a loop,
+    which both runs share; None if the function may be undefined between the noted states."""
+    kernel, observable = outcome.kernel, observables.find(name)
+    if kernel is None or observable is None or not observable.integral or observable.at_end:
+        return Fraction(0)
+    index = kernel.outputs[f"e{integrals_of(run.observables).index(observable.integral)}"]
+    with working_precision(PRECISION_BITS):
+        zero, unit = flint.arb(0), flint.arb(2) ** -53
+        numbers = {n: rational_ball(x) for n, x in run.inputs(kernel, 0).items()}
+        inputs = {n: RoundedValue(x, abs(x) * unit) for n, x in numbers.items()}
+        for n in kernel.coordinates:
+            noted = [rational_ball(x[n]) for x in outcome.trail]
+            hull = reduce(flint.arb.union, noted, rational_ball(run.start[n]))
+            inputs[n] = RoundedValue(hull, zero)
+        if kernel.timed:
+            inputs["t"] = RoundedValue(reduce(flint.arb.union, map(rational_ball, run.span)), zero)
+        live = kernel.lowering.live([index])
+        values = analyse(kernel.lowering.program, live, inputs, FLOAT64_ROUNDING)
+        return None if values is None else bounds(values[index].error)[1]
 
 
 def _add_floor(true: Mapping[str, Fraction], steps: int) -> BoundedValues:

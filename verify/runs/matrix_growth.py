@@ -6,6 +6,10 @@ antisymmetric: its singular values come in pairs, |Pf B| is the product of one o
 Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of the squares of its entries
 above the diagonal. Where the map is nearly symplectic B stays near Ω, however large M grows.
 
+Of m coordinates that are no p and q, ‖M⁻¹‖ is at most the product of the m − 1 greatest singular
+values over |det M|, and by the inequality of the means (F²/(m − 1))^((m−1)/2)/|det M|, F the norm
+of Frobenius. As ‖M‖ ≥ F/√m, ‖M‖/‖M⁻¹‖ ≥ |det M| (m − 1)^((m−1)/2) m^(−1/2) F^(2−m).
+
 W is the symplectic defect of a whole run in n degrees of freedom. Let J_k be the exact Jacobian of
 the first k steps along the exact orbit, Ĵ_k the computed one, and M_k the matrices that were
 carried in float64 (see `verify.runs.a_posteriori_bound`, whose e_k, A_k, d, Q and S these are).
@@ -41,6 +45,8 @@ def least_of(size: int, records: Mapping[str, Ball]) -> Ball:
     lost = _RELATIVE_ROUNDING * records["growth_top"]
     if size == 2:
         return records["det_low"] - lost
+    if "form_top" not in records:
+        return _least_of_any(size, records)
     n = size // 2
     # A bound of the entries of the computed B.
     largest = records["form_top"].abs_upper().sqrt() * (1 + _RELATIVE_ROUNDING)
@@ -54,12 +60,23 @@ def least_of(size: int, records: Mapping[str, Ball]) -> Ball:
     return (records["det_low"] - error) / norm ** (n - 1)
 
 
+def _least_of_any(size: int, records: Mapping[str, Ball]) -> Ball:
+    # All products of a determinant, one entry of each row, have sizes whose sum is at most F^m.
+    # Each is rounded in its factors, its products and its sums, at most m² + m times.
+    largest = records["growth_top"].abs_upper().sqrt() * (1 + _RELATIVE_ROUNDING)
+    least = records["det_low"] - size * size * _RELATIVE_ROUNDING * largest**size
+    if size == 1:
+        return least * least if least > 0 else least
+    root = (flint.arb(size - 1) ** (size - 1) / size).sqrt()
+    return least * root / largest ** (size - 2)
+
+
 def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
     """Return a bound of ‖M‖² from `squares`, a bound of the sum of M's squared entries, and d.
 
     If `squares` bounds the mean of such sums over several M, the result bounds the mean of ‖M‖².
     """
-    if size > 2:
+    if size != 2:
         return squares.abs_upper()
     return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
 

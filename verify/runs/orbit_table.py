@@ -84,7 +84,8 @@ def orbit_of(
     columns = {"lambda": ("delta_j", "lambda")}
     observables = tuple(x for name in rows.observables for x in columns.get(name, (name,)))
     names = tuple(start.point)
-    return OrbitTable(tuple(rows.format_rows(states, binary)), stride, digits, names, observables)
+    lines, has_energy = tuple(rows.format_rows(states, binary)), rows.energy is not None
+    return OrbitTable(lines, stride, digits, names, observables, has_energy)
 
 
 # -- the states -----------------------------------------------------------------------------------
@@ -117,7 +118,8 @@ def _collect_states(
     stride = -(-steps // points)
     indices = (0, *(min(k * stride, steps) for k in range(1, len(states.notes) + 1)))
     zeros = dict.fromkeys((*start.point, *accumulated_observables(start.hamiltonian)), _ZERO)
-    return _States(indices, ({**zeros, **first}, *states.notes), (zeros, *states.radii))
+    notes, radii = map(run.in_user_names, states.notes), map(run.in_user_names, states.radii)
+    return _States(indices, ({**zeros, **first}, *notes), (zeros, *radii))
 
 
 def _run_in_float64(run: KernelRun, progress: Progress | None) -> _RunStates:
@@ -177,8 +179,10 @@ class _Rows:
     def __init__(self, start: Start, digits: int) -> None:
         self.start, self.digits = start, digits
         self.names = tuple(start.point)
-        ring, energy = energy_of(start.hamiltonian)
-        self.energy = Enclosures(ring, [energy])
+        self.energy: Enclosures | None = None
+        if start.hamiltonian.has_energy:
+            ring, energy = energy_of(start.hamiltonian)
+            self.energy = Enclosures(ring, [energy])
         self.observables = accumulated_observables(start.hamiltonian)
         self.delta_j = _DeltaJ(start, digits) if "lambda" in self.observables else None
 
@@ -197,12 +201,12 @@ class _Rows:
                 for n, (x, r) in pairs.items()
             }
             box = {n: pairs[n] for n in self.names}
-            energy = self._energy_error(box, z_0, k) if k else "0"
+            energy = [self._energy_error(self.energy, box, z_0, k)] if self.energy else []
             change = [self._text(self.delta_j(box, k))] if self.delta_j else []
             state, observables = (
                 [texts[n] for n in names] for names in (self.names, self.observables)
             )
-            yield text(self._time_of_step(k)), *state, energy, *change, *observables
+            yield text(self._time_of_step(k)), *state, *energy, *change, *observables
 
     def _time_of_step(self, k: int) -> Fraction:
         return self.start.t0 + k * self.start.step_size
@@ -215,14 +219,18 @@ class _Rows:
             else {}
         )
 
-    def _energy_error(self, box: Box, start: Mapping[str, flint.arb], k: int) -> str:
+    def _energy_error(
+        self, energy: Enclosures, box: Box, start: Mapping[str, flint.arb], k: int
+    ) -> str:
         """Format H − H₀ in the box; for an exact state the bits double until it has its digits."""
+        if k == 0:
+            return "0"
         is_exact = not any(radius for _, radius in box.values())
         bits = 4 * self.digits + _GUARD_BITS
         for _ in range(_ATTEMPTS if is_exact else 1):
             with working_precision(bits):
                 point = {name: make_ball(*pair) for name, pair in box.items()} | self._time_input(k)
-                enclosures = self.energy.enclose_over(point), self.energy.enclose_over(start)
+                enclosures = energy.enclose_over(point), energy.enclose_over(start)
                 if enclosures[0] is None or enclosures[1] is None:
                     return ""
                 difference = enclosures[0][0] - enclosures[1][0]

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from verify.arithmetic.exact import text
+from verify.hamiltonians.equations import read_system
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.run_domain import coordinate_texts, point_of
+from verify.hamiltonians.run_domain import coordinate_texts, start_of
 from verify.scenes.results.run import RunResult
 
 
@@ -26,8 +28,9 @@ class Start:
     @classmethod
     def from_result(cls, result: RunResult) -> "Start":
         """Return the start of a finished run."""
-        hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
-        point = point_of(hamiltonian, result.q, result.p)
+        hamiltonian = read_system(result.hamiltonian, result.parameters)
+        q, p = (result.q, result.p) if hamiltonian.has_energy else (None, None)
+        point = start_of(hamiltonian, q, p, result.start)
         step_size, t0 = Fraction(result.step_size), Fraction(result.t0)
         return cls(hamiltonian, result.scheme, step_size, point, t0)
 
@@ -46,6 +49,15 @@ class Start:
         """The initial values, h and t of a kernel's run, by their names."""
         return {**self.point, "h": self.step_size, "t": self.t0}
 
+    @property
+    def texts(self) -> dict[str, str]:
+        """The initial values of equations, by name; empty for an H, which has q and p."""
+        point = {} if self.hamiltonian.has_energy else self.point
+        return {name: text(x) for name, x in point.items()}
+
     def text(self, letter: str) -> str | tuple[str, ...]:
-        """Return q or p as results show it: a number, or a list in n degrees of freedom."""
+        """Return q or p as results show it: a number, or a list in n degrees of freedom; an empty
+        list for equations."""
+        if not self.hamiltonian.has_energy:
+            return ()
         return coordinate_texts(self.hamiltonian, self.point, letter)

@@ -13,11 +13,9 @@ from functools import lru_cache
 
 import flint
 
-from verify.algebra.enclosure import Enclosures
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import bound_time_error
 from verify.kernels.rounding import FLOAT64_ROUNDING, Ball, RoundedValue, analyse, rounding_of
@@ -118,11 +116,6 @@ class StepDerivatives:
         values = self._enclose(self.of_volume, constants, box)
         return flint.arb.nan() if values is None else norm(values)
 
-    def energy(self, constants: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
-        """Return a bound of ‖∇H‖ in the box."""
-        values = _gradient_of_energy(self.hamiltonian).enclose_over({**constants, **box})
-        return flint.arb.nan() if values is None else norm(values)
-
     def form(self, constants: Mapping[str, Ball], box: Mapping[str, Ball]) -> tuple[Ball, Ball]:
         """Return bounds in the box of the Frobenius norms of S and of its gradient."""
         values = self._enclose((*self.defect, *self.of_defect), constants, box)
@@ -141,12 +134,6 @@ class StepDerivatives:
         }
         results = analyse(self.program, self.program.live(indices), inputs, lambda *_: _ZERO)
         return None if results is None else [results[index].interval for index in indices]
-
-
-@lru_cache(maxsize=32)
-def _gradient_of_energy(hamiltonian: Hamiltonian) -> Enclosures:
-    field, _ = canonical_field(hamiltonian)
-    return Enclosures(field.ring, field.gradient(field.energy))
 
 
 # -- rounding -------------------------------------------------------------------------------------

@@ -3,12 +3,14 @@
 Unknown keys are refused.
 
     title = "My oscillator"
-    hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"
+    hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"; or equations without an H:
+                                           # field = "u_dot = u*(v - 2); v_dot = v*(1 - u)"
     parameters = { delta = "7/3" }
     schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
     criteria = [1, 2, 3, 4]
     t0 = 0                                 # when its runs start, where H depends on t
     every_hamiltonian = true               # and what holds of the schemes for every H
+    keeps = ["volume", "energy: 3"]        # what a step keeps; see `verify.scenes.keeps_section`
 
     [grid]                                 # runs: every step size with every initial value
     time = 20000                           # or steps = 5000
@@ -60,7 +62,6 @@ Unknown keys are refused.
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
-import json
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -72,9 +73,11 @@ from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, without_controls
 from verify.hamiltonians import systems
+from verify.hamiltonians.equations import EXAMPLE, are_equations, read_system
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.run_domain import point_of
 from verify.scenes.frozen import Frozen, Section
+from verify.scenes.keeps_section import Keeps
 from verify.scenes.model_mistakes import describe_first_error
 from verify.scenes.observables import check_observables
 from verify.scenes.orbit_sections import Poincare, Stroboscopic
@@ -82,10 +85,11 @@ from verify.scenes.region_sections import RegionFlow
 from verify.scenes.run_sections import Grid, PlottedSeries, Reference, SeparationOver, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stability, StabilityMap
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
+from verify.scenes.toml_text import toml_lines
 from verify.scenes.values import ExactNumber, SchemeName, SystemName
 
 _PLANE_KEYS = ("criteria", "stroboscopic")
-_IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
+_IDENTITY = ("name", "title", "system", "hamiltonian", "field", "parameters", "t0", "schemes")
 
 
 @drawn_by("scenes")
@@ -105,6 +109,9 @@ class Scene(Frozen):
     """A named system; or `hamiltonian`."""
     hamiltonian: str | None = None
     """H as a formula in p, q and parameters; or `system`."""
+    field: str | None = None
+    """Equations without an H in place of it, as `u_dot = u*(v - 2); v_dot = v*(1 - u)`, with
+    coordinates of your own names; then a scene has `keeps` alone, which is volume by default."""
     parameters: dict[str, ExactNumber] = Field(default_factory=dict)
     """The values of H's parameters; a section that runs needs all of them."""
     t0: ExactNumber = Fraction(0)
@@ -115,6 +122,8 @@ class Scene(Frozen):
     """Whether to prove what holds of the schemes for every H, too."""
     criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
     """Which of the paper's criteria of area preservation are judged."""
+    keeps: Keeps | None = None
+    """What a step is meant to keep: a list, or a table with what refines it."""
     grid: Grid | None = None
     """Runs of every scheme for every step size and initial value."""
     separation: tuple[SeparationOver, ...] = ()
@@ -142,13 +151,19 @@ class Scene(Frozen):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.system is None) == (self.hamiltonian is None):
-            raise InputError("system, hamiltonian", NOT_GIVEN, "give one of the two")
+        sources = (self.system, self.hamiltonian, self.field)
+        if sum(source is not None for source in sources) != 1:
+            raise InputError("system, hamiltonian", NOT_GIVEN, "give one of the two, or field")
         hamiltonian = self.exact_hamiltonian()
         sections = self.sections()
         section_schemes = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *section_schemes)):
             scheme_catalogue.get(name).step_map(hamiltonian)
+        if self.keeps is not None:
+            self.keeps.claims(hamiltonian, prefix="keeps.")
+        if self.field is not None:
+            self._check_needs_no_energy()
+            return self
         self._check_degrees(hamiltonian)
         if hamiltonian.time_dependent:
             if self.grid is not None and self.grid.growth:
@@ -171,6 +186,13 @@ class Scene(Frozen):
                     "parameter", stability_map.parameter, f"H has no such; it has: {names}"
                 )
         return self
+
+    def _check_needs_no_energy(self) -> None:
+        """Raise InputError if something is requested that takes an H, or runs."""
+        for name in Scene.model_fields:
+            if name not in (*_IDENTITY, "keeps") and getattr(self, name):
+                problem = f"has no H; {name} takes one, in p and q"
+                raise InputError("field", self.field, problem)
 
     def _check_degrees(self, hamiltonian: Hamiltonian) -> None:
         """Raise InputError if a start or a section does not fit H's degrees of freedom."""
@@ -228,6 +250,10 @@ class Scene(Frozen):
         """Return the Hamiltonian with the scene's parameter values."""
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
+        if self.field is not None:
+            if not are_equations(self.field):
+                raise InputError("field", self.field, f"has no equation; write {EXAMPLE}")
+            return read_system(self.field, self.parameters)
         systems.check_is_formula(self.hamiltonian or "")
         return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
 
@@ -254,38 +280,11 @@ def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> 
     )
 
 
-# -- as a TOML text, from which exactly the same scene is read ------------------------------------
-
-
 def scene_text(scene: Scene, *, comment: str = "") -> str:
-    """Return the scene's TOML without defaults, below the lines of a comment."""
+    """Return the scene's TOML without defaults, below the lines of a comment.
+
+    Exactly the same scene is read from it.
+    """
     data = scene.model_dump(mode="json", exclude_defaults=True)
     lines = [f"# {without_controls(line)}".rstrip() for line in comment.splitlines()]
-    tables = {k: v for k, v in data.items() if _is_table(k, v)}
-    # TOML requires plain keys before the first table.
-    lines += [f"{name} = {_value(x)}" for name, x in data.items() if name not in tables]
-    for name, x in tables.items():
-        for table in x if isinstance(x, list) else [x]:
-            lines += ["", f"[[{name}]]" if isinstance(x, list) else f"[{name}]"]
-            lines += [f"{key} = {_value(y)}" for key, y in table.items() if y is not None]
-    return "\n".join(lines) + "\n"
-
-
-def _is_table(name: str, value: Any) -> bool:
-    """Return True if the value is a section of its own, not the mapping of parameters."""
-    is_mapping = isinstance(value, Mapping) and name != "parameters"
-    return is_mapping or (isinstance(value, list) and bool(value) and isinstance(value[0], Mapping))
-
-
-def _value(x: Any) -> str:
-    if isinstance(x, bool):
-        return "true" if x else "false"
-    if isinstance(x, Mapping):
-        inside = ", ".join(f"{json.dumps(k)} = {_value(y)}" for k, y in x.items() if y is not None)
-        return f"{{ {inside} }}" if inside else "{}"
-    if isinstance(x, list):
-        return f"[{', '.join(map(_value, x))}]"
-    if isinstance(x, int):
-        return str(x)
-    # TOML's basic strings escape as JSON's do, but for DEL, which JSON leaves as it is.
-    return json.dumps(str(x), ensure_ascii=False).replace("\x7f", "\\u007F")
+    return "\n".join([*lines, *toml_lines(data, inline=("parameters",))]) + "\n"

@@ -5,9 +5,17 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from verify.drawable import drawn_by
+from verify.errors import InputError
+from verify.hamiltonians.equations import Equations
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import ByConditions
-from verify.schemes.conditions.every_hamiltonian import BySeries
+from verify.schemes.conditions.every_hamiltonian import (
+    BySeries,
+    RungeKutta,
+    StageEquations,
+    TaylorSeries,
+)
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.maps import kind_of
 from verify.schemes.maps.formula_map import step_map_from_formulas
 from verify.schemes.maps.step_map import StepMap
@@ -65,6 +73,8 @@ class Scheme:
 # the map. The cache is small, since a map keeps all that was derived from it.
 @lru_cache(maxsize=32)
 def _step_map(scheme: Scheme, hamiltonian: Hamiltonian) -> StepMap:
+    if isinstance(hamiltonian, Equations):
+        _check_takes_equations(scheme, hamiltonian)
     if scheme.build is not None:
         return scheme.build(hamiltonian)
     if scheme.formulas:
@@ -73,3 +83,17 @@ def _step_map(scheme: Scheme, hamiltonian: Hamiltonian) -> StepMap:
         scheme.every_h, hamiltonian, scheme.name
     )
     return step_map
+
+
+def _check_takes_equations(scheme: Scheme, equations: Equations) -> None:
+    """Raise InputError unless the scheme is one of a field, without p and q of its own."""
+    every_h = scheme.every_h
+    is_partitioned = getattr(getattr(every_h, "tableau", None), "of_q", None) is not None
+    of_fields = isinstance(every_h, TaylorSeries | RungeKutta | TreeConditions)
+    if isinstance(every_h, StageEquations):  # all coordinates alike, as those of the midpoint
+        stages = every_h.stages
+        of_fields = all(s.kick == s.drift and s.at_p == s.at_q for s in stages)
+    if not scheme.formulas and (not of_fields or is_partitioned):
+        allowed = "lieη, Runge–Kutta methods, formulas such as u_next = …"
+        problem = f"takes an H, and {equations.formula} has none; allowed: {allowed}"
+        raise InputError("scheme", scheme.name, problem)

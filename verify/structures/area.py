@@ -1,11 +1,14 @@
 """Area, the symplectic form of the plane: its defect is one number, ΔJ = det J − 1."""
 
-from verify.structures.structure import Structure
+from dataclasses import replace
 
-AREA = Structure(
+from verify.structures.symplectic import CanonicalForm
+
+AREA = CanonicalForm(
     name="area",
+    label="area",
     state="(p, q)",
-    defect="ΔJ",
+    symbol="ΔJ",
     accumulated="Λ",
     size="|Λ|",
     zero="function",
@@ -16,3 +19,6 @@ AREA = Structure(
     of_run="lambda",
     over_run="lambda_max",
 )
+
+# Of a system without H: volume in all of its coordinates, which has the same defect.
+PLAIN_VOLUME = replace(AREA, name="volume", label="volume", state="z")

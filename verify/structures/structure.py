@@ -1,32 +1,93 @@
-"""A structure that a step may preserve: the names and observables of its defect."""
+"""A structure T that a step may keep: Φ*T = T, or c·T; and the values of which its defect is made.
 
+The defect of one step is written once for each structure, in the operations of `StepValues`, and
+read as series in h, as elements of a ring, in balls, or in floats.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol
+
+from verify.lazy_sympy import sympy
+
+Value = Any  # has sums, differences and products: a series, a ring element, a ball, a float
+
+
+class StepValues(Protocol):
+    """The values at z, where a step begins, and at z' = Φ_h(z), where it ends.
+
+    Formulas are of the coordinates, of t if the system depends on it, and of parameters.
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the coordinates."""
+
+    def number(self, x: Fraction) -> Value:
+        """Return a constant."""
+
+    def before(self, formula: sympy.Expr) -> Value:
+        """Return a formula's value at (z, t)."""
+
+    def after(self, formula: sympy.Expr) -> Value:
+        """Return a formula's value at (z', t + h)."""
+
+    def factor(self, formula: sympy.Expr) -> Value:
+        """Return the value of a formula in h and parameters alone."""
+
+    @property
+    def jacobian(self) -> Sequence[Sequence[Value]]:
+        """The Jacobian J = ∂z'/∂z by rows."""
+
+    def return_by(self, reflection: Sequence[sympy.Expr] | None) -> Sequence[Value]:
+        """Return Ψ(z') − z by coordinates: Ψ = Φ_(−h), or ρ∘Φ_h∘ρ with a `reflection` ρ."""
 
 
 @dataclass(frozen=True)
-class Structure:
-    """A structure that a step may preserve: area, or the symplectic form.
+class Structure(ABC):
+    """A structure that a step may keep.
 
-    `state`: the name of a point; `defect`: by how much one step misses the structure;
-    `accumulated`: the defect of N steps, and `size` its size.
-
-    `zero`: the kind of object that the defect is where it vanishes; `vanishes` is the sentence that
-    it does, `identity` the short form, and `claim` that of a scheme that claims it. `of_step`,
-    `of_run`, `over_run`: the observables of a run for the greatest defect of a step, the
-    accumulated defect, and its greatest value during the run.
+    `name`: its name on the command line and in results; `label`: what pages and messages call it.
     """
 
-    # Both structures have the same fields, so that no caller has to ask for the plane.
-
     name: str
-    state: str
-    defect: str
-    accumulated: str
-    size: str
-    zero: str
-    vanishes: str
-    identity: str
-    claim: str
-    of_step: str
-    of_run: str
-    over_run: str
+    label: str
+
+    @property
+    @abstractmethod
+    def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
+
+    @abstractmethod
+    def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
+
+    def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure on these coordinates; "" if nothing does.
+
+        It is a property of the formulas alone; that the exact flow keeps the structure is checked
+        elsewhere.
+        """
+        return ""
+
+    @property
+    def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
+        return ()
+
+    def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
+        return self
+
+
+def is_zero(x: sympy.Expr, names: Sequence[str]) -> bool | None:
+    """Return True if an expression is shown to be the zero function; None if undecided."""
+    from verify.algebra.embedding import embed
+
+    symbols = sorted({s.name for s in x.free_symbols} - {*names})
+    ring, (element,) = embed([x], [*names, *symbols])
+    return ring.vanishes(element)

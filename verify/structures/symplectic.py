@@ -1,11 +1,131 @@
-"""The symplectic form in n degrees of freedom: its defect is S = JᵀΩJ − Ω."""
+"""A closed 2-form ω, constant or depending on z: its defect is S = Jᵀω(z')J − ω(z).
 
-from verify.structures.structure import Structure
+The canonical form Ω = Σ dp_i∧dq_i is the structure of a canonical step: in the plane it is area.
+"""
 
-SYMPLECTIC = Structure(
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import combinations
+
+from verify.algebra.formula import symbol
+from verify.lazy_sympy import sympy
+from verify.structures.structure import StepValues, Structure, Value, is_zero
+
+Entries = Mapping[tuple[int, int], sympy.Expr]  # the coefficients of dz_a∧dz_b, a < b
+
+
+@dataclass(frozen=True)
+class SymplecticForm(Structure):
+    """A 2-form Σ ω_ab dz_a∧dz_b; `entries`: its coefficients, by a < b."""
+
+    entries: Entries = field(default_factory=dict, hash=False)
+
+    @property
+    def defect_formula(self) -> str:
+        return "S = Jᵀω(z')J − ω(z)"
+
+    @property
+    def formulas(self) -> tuple[sympy.Expr, ...]:
+        return tuple(self.entries.values())
+
+    def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        entries = {place: x.xreplace(values) for place, x in self.entries.items()}
+        return type(self)(self.name, self.label, entries)
+
+    def defect(self, step: StepValues) -> dict[str, Value]:
+        return form_defect(step, self.entries)
+
+    def mistake(self, names: Sequence[str]) -> str:
+        if len(names) % 2:
+            return f"is degenerate: {len(names)} coordinates are an odd number"
+        matrix = sympy.zeros(len(names), len(names))
+        for (a, b), x in self.entries.items():
+            matrix[a, b], matrix[b, a] = x, -x
+        if is_zero(matrix.det(method="berkowitz"), names) is not False:
+            return "is degenerate: the determinant of its matrix vanishes, or is not shown not to"
+        for a, b, c in combinations(range(len(names)), 3):
+            cycle = ((a, b, c), (b, c, a), (c, a, b))
+            parts = (matrix[i, j].diff(symbol(names[k])) for i, j, k in cycle)
+            if is_zero(sum(parts, sympy.S.Zero), names) is not True:
+                return f"is not closed: dω has d{names[a]}∧d{names[b]}∧d{names[c]}"
+        return ""
+
+
+def form_defect(
+    step: StepValues, entries: Entries, factor: Value | None = None
+) -> dict[str, Value]:
+    """Return the entries a < b of Jᵀω(z')J − c ω(z), by dz_a∧dz_b; `factor`: c, which may be 1."""
+    after = {place: step.after(x) for place, x in entries.items()}
+    before = {place: step.before(x) for place, x in entries.items()}
+    jacobian, result = step.jacobian, {}
+    for a, b in combinations(range(len(step.names)), 2):
+        total = step.number(Fraction(0))
+        for (c, d), x in after.items():
+            minor = jacobian[c][a] * jacobian[d][b] - jacobian[d][a] * jacobian[c][b]
+            total = total + x * minor
+        if (a, b) in before:
+            share = before[a, b]
+            total = total - (share if factor is None else factor * share)
+        result[f"d{step.names[a]}∧d{step.names[b]}"] = total
+    return result
+
+
+def canonical_entries(size: int) -> Entries:
+    """Return the coefficients of Ω = Σ dp_i∧dq_i on p1 … pn, q1 … qn, 2n = `size`."""
+    half = size // 2
+    return {(i, half + i): sympy.S.One for i in range(half)}
+
+
+@dataclass(frozen=True)
+class CanonicalForm(Structure):
+    """The canonical form Ω, which in the plane is area.
+
+    `state`: the name of a point; `symbol`: that of the defect of one step; `accumulated`: the
+    defect of N steps, and `size` its size.
+
+    `zero`: the kind of object that the defect is where it vanishes; `vanishes` is the sentence that
+    it does, `identity` the short form, and `claim` that of a scheme that claims it. `of_step`,
+    `of_run`, `over_run`: the observables of a run for the greatest defect of a step, the
+    accumulated defect, and its greatest value during the run.
+    """
+
+    # Both structures have the same fields, so that no caller has to ask for the plane.
+
+    state: str
+    symbol: str
+    accumulated: str
+    size: str
+    zero: str
+    vanishes: str
+    identity: str
+    claim: str
+    of_step: str
+    of_run: str
+    over_run: str
+
+    @property
+    def defect_formula(self) -> str:
+        return self.symbol
+
+    @property
+    def formulas(self) -> tuple[sympy.Expr, ...]:
+        return (sympy.S.One,)
+
+    def defect(self, step: StepValues) -> dict[str, Value]:
+        return form_defect(step, canonical_entries(len(step.names)))
+
+    def mistake(self, names: Sequence[str]) -> str:
+        return f"is of pairs p, q, and there are {len(names)} coordinates" if len(names) % 2 else ""
+
+
+SYMPLECTIC = CanonicalForm(
     name="symplectic",
+    label="the symplectic form",
     state="z",
-    defect="S",
+    symbol="S",
     accumulated="W",
     size="max |W|",
     zero="form",

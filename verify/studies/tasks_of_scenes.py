@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from verify.execution.plan import Plan, Results, plan_of, scene_name
+from verify.execution.plan import Plan, Results, Study, plan_of, scene_name
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.scene import Scene
 from verify.studies.kinds import studies
@@ -19,14 +19,18 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
 
 def collect_findings(scene: Scene, results: Results) -> dict[str, Any]:
     """Return the studies' parts of a `SceneResult`, from the results of the scene's tasks."""
-    parts: dict[str, Any] = {}
-    for study in studies():
+    parts: dict[str, Any] = {"runs": (), "series": ()}  # of equations without an H
+    for study in _studies_of(scene):
         parts |= study.results_for_scene(scene, results) if study.results_for_scene else {}
     return parts
 
 
+def _studies_of(scene: Scene) -> list[Study]:
+    return [study for study in studies() if scene.field is None or study.takes_field]
+
+
 def _plan_scene(plan: Plan, scene: Scene) -> None:
-    every_study = studies()
+    every_study = _studies_of(scene)
     for scheme in scene.schemes:
         # Proved once for each scheme: every study needs it.
         preserves_area = step_map_of(scene.exact_hamiltonian(), scheme).preserves_area

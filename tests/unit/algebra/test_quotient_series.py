@@ -1,4 +1,5 @@
-"""The series of quotients of polynomials in h, against sympy's; and what is no such quotient."""
+"""The series of quotients of polynomials in h, and of functions of h times something, against
+sympy's; and what has no such series."""
 
 import pytest
 import sympy
@@ -28,6 +29,12 @@ def series(formula: str, length: int) -> list[sympy.Expr] | None:
         "p/(1 + h*sin(q)) + q*h**3/(3 - h)",
         "1/(1 + h/(1 + h*p))",
         "h**5",
+        "exp(h*p)",
+        "sin(h*p)*cos(h*q) - sinh(h*q*p)",
+        "q*sin(h*p + h**2*cos(h*q))/(1 + h*atan(h*p))",
+        "sqrt(4 + h*p + h**2) - (8 + h*q)**(1/3)",
+        "p/(1 + sqrt(1 + h*q*sqrt(9 + h*p)))",
+        "tan(h*p) + tanh(h*q) + asinh(h)",
     ],
 )
 def test_the_series_is_the_one_that_sympy_finds(formula: str) -> None:
@@ -40,7 +47,18 @@ def test_the_series_is_the_one_that_sympy_finds(formula: str) -> None:
         assert sympy.simplify(again - sympy.expand(wanted).coeff(h, n)) == 0
 
 
-@pytest.mark.parametrize("formula", ["exp(h*p)", "1/(h + p)", "1/(1 + h*p) + sin(h)"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "log(1 + h*p)",
+        "cos(q + h*p)",
+        "sqrt(2 + h)",
+        "sqrt(q + h)",
+        "sqrt(-4 + h)",
+        "1/(h + p)",
+        "1/(1 + h*p) + atan(q + h)",
+    ],
+)
 def test_what_is_no_such_quotient_has_none(formula: str) -> None:
     assert series(formula, 4) is None
 

@@ -153,7 +153,9 @@ def test_a_sweep_is_the_runs_that_one_would_write_out() -> None:
         alone = verify.run(
             "duffing", at["scheme"], parameters={"delta": at["delta"]}, time=1, **own
         )
-        assert alone.values == run.values
+        # By default a run shows the energy too.
+        assert {**alone.values, **run.values} == alone.values
+        assert alone.values.keys() - run.values.keys() == {"energy_error", "energy_error_max"}
         assert (at["lambda"], at["lambda_bound"]) == (
             alone.values["lambda"].value, alone.values["lambda"].bound)  # fmt: skip
     assert [Fraction(x) for x in found.axes["step_size"]] == [Fraction(1, 10), Fraction(1, 20)]

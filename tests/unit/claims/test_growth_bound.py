@@ -9,7 +9,7 @@ import pytest
 
 from tests.helpers.constructed.runs import CLAIM, Given, check, made_findings, made_scene
 from verify.claims.claims_file import load_claims
-from verify.claims.kinds.growth_bound import GrowthBoundClaim
+from verify.claims.kinds.comparisons.growth_bound import GrowthBoundClaim
 from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store

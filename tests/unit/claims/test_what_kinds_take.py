@@ -23,6 +23,7 @@ KEYS: dict[str, dict[str, Any]] = {
     "order": {"order": 3},
     "defect_order": {"defect_order": 3},
     "convergence_order": {"convergence_order": 2},
+    "keeps": {"keeps": "volume"},
     "step_map": {"p_next": "p", "q_next": "q"},
     "jacobian": {"entries": [["1", "0"], ["0", "1"]]},
     "delta_j": {"formula": "h**3", "up_to": 4},
@@ -55,10 +56,12 @@ OF_A_PARAMETER = {"table_for_some"}
 PLANAR = {"step_map", "jacobian", "delta_j", "shifted", "solution_error"}
 
 
-def written(folder: Path, kind: str, hamiltonian: str, state: dict[str, Any]) -> Path:
+def written(
+    folder: Path, kind: str, hamiltonian: str, state: dict[str, Any], source: str = "hamiltonian"
+) -> Path:
     keys = KEYS[kind]
     own = {**keys, **(state if {"steps"} & keys.keys() else {})}
-    lines = ['id = "c"', f'kind = "{kind}"', 'scheme = "lie2"', f'hamiltonian = "{hamiltonian}"']
+    lines = ['id = "c"', f'kind = "{kind}"', 'scheme = "lie2"', f'{source} = "{hamiltonian}"']
     path = folder / "claims.toml"
     text = [f"{key} = {_toml(value)}" for key, value in own.items()]
     path.write_text("\n".join(["[[claim]]", *lines, *text]) + "\n")
@@ -99,4 +102,17 @@ def test_a_kind_takes_an_h_in_time_or_says_that_it_does_not(kind: str, tmp_path:
         assert [claim.kind for claim in load_claims(path).claims] == [kind]
         return
     with pytest.raises(InputError, match=f"kind={kind}: is of an H without t, and so of no H"):
+        load_claims(path)
+
+
+@pytest.mark.parametrize("kind", sorted(KEYS))
+def test_a_kind_takes_equations_without_an_h_or_says_that_it_does_not(
+    kind: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path, kind, "p_dot = q; q_dot = p*q", {"q": 1, "p": 0}, source="field")
+    if kind == "keeps":
+        path.write_text(path.read_text().replace("p*q", "p"))  # volume is kept by this one
+        assert [claim.kind for claim in load_claims(path).claims] == [kind]
+        return
+    with pytest.raises(InputError, match=rf"claim c: kind={kind}: is of an H; of equations"):
         load_claims(path)

@@ -181,7 +181,7 @@ p = 0
     (true,) = claims_of(tmp_path, made.replace("DIRECTION", "increases"))
     (false,) = claims_of(tmp_path, made.replace("DIRECTION", "decreases"))
     assert claim_property(true).holds(sample)
-    with pytest.raises(Violation, match=r"from h = 0\.05 to 0\.1"):
+    with pytest.raises(Violation, match=r"at h = 0\.05 to .* at h = 0\.1"):
         claim_property(false).holds(sample)
 
 

@@ -47,13 +47,25 @@ class Told(StepDerivatives):
         noted: Noted = self.noted  # type: ignore[attr-defined]
         return ball(self._at(noted.slope, box) * noted.scale)
 
-    def energy(self, _: Any, box: Mapping[str, Any]) -> flint.arb:
-        assert box["last"]
-        return ball(self._at(self.noted.steep, box))  # type: ignore[attr-defined]
-
     def form(self, _: Any, box: Mapping[str, Any]) -> tuple[flint.arb, flint.arb]:
         size, slope = self._at(self.noted.form, box)  # type: ignore[attr-defined]
         return ball(size), ball(slope)
+
+
+class Energy:
+    """H over a box: how steep it is there, and how large."""
+
+    def __init__(self, noted: Noted) -> None:
+        self.noted = noted
+
+    def slopes(self, box: Mapping[str, Any]) -> list[flint.arb]:
+        assert box["last"]
+        steep = self.noted.steep(number(box["widened"]))
+        return [ball(steep * 3 / 5), ball(steep * 4 / 5)]  # of two coordinates
+
+    def enclose(self, box: Mapping[str, Any]) -> flint.arb:
+        assert box["last"]
+        return ball(-self.noted.energy(number(box["widened"])))
 
 
 def certificate(noted: Noted) -> _Certificate:
@@ -61,12 +73,9 @@ def certificate(noted: Noted) -> _Certificate:
     made = object.__new__(_Certificate)
     zero = RoundedValue(flint.arb(0), flint.arb(0))
     # The rounding of the matrix is of one entry alone, and the greatest of an entry of two.
-    values = {"dm": zero, "dw_1": zero, "dw_2": zero, "de": zero}
+    values = {"dm": zero, "dw_1": zero, "dw_2": zero}
 
     def adding(size: flint.arb, x: RoundedValue) -> flint.arb:
-        if x is values["de"]:
-            assert size.overlaps(ball(noted.risen))
-            return ball(noted.of_energy)
         if x is values["dm"]:
             assert size.overlaps(3 * motion.top)
             return ball(noted.of_matrix)
@@ -75,18 +84,25 @@ def certificate(noted: Noted) -> _Certificate:
         return part if x is values["dw_2"] else part / 3
 
     names = tuple("pq") if noted.size == 2 else tuple(f"z{k}" for k in range(noted.size))
-    for k, name in enumerate(("dm", "dw_1", "de"), start=1):
+    for k, name in enumerate(("dm", "dw_1"), start=1):
         values[name] = RoundedValue(flint.arb(k), flint.arb(0))
+    values["e0"] = RoundedValue(flint.arb(0), ball(noted.of_energy))
     # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
     off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
     start, first = {n: Fraction(k) for k, n in enumerate(names)}, of_mpf(noted.start)
     rounded = {Fraction(k): k + first * off.get(n, Fraction(0)) for k, n in enumerate(names)}
     vars(made).update(
-        run=SimpleNamespace(start=start),
+        run=SimpleNamespace(
+            start=start,
+            observables={"energy_error_max"},
+            integral=lambda _: Energy(noted),
+            start_radii={},
+            in_user_names=lambda box: box,
+        ),
         arithmetic=SimpleNamespace(
             absolute=noted.absolute, number=rounded.__getitem__, exact=lambda x: x
         ),
-        values={"mse": of_mpf(noted.squares), "energy_error_max": of_mpf(noted.risen)},
+        values={"mse": of_mpf(noted.squares)},
         rounding=SimpleNamespace(
             constants=dict,
             box=lambda margin, last=False: {"widened": margin, "last": last},
@@ -135,7 +151,8 @@ def by_formulas(noted: Noted) -> dict[str, Real]:
         "lambda_max": product,
         "symplectic_defect_max": run_bounds.of_defect_max(noted),
         "symplectic_defect": run_bounds.of_defect(noted),
-        "energy_error_max": run_bounds.of_energy_error(noted),
+        "energy_error": run_bounds.of_energy_error(noted),
+        "energy_error_max": run_bounds.of_energy_error(noted) + noted.of_energy,
     }
 
 
@@ -156,6 +173,7 @@ TERMS: dict[str, Callable[[Noted], Noted]] = {
 } | {
     "second": lambda noted: replace(noted, second=lambda _: ctx.mpf(0)),
     "steep": lambda noted: replace(noted, steep=lambda _: ctx.mpf(0)),
+    "energy": lambda noted: replace(noted, energy=lambda _: ctx.mpf(0)),
     "slope": lambda noted: replace(noted, slope=lambda _: ctx.mpf(0)),
     "form's size": lambda noted: replace(noted, form=lambda x: (ctx.mpf(0), noted.form(x)[1])),
     "form's slope": lambda noted: replace(noted, form=lambda x: (noted.form(x)[0], ctx.mpf(0))),

@@ -74,6 +74,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
         "[[stability]]",
         "mine: the largest stable step": "the scene has no [[largest_step]]",
         "mine: the map of step size and stiffness": "the scene has no [[stability_map]]",
+        "mine: what a step keeps": "the scene has no `keeps`",
     }
     plan = plan_scenes([load(tmp_path, GOOD.replace("lie2", "symplectic-euler"))])
     assert not runs_of(plan)

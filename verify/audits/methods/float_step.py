@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.integrators.clocks import measure_clock_mistakes
 from verify.integrators.measured_finding import finding_from_measurement
 from verify.integrators.measures.distances import Distances
-from verify.integrators.measures.probes import FloatProbe
+from verify.integrators.measures.float_probe import FloatProbe
 from verify.integrators.measures.survey import NO_REQUEST, places_of_field
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.places.units import FloatField

@@ -7,9 +7,13 @@ import click
 
 from verify.commands.checks.check_options import (
     allow_undecided_option,
+    example_json,
     is_failure,
+    keeps_json,
     place_options,
     places_json,
+    point_option,
+    print_keeps,
     print_measured,
     print_notes,
     request_from,
@@ -17,8 +21,9 @@ from verify.commands.checks.check_options import (
 )
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.execution_options import clock
-from verify.commands.shared.input import time_limit_option, with_hamiltonian
+from verify.commands.shared.input import hamiltonian_of, system_options, time_limit_option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick
+from verify.commands.shared.structure_options import structure_options
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -26,6 +31,7 @@ if TYPE_CHECKING:
     from verify.integrators.results import Finding
     from verify.integrators.user_code.loading import Callee
     from verify.proof.proof_for_one_h import Proof
+    from verify.structures.reading import KeepsRequest
 
 _ORDER_RANGE = click.IntRange(1, 12)
 
@@ -46,7 +52,7 @@ _ORDER_RANGE = click.IntRange(1, 12)
     help="The type of the numbers of a library or program: double, long-double, float128, "
     "double-double.",
 )
-@with_hamiltonian
+@system_options
 @click.option(
     "--arguments",
     metavar="ORDER",
@@ -54,17 +60,22 @@ _ORDER_RANGE = click.IntRange(1, 12)
     "q' in that order too. By default the names of its arguments decide.",
 )
 @place_options
+@point_option
 @step_size_option
 @click.option("--order", type=_ORDER_RANGE, metavar="K", help="Claimed order of convergence.")
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
 @click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
 @click.option("--area-order", type=_ORDER_RANGE, metavar="K", help="Claimed: ΔJ = O(h^K).")
+@structure_options
 @time_limit_option
 @allow_undecided_option
 @answering
 def check_integrator(
     target: str | None,
-    hamiltonian: "Hamiltonian",
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    field: str | None,
     command: str | None,
     number_type: str,
     arguments: str | None,
@@ -74,6 +85,7 @@ def check_integrator(
     area_order: int | None,
     time_limit: float,
     allow_undecided: bool,
+    keeps: "KeepsRequest",
     **place_texts: str | None,
 ) -> CommandAnswer:
     """Check a step of your own, in Python or any language: its order and that of ΔJ.
@@ -82,6 +94,10 @@ def check_integrator(
 
     For an H(p, q, t) it is step(p, q, t, h), and its order is that for the motion in time. For an H
     in p1 … pn, q1 … qn, p and q are arrays, and S = JᵀΩJ − Ω is examined in place of ΔJ.
+
+    With --field it is a step of equations: its arguments are the coordinates, by their names or one
+    array of all, then h. With --keeps it is judged what the step keeps, and only that unless an
+    order is claimed too.
 
     LIB.so:SYMBOL is a function of a library, in C, Fortran or another language, which changes p and
     q in place: void step(int n, double t, double h, double *p, double *q). --command names a
@@ -99,27 +115,34 @@ def check_integrator(
     verify check-integrator mine.py:step --hamiltonian 'p**2/2 + q**4/4' --order 2 --area-preserving
     verify check-integrator ./libstep.so:step --system pendulum --order 2 --symplectic
     verify check-integrator --command './step' --system pendulum --type long-double
+    verify check-integrator mine:step --system pendulum --keeps reversible --keeps "energy: 3"
+    verify check-integrator mine:step --field "u_dot = u*(v - 2); v_dot = v*(1 - u)" \
+        --form "du^dv/(u*v)"
     """
     from verify.integrators.results import Claims
-    from verify.integrators.step_check import check_integrator as check
+    from verify.integrators.system_check import check_system
+    from verify.structures.reading import read_structures
 
     start_time = time.perf_counter()
-    request = request_from(hamiltonian.coordinates, **place_texts)
-    if hamiltonian.symbols:
-        raise InputError(
-            "--param", hamiltonian.symbols[0], "has no value; a step of one's own needs it"
-        )
+    parsed = hamiltonian_of(system, hamiltonian, params, field)
+    request = request_from(parsed.coordinates, **place_texts)
+    if parsed.symbols:
+        raise InputError("--param", parsed.symbols[0], "has no value; a step of one's own needs it")
     target_name = command or target or ""
-    callee = _build_callee(target, command, number_type, arguments, hamiltonian, time_limit)
+    callee = _build_callee(target, command, number_type, arguments, parsed, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
+    structures = read_structures(keeps, parsed)
     with clock(target_name):
-        finding = check(callee, hamiltonian, claims, request)
+        finding = check_system(callee, parsed, claims, structures, request)
     seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(hamiltonian, target_name, finding, seconds),
-        lambda: _print(hamiltonian, target_name, finding),
+        lambda: _json(parsed, target_name, finding, seconds),
+        lambda: _print(parsed, target_name, finding, with_keeps=bool(structures)),
         # Without a claim there is nothing to leave undecided: only a refutation fails.
-        failed=is_failure([finding.verdict], allow_undecided=allow_undecided or claims == Claims()),
+        failed=is_failure(
+            [finding.verdict],
+            allow_undecided=allow_undecided or (claims == Claims() and not structures),
+        ),
     )
 
 
@@ -137,6 +160,7 @@ def _build_callee(
         step_of_command,
         step_of_library,
     )
+    from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
     from verify.integrators.user_code.loading import callee_from, foreign_callee, load
     from verify.integrators.user_code.user_map import DOUBLE, type_of
 
@@ -145,6 +169,9 @@ def _build_callee(
         raise InputError("integrator", target or NOT_GIVEN, problem)
     kind = type_of(number_type)
     foreign = command is not None or is_library(target or "")
+    if hamiltonian.energy is None and (foreign or arguments is not None):
+        value = arguments or command or target or ""
+        raise InputError("--field", value, "goes with a Python function, and without --arguments")
     if foreign and arguments is not None:
         raise InputError("--arguments", arguments, "goes with a Python function")
     if command is not None:
@@ -153,6 +180,11 @@ def _build_callee(
         return foreign_callee(step_of_library(target or "", hamiltonian.degrees, kind, time_limit))
     if kind is not DOUBLE:
         raise InputError("--type", number_type, "goes with LIB.so:SYMBOL or --command")
+    if hamiltonian.energy is None:
+        return callee_of_coordinates(
+            load(target or ""), hamiltonian.coordinates, stepped=True,
+            parameters=dict(hamiltonian.values), time_limit=time_limit,
+        )  # fmt: skip
     return callee_from(
         load(target or ""), hamiltonian.coordinates, arguments=arguments,
         parameters=dict(hamiltonian.values), time_limit=time_limit,
@@ -190,13 +222,9 @@ def _json(
         "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
-        "counterexample": example and {
-            **show.point_json(example.z),
-            **({} if example.h is None else {"h": text(example.h)}),
-            **({} if example.t is None else {"t": text(example.t)}),
-            **pick(example, "quantity", "found", "expected"),
-        },
+        "counterexample": example and example_json(example),
         "places": places_json(hamiltonian.coordinates, finding.places),
+        "keeps": keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
@@ -207,7 +235,9 @@ def _proof_of_s(finding: "Finding") -> "Proof | None":
     return finding.proof if finding.proof and not finding.proof.planar else None
 
 
-def _print(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> None:
+def _print(
+    hamiltonian: "Hamiltonian", target: str, finding: "Finding", *, with_keeps: bool
+) -> None:
     from dataclasses import replace
 
     from verify.integrators.results import potential_of_finding
@@ -223,4 +253,6 @@ def _print(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> None:
         if finding.leading is not None and finding.order is not None and degrees == 1:
             click.echo(f"  ΔJ       ({cut(finding.leading)})·h^{finding.order} + …")
         print_measured(finding)
+    if with_keeps:
+        print_keeps(finding)
     print_notes(finding)

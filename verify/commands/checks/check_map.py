@@ -8,8 +8,11 @@ import click
 from verify.commands.checks.check_options import (
     allow_undecided_option,
     is_failure,
+    keeps_json,
     place_options,
     places_json,
+    point_option,
+    print_keeps,
     print_measured,
     print_notes,
     request_from,
@@ -18,9 +21,12 @@ from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, values_of
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.commands.shared.proof_output import point_json
+from verify.commands.shared.structure_options import structure_options
+from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.integrators.results import Finding
+    from verify.structures.reading import KeepsRequest
 
 
 @click.command("check-map")
@@ -46,7 +52,15 @@ if TYPE_CHECKING:
     metavar="NAME=VALUE",
     help="A further argument that it takes by name; repeatable.",
 )
+@click.option(
+    "--coordinates",
+    metavar="NAMES",
+    help="The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
+    "By default p1, …, pn, q1, …, qn.",
+)
 @place_options
+@point_option
+@structure_options
 @time_limit_option
 @allow_undecided_option
 @answering
@@ -55,8 +69,10 @@ def check_map(
     degrees: int,
     arguments: str | None,
     params: tuple[str, ...],
+    coordinates: str | None,
     time_limit: float,
     allow_undecided: bool,
+    keeps: "KeepsRequest",
     **place_texts: str | None,
 ) -> CommandAnswer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
@@ -67,33 +83,57 @@ def check_map(
     THIS RUNS YOUR CODE: MODULE is imported, from the current folder too, or file.py:FUNCTION is
     loaded, and the function is called.
 
+    With --coordinates, --keeps and what refines it, other structures are judged, and only those
+    that are named; volume, if none is.
+
     If its code allows it, the function is called with symbols, and all is proved; otherwise it is
     measured. Exit status 1 if the verdict is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     verify check-map mine.py:henon --degrees 1
     verify check-map ring.py:turn --degrees 2 --arguments q1,p1,q2,p2 --param strength=0.3
+    verify check-map mine.py:push --coordinates v1,v2,v3,x1,x2,x3 --keeps volume
+    verify check-map mine.py:two --coordinates v1,v2,x1,x2 --form "m1*dv1^dx1 + m2*dv2^dx2" \
+        --param m1=1 --param m2=3
     """
     from verify.arithmetic.exact import rational
     from verify.hamiltonians.coordinates import check_degrees, coordinates_in
+    from verify.integrators.map_claims import MapSystem, coordinates_from
     from verify.integrators.step_check import check_map as check
+    from verify.integrators.structure_check import check_map_keeps
+    from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
     from verify.integrators.user_code.loading import callee_from, load
 
     start_time = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
+    if coordinates is not None:
+        names = coordinates_from(coordinates, "--coordinates")
     request = request_from(names, **place_texts)
     parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
-    callee = callee_from(
-        load(target, "map"), names, stepped=False, arguments=arguments, parameters=parameters,
-        strict=True, time_limit=time_limit,
-    )  # fmt: skip
+    function = load(target, "map")
+    if coordinates is None:
+        callee = callee_from(
+            function, names, stepped=False, arguments=arguments, parameters=parameters,
+            strict=True, time_limit=time_limit,
+        )  # fmt: skip
+    elif arguments is not None:
+        raise InputError("--arguments", arguments, "goes without --coordinates")
+    else:
+        callee = callee_of_coordinates(
+            function, names, stepped=False, parameters=parameters, time_limit=time_limit
+        )
+    with_keeps = bool(keeps) or coordinates is not None
     with clock(target):
-        finding = check(callee, request)
+        if with_keeps:
+            claims = MapSystem(names, parameters).read(keeps)
+            finding = check_map_keeps(callee, claims, request)
+        else:
+            finding = check(callee, request)
     seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
         lambda: _json(target, names, finding, seconds),
-        lambda: _print(target, finding),
+        lambda: _print(target, finding, with_keeps=with_keeps),
         failed=is_failure([finding.verdict], allow_undecided=allow_undecided),
     )
 
@@ -112,16 +152,19 @@ def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str)
         "defect_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "places": places_json(names, finding.places),
+        "keeps": keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 
 
-def _print(target: str, finding: "Finding") -> None:
+def _print(target: str, finding: "Finding", *, with_keeps: bool) -> None:
     click.echo(f"{finding.verdict}: {finding.reason}")
     click.echo(f"  map      {target}")
     if finding.how == "proof" and finding.area_preserving is not None:
         click.echo(f"  det J    is {'' if finding.area_preserving else 'not '}1")
     else:
         print_measured(finding)
+    if with_keeps:
+        print_keeps(finding)
     print_notes(finding)

@@ -7,18 +7,20 @@ verdicts of a check decide its exit status.
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.input import options
+from verify.commands.shared.output import pick, print_line
+from verify.commands.shared.proof_output import point_json
 from verify.errors import InputError
 from verify.prose import count
 
 if TYPE_CHECKING:
     from verify.integrators.measures.survey import Request
     from verify.integrators.places.trial_places import TrialPlace
-    from verify.integrators.results import Finding
+    from verify.integrators.results import Counterexample, Finding
 
 
 allow_undecided_option = click.option(
@@ -60,6 +62,11 @@ place_options = options(
         help="A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
     ),
 )
+point_option = click.option(
+    "--point",
+    metavar="Z",
+    help="The first state to try, one number for each coordinate, in their order.",
+)
 step_size_option = click.option(
     "--step-size", metavar="H", help="The step size that matters to you, the largest that is tried."
 )
@@ -73,13 +80,18 @@ def request_from(
     scale: str | None,
     within: str | None,
     step_size: str | None = None,
+    point: str | None = None,
 ) -> "Request":
     """Return the request that these options describe. Raises InputError."""
     from verify.arithmetic.exact import positive
+    from verify.hamiltonians.coordinates import coordinates_in
     from verify.integrators.measures.survey import Request
 
+    if (q or p) is not None and tuple(names) != coordinates_in(max(len(names) // 2, 1)):
+        problem = f"goes with p and q; of {', '.join(names)} use --point"
+        raise InputError("--q, --p", q or p or "", problem)
     return Request(
-        z=state_from(names, q, p),
+        z=state_from(names, q, p) if point is None else _parse_point(names, q or p, point),
         step_size=None if step_size is None else positive(step_size, "--step-size"),
         scale={} if scale is None else _parse_scale(names, scale),
         within=None if within is None else positive(within, "--within"),
@@ -107,6 +119,16 @@ def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Frac
             raise InputError(name, text, problem)
         z += numbers
     return tuple(z)
+
+
+def _parse_point(names: Sequence[str], other: str | None, text: str) -> tuple[Fraction, ...]:
+    from verify.arithmetic.exact import rational
+
+    z = tuple(rational(part.strip(), "--point") for part in text.split(","))
+    if other is not None or len(z) != len(names):
+        problem = f"goes without --q and --p; allowed: {len(names)} numbers, {', '.join(names)}"
+        raise InputError("--point", text, problem)
+    return z
 
 
 def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
@@ -139,6 +161,47 @@ def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> l
         }
         for place in places
     ]
+
+
+def keeps_json(finding: "Finding") -> list[dict[str, Any]]:
+    """Return the keys of each structure of the finding, those of a proof among them."""
+    from verify.commands.shared.structure_output import structure_json
+
+    return [
+        {
+            **structure_json(kept),
+            **pick(kept, "how", "exact"),
+            "largest": None if kept.largest is None else f"{kept.largest:.6e}",
+            "probe_error": None if kept.probe_error is None else f"{kept.probe_error:.1e}",
+            "counterexample": kept.counterexample and example_json(kept.counterexample),
+            "way_back": kept.way_back and {
+                "units": f"{kept.way_back.units:.6g}", "text": kept.way_back.text,
+            },
+        }
+        for kept in finding.keeps
+    ]  # fmt: skip
+
+
+def example_json(example: "Counterexample") -> dict[str, Any]:
+    """Return the keys of a counterexample: its place, and what is seen there."""
+    from verify.arithmetic.exact import text
+
+    return {
+        **point_json(example.z),
+        **({} if example.h is None else {"h": text(example.h)}),
+        **({} if example.t is None else {"t": text(example.t)}),
+        **pick(example, "quantity", "found", "expected"),
+    }
+
+
+def print_keeps(finding: "Finding") -> None:
+    """Print each structure of the finding, with what is lost on the way back."""
+    from verify.commands.shared.structure_output import print_structures
+
+    for kept in finding.keeps:
+        print_structures([kept])
+        if kept.way_back is not None:
+            print_line("  floats", str(kept.way_back.text))
 
 
 def print_measured(finding: "Finding") -> None:

@@ -120,6 +120,15 @@ hamiltonian_options = options(
         help="A parameter's exact value; repeatable.",
     ),
 )
+# The same, or equations without an H.
+system_options = options(
+    hamiltonian_options,
+    click.option(
+        "--field",
+        metavar="TEXT",
+        help="Equations without an H, such as 'u_dot = u*(v - 2); v_dot = v*(1 - u)'.",
+    ),
+)
 scheme_option = click.option(
     "--scheme",
     type=SCHEME,
@@ -157,10 +166,13 @@ time_limit_option = click.option(
 )
 
 
-def with_hamiltonian(command: Callable[..., Any], *, use_cache: bool = False) -> Callable[..., Any]:
+def with_hamiltonian(
+    command: Callable[..., Any], *, use_cache: bool = False, takes_field: bool = False
+) -> Callable[..., Any]:
     """Add the options of a Hamiltonian to a command, which gets it as the argument `hamiltonian`.
 
     `use_cache`: it may come from the cache, for a command with --no-cache that needs no sympy.
+    `takes_field`: it may be equations.
     """
 
     @wraps(command)
@@ -169,26 +181,28 @@ def with_hamiltonian(command: Callable[..., Any], *, use_cache: bool = False) ->
         system: str | None,
         hamiltonian: str | None,
         params: tuple[str, ...],
+        field: str | None = None,
         **options: Any,
     ) -> Any:
-        parsed = hamiltonian_of(system, hamiltonian, params, use_cache=use_cache)
+        parsed = hamiltonian_of(system, hamiltonian, params, field, use_cache=use_cache)
         return command(*args, hamiltonian=parsed, **options)
 
-    return hamiltonian_options(wrapper)
+    return (system_options if takes_field else hamiltonian_options)(wrapper)
 
 
 with_kept_hamiltonian = partial(with_hamiltonian, use_cache=True)
+with_kept_system = partial(with_hamiltonian, use_cache=True, takes_field=True)
 
 
-def values_of(params: tuple[str, ...]) -> dict[str, str]:
+def values_of(params: tuple[str, ...], option: str = "--param") -> dict[str, str]:
     """Return the values of NAME=VALUE by their names. Raises InputError."""
     values: dict[str, str] = {}
     for text in params:
         name, equals, value = text.partition("=")
         if not equals:
-            raise InputError("--param", text, "has no value; write NAME=VALUE, or leave it out")
+            raise InputError(option, text, "has no value; write NAME=VALUE, or leave it out")
         if name in values:
-            raise InputError("--param", text, f"{name} is given twice")
+            raise InputError(option, text, f"{name} is given twice")
         # Several parameters in one option, as a=1,b=2: the error shows how to write them.
         if "=" in value and re.search("[,;]", value):
             instead = " --param ".join(part.strip() for part in re.split("[,;]", text))
@@ -198,13 +212,27 @@ def values_of(params: tuple[str, ...]) -> dict[str, str]:
 
 
 def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, use_cache: bool = False
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    field: str | None = None,
+    *,
+    use_cache: bool = False,
 ) -> "Hamiltonian":
-    """Return the Hamiltonian that the options name; InputError unless they name one."""
+    """Return the Hamiltonian that the options name; InputError unless they name one.
+
+    `field`: equations, for a command that takes them.
+    """
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
-    if (system is None) == (hamiltonian is None):
+    if field is not None and system is None and hamiltonian is None:
+        from verify.hamiltonians.equations import EXAMPLE, are_equations, read_system
+
+        if not are_equations(field):
+            raise InputError("--field", field, f"has no equation; write {EXAMPLE}")
+        return read_system(field, values_of(params))
+    if (system is None) == (hamiltonian is None) or field is not None:
         raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
     values = values_of(params)
     if system is not None:

@@ -6,7 +6,7 @@ An answer sets the exit status too.
 import json
 import sys
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -19,6 +19,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.scenes.frozen import Frozen
+    from verify.scenes.measured_structures import MeasuredStructure
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
 FAILED = 1  # the exit status if a check failed
@@ -86,15 +87,23 @@ def print_line(name: str, text: str) -> None:
     click.echo(textwrap.fill(text, _LINE_WIDTH, initial_indent=beginning, subsequent_indent=indent))
 
 
-def run_json(result: "RunResult") -> dict[str, Any]:
+def run_json(result: "RunResult", measured: "Sequence[MeasuredStructure]") -> dict[str, Any]:
+    """Return the keys of a run, with `keeps` if it measures what a step keeps."""
     from verify.scenes.observables import REPORTED, names
 
     # Each usual observable has a key, null if it was not computed, so that programs can rely on it;
     # another observable has a key only if it was computed.
     by_name, planar = observables.by_name(), isinstance(result.q, str)
     keys = dict.fromkeys((*names(planar=planar), *REPORTED))
-    selected = (n for n in keys if by_name[n].usual or n in REPORTED or n in result.values)
-    values = {name: _value_json(result, name) for name in (*selected, "q", "p")}
+    usual = (
+        n
+        for n in keys
+        if (by_name[n].usual or by_name[n].aside or n in REPORTED)
+        and (by_name[n].of_any_field or not result.start)
+    )
+    selected = dict.fromkeys((*usual, *(n for n in keys if n in result.values)))
+    places = ("state",) if result.start else ("q", "p")
+    values = {name: _value_json(result, name) for name in (*selected, *places)}
     return {
         **{name: value for name, (value, _) in values.items()},
         **pick(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
@@ -102,11 +111,27 @@ def run_json(result: "RunResult") -> dict[str, Any]:
         # `exact` names the values that come from a proof, not from the run.
         **pick(result, "error_kind", "error_method", "exact", "status", "failed_step"),
         "seconds": f"{result.seconds:.6f}",
+        **({"keeps": [_measured_json(result, each) for each in measured]} if measured else {}),
+    }
+
+
+def _measured_json(result: "RunResult", measured: "MeasuredStructure") -> dict[str, Any]:
+    values = measured.select(result.values)
+    return {
+        **pick(measured, "structure", "label", "defect"),
+        **{name: x and x.value for name, x in values.items()},
+        "error_bound": {name: x.bound for name, x in values.items() if x},
+        "exact": measured.at_end in result.exact,
     }
 
 
 def _value_json(result: "RunResult", name: str) -> tuple[Any, Any]:
-    """Return a value and its bound; for q or p in n degrees of freedom a list of each."""
+    """Return a value and its bound; for q or p in n degrees of freedom a list of each, and for the
+    state of equations each by name."""
+    if name == "state":
+        state = {n: result.values[n] for n in result.start if n in result.values}
+        texts, bounds = ({n: getattr(x, k) for n, x in state.items()} for k in ("value", "bound"))
+        return (texts, bounds) if state else (None, None)
     if name in ("q", "p") and not isinstance(result.q, str):
         coordinates = [x for n, x in result.values.items() if n[0] == name and n[1:].isdigit()]
         return (
@@ -136,7 +161,8 @@ def print_once(notes: Iterable[str]) -> None:
         click.echo(note)
 
 
-def print_run(result: "RunResult") -> None:
+def print_run(result: "RunResult", measured: "Sequence[MeasuredStructure]" = ()) -> None:
+    """Print the values of a run, and below them what else it measures of what a step keeps."""
     if result.status != "finished":
         click.echo(explain_unfinished(result))
         return
@@ -144,12 +170,19 @@ def print_run(result: "RunResult") -> None:
         name: observable.short or observable.label
         for name, observable in observables.by_name().items()
     }
-    coordinates = {name: name for name in result.values if name[1:].isdigit()}
+    coordinates = {n: n for n in result.values if n[1:].isdigit() or n in result.start}
     for name, label in {**labels, "q": "q", "p": "p", **coordinates}.items():
         if name in result.values:
             value = result.values[name]
             text = str(value) if value.unknown else f"{value.value}  ± {value.bound}"
             click.echo(f"{label:10} {text}")
+    for structure in measured:
+        # The others are among the labels above.
+        if structure.at_end not in labels:
+            click.echo(structure.label)
+            for name, x in structure.select(result.values).items():
+                if x:
+                    click.echo(f"  {name.replace('_', ' '):10} {x}")
     click.echo(
         f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
         f"{result.error_kind} ({result.error_method})"
@@ -178,6 +211,10 @@ def print_report(report: "Report", *pages: Path) -> None:
     if report.statements:
         click.echo(describe_counts(report.statements, report.claims))
     for scene in report.scenes:
+        for kept in scene.keeps:
+            for structure in kept.keeps:
+                line = f"{scene.name}, {kept.scheme}: {structure.label}: {structure.reason}"
+                click.echo(f"{structure.verdict:9}  {line}")
         for result in scene.criteria:
             click.echo(
                 f"{result.verdict:9}  {scene.name}, {result.scheme}, criterion {result.number}"

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from verify.proof.proof_for_every_h import ProofForEveryH
     from verify.proof.proof_for_one_h import Proof
     from verify.proof.special_values import SpecialValue
+    from verify.proof.structures.structures_proof import StructuresProof
 
 _MAX_LEADING_CHARACTERS = 352  # instead of a longer leading coefficient of S its formula is printed
 
@@ -109,10 +110,13 @@ def point_text(point: "Mapping[str, Fraction]") -> str:
 # -- as lines ------------------------------------------------------------------------------------
 
 
-def print_head(hamiltonian: "Hamiltonian", scheme: str, result: "Proof | Finding") -> None:
+def print_head(
+    hamiltonian: "Hamiltonian", scheme: str, result: "Proof | Finding | StructuresProof"
+) -> None:
     """Print the verdict, H with its parameters, and the scheme."""
     click.echo(f"{result.verdict}: {result.reason}")
-    click.echo(f"  H        {hamiltonian.formula}")
+    name = "field" if hamiltonian.energy is None else "H"
+    click.echo(f"  {name:8} {hamiltonian.formula}")
     for name, value in hamiltonian.texts["parameters"].items():
         click.echo(f"  {name:8} {value}")
     click.echo(f"  scheme   {scheme}")

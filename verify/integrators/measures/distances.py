@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.flows.extrapolation import NoFlowError, NumericalFlow
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.error_powers import (
     CLEAR_FACTOR,
@@ -24,7 +24,7 @@ from verify.integrators.measures.error_powers import (
     find_stretches,
     settle_power,
 )
-from verify.integrators.measures.probes import DualProbe, Probe
+from verify.integrators.measures.probes import COEFFICIENT_ROUNDING, DualProbe, Probe
 from verify.integrators.places.trial_places import SIDE, USER, TrialPlace, select_spread
 from verify.integrators.places.wrap_periods import Periods, find_wrapped_periods, unwrap
 from verify.integrators.user_code.step import StepError, describe_error, limit_time
@@ -47,8 +47,6 @@ _COARSE = (
 LADDERS = {"duals": tuple(map(Fraction, _FINE)), "floats": tuple(map(Fraction, _COARSE))}
 _FLOW_DIGITS_FOR_DUALS = 50  # decimal digits of the exact flow
 _MORE_FLOW_DIGITS = 4  # for floats: beyond the digits of the step's own numbers
-# A coefficient that is rounded to a double changes a step by this part of the distance moved.
-_COEFFICIENT_ROUNDING = 2.0**-52
 _MAX_PLACES = {1: 7}  # for each scale of H, by the degrees of freedom
 _MAX_PLACES_OTHERWISE = 4
 _MAX_QUIET_STEPS = 3  # after this number of step sizes in the noise no smaller ones are tried
@@ -110,7 +108,7 @@ def distances_of(
     flow = flow_of(hamiltonian, probe)
     selected = _select_places(places, _MAX_PLACES.get(step.degrees, _MAX_PLACES_OTHERWISE))
     divisors = tuple(ladder) or LADDERS[probe.how]
-    step.periods = _find_periods(step, probe, flow, hamiltonian, selected, divisors[-1])
+    step.periods = find_periods(step, probe, flow, hamiltonian, selected, divisors[-1])
     orders, problems = list[PlaceOrder](), list[str]()
     for place in selected:
         try:
@@ -136,7 +134,7 @@ def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> NumericalFlow:
         if probe.how == "duals"
         else probe.step.numbers.digits + _MORE_FLOW_DIGITS
     )
-    return NumericalFlow(canonical_field(hamiltonian)[0], digits)
+    return NumericalFlow(field_of(hamiltonian)[0], digits)
 
 
 def _select_places(places: Sequence[TrialPlace], count: int) -> list[TrialPlace]:
@@ -149,12 +147,11 @@ def _select_places(places: Sequence[TrialPlace], count: int) -> list[TrialPlace]
     return selected
 
 
-def _find_periods(
+def find_periods(
     step: UserMap, probe: Probe, flow: NumericalFlow, hamiltonian: Hamiltonian,
     places: Sequence[TrialPlace], divisor: Fraction,
 ) -> Periods:  # fmt: skip
-    """Find the periods by which the step reduces its coordinates, with the smallest step size: the
-    step hardly moves, so that a jump is a reduction."""
+    """Find the periods by which a step of the smallest size, which hardly moves, reduces z."""
     ends = []
     for place in places:
         try:
@@ -163,7 +160,8 @@ def _find_periods(
         except Exception:  # noqa: S112 - the user's code may raise anything
             continue
     smallest = min((place.step for place in places), default=Fraction(1)) / divisor
-    return find_wrapped_periods(ends, hamiltonian, smallest) if ends else ()
+    of_energy = hamiltonian.energy is not None  # periods of equations are not looked for
+    return find_wrapped_periods(ends, hamiltonian, smallest) if ends and of_energy else ()
 
 
 def end_of_flow(
@@ -244,7 +242,7 @@ def _errors_and_noise(
         noise = [
             # With 200 bits, only the coefficients are rounded, since users write them as doubles:
             # each of them changes the end by such a part of the distance moved.
-            n + _COEFFICIENT_ROUNDING * (moved + unit * distance / 8)
+            n + COEFFICIENT_ROUNDING * (moved + unit * distance / 8)
             for n, moved, unit in zip(noise, distances_moved, units, strict=True)
         ]
     else:

@@ -10,6 +10,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.distances import Distances
 from verify.integrators.measures.reading import DefectReading
@@ -32,6 +33,7 @@ _MIN_WEIGHT = 1e-3
 _NULL_SHARE, _MIN_SHARE = 1e-9, 1e-5
 _MAX_MASS_RATIO = 10**6
 _SIGNIFICANT_DIGITS = 3  # of a number in a note
+_MOST_NAMED = 8  # coordinates whose ranges are told
 
 
 def describe_numbers(step: UserMap, doubles: str = "doubles") -> str:
@@ -41,20 +43,20 @@ def describe_numbers(step: UserMap, doubles: str = "doubles") -> str:
 
 def describe_places(step: UserMap, places: Sequence[TrialPlace]) -> Prose:
     """Describe the places and step sizes that were looked at."""
-    n = step.degrees
-    ranges = []
-    for name, part in (("p", slice(0, n)), ("q", slice(n, 2 * n))):
+    n, ranges = step.degrees, []
+    parts = {"p": slice(0, n), "q": slice(n, 2 * n)}
+    if step.names != coordinates_in(max(n, 1)):
+        parts = {name: slice(k, k + 1) for k, name in enumerate(step.names[:_MOST_NAMED])}
+    for name, part in parts.items():
         largest = max(max(abs(x) for x in place.z[part]) for place in places)
         ranges.append(f"|{name}| ≤ {_plain(largest)}")
     if step.time_dependent:
         times = [place.t for place in places]
         ranges.append(f"{_plain(min(times))} ≤ t ≤ {_plain(max(times))}")
     count = f"{len(places)} place" + ("s" if len(places) != 1 else "")
-    parts = [count, *ranges]
     steps = [place.step for place in places if place.step]
-    if steps:
-        parts.append(f"h ≤ {_plain(max(steps))}")
-    return prose(join_prose(", ", parts))
+    sizes = [f"h ≤ {_plain(max(steps))}"] if steps else []
+    return prose(join_prose(", ", [count, *ranges, *sizes]))
 
 
 def _plain(x: Fraction) -> str:

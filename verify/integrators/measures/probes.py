@@ -2,43 +2,43 @@
 
 Dual numbers of 200 bits carry J along, with a rounding error that does not count. But users run
 doubles. The noise of J is therefore the change of J if every operation is rounded to 53 bits,
-however many digits the measurement has.
-
-Floats, or numbers of another type, yield J by extrapolated central differences. The widths of the
-differences begin at that over which the motion changes, and are halved. Of the values of Richardson
-extrapolation (Ridders, Adv. Eng. Softw. 4 (1982)) that with the least error is taken, as estimated
-from the neighbours in the extrapolation table and the rounding of the numbers. The differences
-themselves are computed without rounding.
+however many digits the measurement has. Floats are in `verify.integrators.measures.float_probe`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from operator import mul
+from typing import TypeVar
 
 import gmpy2
 
 from verify.arithmetic.exact import fraction
-from verify.integrators.measures.reading import READING_BITS, DefectReading, Matrix, reading_of
+from verify.integrators.measures.float_probe import FloatProbe
+from verify.integrators.measures.reading import DefectReading, Matrix, reading_of
 from verify.integrators.places.trial_places import TrialPlace
-from verify.integrators.places.wrap_periods import unwrap
 from verify.integrators.tracing.dual import DUAL_BITS, Comparison, DualNumber, Duals
 from verify.integrators.tracing.function_copy import copy_function
 from verify.integrators.user_code.step import StepError, Theirs, lift_numbers, limit_time
 from verify.integrators.user_code.user_map import DOUBLE, UserMap
 
+T = TypeVar("T")
 _UNIT_ROUNDOFF = 2.0**-53  # of a double
 # The noise of an entry of J: this number of roundings, and this multiple of the change at 53 bits.
 _MIN_ROUNDINGS, _ROUNDING_FACTOR = 8, 3
 _MAX_SECONDS_OF_COARSE_CALL = 2.0  # with 53 bits a loop of the code may not end
+# A coefficient that is rounded to a double changes a step by this part of the distance moved.
+COEFFICIENT_ROUNDING = 2.0**-52
 DUAL_NOISE = 2.0 ** -(DUAL_BITS - 30)  # the noise of a value of 200 bits, relative to its size
-_MIN_HALVINGS = 8  # of the width of a difference
-_SCATTER_STATES = 8  # states a tiny distance apart, from which the scatter of z' is measured
-_SCATTER_FACTOR = 2.0  # the noise is this multiple of the measured scatter
 
 
 class DualProbe:
-    """The map at dual numbers: of 200 bits, and of 53 bits for the noise (`coarse`)."""
+    """The map at dual numbers: of 200 bits, and of 53 bits for the noise (`coarse`).
+
+    `epsilon`: that of the numbers in which users run the code, which are doubles.
+    """
 
     how = "duals"
+    epsilon = 2 * _UNIT_ROUNDOFF
 
     def __init__(self, step: UserMap) -> None:
         self.step, self.kind, self.coarse = step, Duals(), Duals(53)
@@ -59,11 +59,39 @@ class DualProbe:
 
     def end(self, place: TrialPlace, h: Fraction) -> list[Fraction]:
         """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
-        with self.kind.running():
+        return self._end(self.kind, place, h)
+
+    def follow(
+        self, place: TrialPlace, h: Fraction, noise: Sequence[float] | None = None
+    ) -> tuple[list[Fraction], list[float]]:
+        """Return z', and its noise: that of doubles, as of J, and what the noise of z makes of it.
+
+        `noise`: that of z, None for none. Raises StepError, and what the user's code raises.
+        """
+        rounded_place = place.with_rounded_state(DOUBLE.round_number)
+        shifts = [float(y - x) for x, y in zip(place.z, rounded_place.z, strict=True)]
+        if noise is None and not any(shifts):
+            end, rows = self.end(place, h), [[0.0] * len(place.z)] * len(place.z)
+        else:
+            with self.kind.running():
+                duals = self._call(self.kind, self.kind.state(*place.z), place, h)
+                end = [fraction(x.value) for x in duals]
+            rows = [[float(a) for a in x.slopes] or [0.0] * len(place.z) for x in duals]
+        coarse = self._unless_long(lambda: self._end(self.coarse, rounded_place, h)) or end
+        errors = []
+        for x, y, c, row in zip(place.z, end, coarse, rows, strict=True):
+            # Where the state was rounded for the coarse call, its end moves as J says.
+            change = 0.0 if coarse is end else float(c - y) - sum(map(mul, row, shifts))
+            error = _MIN_ROUNDINGS * _UNIT_ROUNDOFF * float(abs(y) + abs(y - x))
+            carried = sum(abs(a) * e for a, e in zip(row, noise or (), strict=False))
+            errors.append(error + _ROUNDING_FACTOR * abs(change) + carried)
+        return end, errors
+
+    def _end(self, kind: Duals, place: TrialPlace, h: Fraction) -> list[Fraction]:
+        with kind.running():
             one = (gmpy2.mpfr(1),)
-            state = [DualNumber(self.kind, self.kind.rational(x).value, one) for x in place.z]
-            ended = self._call(self.kind, state, place, h)
-            return [fraction(x.value) for x in ended]
+            state = [DualNumber(kind, kind.rational(x).value, one) for x in place.z]
+            return [fraction(x.value) for x in self._call(kind, state, place, h)]
 
     def round_number(self, x: Fraction) -> Fraction:
         """Return x unchanged: dual numbers have enough digits."""
@@ -76,12 +104,20 @@ class DualProbe:
 
     def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
         """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
+        return reading_of(place, h, *self.jacobian(place, h), self.epsilon)
+
+    def jacobian(self, place: TrialPlace, h: Fraction) -> tuple[Matrix, list[list[float]]]:
+        """Return J, and the noise of its entries. Raises StepError, and what the code raises."""
         fine = self._jacobian(self.kind, place, h)
         comparisons = self.kind.comparisons
         errors = [[_MIN_ROUNDINGS * _UNIT_ROUNDOFF * abs(float(x)) for x in row] for row in fine]
         self._add_rounding(errors, fine, place, h)
         self.kind.comparisons = comparisons
-        return reading_of(place, h, fine, errors, 2 * _UNIT_ROUNDOFF)
+        return fine, errors
+
+    def sharp_jacobian(self, place: TrialPlace, h: Fraction) -> Matrix:
+        """Return J alone, as dual numbers have it."""
+        return self._jacobian(self.kind, place, h)
 
     def _add_rounding(
         self, errors: list[list[float]], fine: Matrix, place: TrialPlace, h: Fraction
@@ -91,10 +127,8 @@ class DualProbe:
         The place is rounded to doubles for this.
         """
         rounded_place = place.with_rounded_state(DOUBLE.round_number)
-        try:
-            with limit_time(_MAX_SECONDS_OF_COARSE_CALL, "rounded to doubles it does not end"):
-                coarse = self._jacobian(self.coarse, rounded_place, h)
-        except Exception:  # the user's code may raise anything: the errors stay at their minimum
+        coarse = self._unless_long(lambda: self._jacobian(self.coarse, rounded_place, h))
+        if coarse is None:  # the errors stay at their minimum
             return
         # Both precisions must be compared at the same state: where rounding moves it, the fine
         # Jacobian is computed again.
@@ -106,6 +140,14 @@ class DualProbe:
             largest = _ROUNDING_FACTOR * max(gaps)
             for j, unit in enumerate(units):
                 row[j] += largest / unit
+
+    def _unless_long(self, call: Callable[[], T]) -> T | None:
+        """Return the result of a call with 53 bits; None if it fails, or takes too long."""
+        try:
+            with limit_time(_MAX_SECONDS_OF_COARSE_CALL, "rounded to doubles it does not end"):
+                return call()
+        except Exception:  # the user's code may raise anything
+            return None
 
     def _jacobian(self, kind: Duals, place: TrialPlace, h: Fraction) -> Matrix:
         with kind.running():
@@ -125,163 +167,6 @@ class DualProbe:
         if not all(gmpy2.is_finite(x.value) for x in end):
             raise StepError("it returns what is not finite")
         return end
-
-
-# -- floats ---------------------------------------------------------------------------------------
-
-
-class FloatProbe:
-    """The map at numbers as its users call it."""
-
-    how = "floats"
-    comparisons: Sequence[Comparison] = ()
-
-    def __init__(self, step: UserMap) -> None:
-        self.step = step
-        self._scatter: dict[tuple[TrialPlace, Fraction], list[float]] = {}
-
-    def round_number(self, x: Fraction) -> Fraction:
-        """Round x to the type of number that the step is called with."""
-        return self.step.numbers.round_number(x)
-
-    def end(self, place: TrialPlace, h: Fraction) -> list[Fraction]:
-        """Return z' as exact rationals. Raises StepError, and what the user's code raises."""
-        (ended,) = self._ends([place.with_rounded_state(self.round_number).z], place, h)
-        return ended
-
-    def noise(self, place: TrialPlace, state: Sequence[Fraction]) -> list[float]:
-        """Return the least noise of z': one unit of the last place of each component."""
-        epsilon = self.step.numbers.epsilon
-        return [epsilon * float(max(abs(x), abs(y)))
-                for x, y in zip(state, place.z, strict=True)]  # fmt: skip
-
-    def scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
-        """Return the measured noise of z': the scatter of each component about a smooth curve."""
-        key = place, h
-        if key not in self._scatter:
-            self._scatter[key] = self._measure_scatter(place, h)
-        return self._scatter[key]
-
-    def _measure_scatter(self, place: TrialPlace, h: Fraction) -> list[float]:
-        z, epsilon = place.with_rounded_state(self.round_number).z, self.step.numbers.epsilon
-        # Over so small a distance the curvature of a smooth map is below the rounding.
-        tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
-        states = [
-            [self.round_number(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
-            for k in range(_SCATTER_STATES)
-        ]
-        ends = self._ends(states, place, h)
-        noises = []
-        for i in range(len(z)):
-            values = [end[i] for end in ends]
-            # Third differences of a smooth curve vanish at such a distance.
-            thirds = [
-                float(abs(d - 3 * c + 3 * b - a))
-                for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
-            ]
-            smallest_noise = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
-            jump = self.step.coarseness * max(float(place.units[i]), abs(float(ends[0][i])))
-            noises.append(smallest_noise + _SCATTER_FACTOR * max(thirds) / 8 + jump)
-        return noises
-
-    def reading(self, place: TrialPlace, h: Fraction) -> DefectReading:
-        """Measure S and det J − 1. Raises StepError, and what the user's code raises."""
-        z, scatter = place.with_rounded_state(self.round_number).z, self.scatter(place, h)
-        columns, blurs = [], []
-        with gmpy2.context(precision=READING_BITS):
-            for j in range(len(z)):
-                column, blur = self._column(place, h, z, j, scatter)
-                columns.append(column)
-                blurs.append(blur)
-        rows = [list(row) for row in zip(*columns, strict=True)]
-        errors = [list(row) for row in zip(*blurs, strict=True)]
-        least_error = 4 * self.step.numbers.epsilon
-        for row, error in zip(rows, errors, strict=True):
-            for k, x in enumerate(row):
-                error[k] += least_error * abs(float(x))
-        return reading_of(place, h, rows, errors, self.step.numbers.epsilon)
-
-    def _column(
-        self, place: TrialPlace, h: Fraction, z: Sequence[Fraction], j: int, scatter: list[float]
-    ) -> tuple[list["gmpy2.mpfr"], list[float]]:
-        """Return ∂z'/∂z_j, and the errors of its entries."""
-        levels = max(_MIN_HALVINGS, self.step.numbers.bits // 8)
-        widths = [place.reach[j] / 2**k for k in range(1, levels + 1)]
-        tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
-        # Two tiny widths stand beside those that are extrapolated: they stay on one side of a jump,
-        # at the price of more noise.
-        widths += [2 * tiny, tiny]
-        states, steps = [], []
-        for width in widths:
-            pair = [list(z), list(z)]
-            for state, sign in zip(pair, (1, -1), strict=True):
-                state[j] = self.round_number(z[j] + sign * width)
-            states += pair
-            steps.append(gmpy2.mpq(pair[0][j] - pair[1][j]))
-        ends = self._ends(states, place, h)
-        column, blur = [], []
-        for i in range(len(z)):
-            slopes = [
-                gmpy2.mpfr((gmpy2.mpq(ahead[i]) - gmpy2.mpq(behind[i])) / step)
-                for ahead, behind, step in zip(ends[::2], ends[1::2], steps, strict=True)
-            ]
-            noises = [2 * scatter[i] / float(step) for step in steps]
-            value, error = _select_derivative(slopes, noises, self.step.coarseness > 0)
-            column.append(value)
-            blur.append(error)
-        return column, blur
-
-    def _ends(
-        self, states: Sequence[Sequence[Fraction]], place: TrialPlace, h: Fraction
-    ) -> list[list[Fraction]]:
-        ends = self.step.exactly(states, self.round_number(h), self.round_number(place.t))
-        if self.step.periods:  # all ends are moved next to the first one
-            first = ends[0]
-            ends = [list(map(unwrap, end, first, self.step.periods)) for end in ends]
-        return ends
-
-
-def _select_derivative(
-    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float], coarse: bool
-) -> tuple["gmpy2.mpfr", float]:
-    """Return the extrapolated value unless the last two slopes, of tiny widths, contradict it.
-
-    They contradict it if the map jumps within the wider differences, as where it wraps or a loop
-    does one iteration more: the tiny ones lie on one side of the jump. With coarse numbers, neither
-    is certain.
-    """
-    *wide, twice, tiny = slopes
-    value, error = _extrapolate(wide, noises)
-    noise = 2 * noises[-1]
-    apart = abs(float(tiny - value))
-    bent = abs(float(wide[0] - value)) * (noises[0] / noises[-1]) ** 2  # over the tiny width
-    if not coarse and apart <= error + 4 * (noise + bent):
-        return value, error
-    agree = abs(float(tiny - twice)) <= 4 * noise
-    return (tiny, noise + bent) if agree and not coarse else (value, error + apart)
-
-
-def _extrapolate(
-    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float]
-) -> tuple["gmpy2.mpfr", float]:
-    """Return the value of the extrapolation table whose error is least, and that error."""
-    best, least_error = slopes[-1], float("inf")
-    previous_row: list[gmpy2.mpfr] = []
-    for k, slope in enumerate(slopes):
-        row = [slope]
-        for m, coarser in enumerate(previous_row, start=1):
-            # Central differences have even powers of the width alone: halving it divides them by 4,
-            # 16, ….
-            row.append(row[-1] + (row[-1] - coarser) / (4**m - 1))
-            # Both neighbours: one alone may agree by chance.
-            error = max(abs(float(row[m] - row[m - 1])), abs(float(row[m] - coarser)))
-            error = error + 2 * noises[k]
-            if error < least_error:
-                best, least_error = row[m], error
-        previous_row = row
-    if least_error != least_error or least_error == float("inf"):
-        raise StepError("its differences are not finite")
-    return best, least_error
 
 
 Probe = DualProbe | FloatProbe

@@ -102,15 +102,15 @@ def reading_of(
             entries[a, b] = float(total)
             scales[a, b] = units[a] * units[b] / (action[a % half] if b == a + half else mean)
             noise[a, b] = blur + _ROUNDINGS_OF_ENTRY * epsilon / scales[a, b]
-        volume, blur = _volume(jacobian, errors, place.units)
+        volume, blur = volume_change(jacobian, errors, place.units)
         blur += _ROUNDINGS_OF_ENTRY * epsilon
     rows = tuple(tuple(map(float, row)) for row in jacobian)
-    return DefectReading(place, h, entries, noise, scales, volume, blur, rows)
+    return DefectReading(place, h, entries, noise, scales, float(volume), blur, rows)
 
 
-def _volume(
+def volume_change(
     jacobian: Matrix, errors: list[list[float]], units: Sequence[Fraction]
-) -> tuple[float, float]:
+) -> "tuple[Real, float]":
     """Return det J − 1, and its noise to first order by Jacobi's formula, with the inverse of J."""
     scale = [gmpy2.mpfr(float(x)) for x in units]
     rows = [[x * scale[j] / scale[i] for j, x in enumerate(row)] for i, row in enumerate(jacobian)]
@@ -120,11 +120,11 @@ def _volume(
     # beside them the inverse.
     determinant = eliminate(wide, abs) * prod((row[k] for k, row in enumerate(wide)), start=one)
     if not determinant or not gmpy2.is_finite(determinant):  # a pivot is 0
-        return -1.0, max(map(max, errors), default=0.0)
+        return gmpy2.mpfr(-1), max(map(max, errors), default=0.0)
     # ∂ det J/∂J_ij = det J (J⁻¹)_ji, in units of the place.
     blur = sum(
         abs(float(row[size + i] / row[j])) * errors[i][j] * float(scale[j] / scale[i])
         for i in range(size)
         for j, row in enumerate(wide)
     )
-    return float(determinant - 1), abs(float(determinant)) * blur
+    return determinant - 1, abs(float(determinant)) * blur

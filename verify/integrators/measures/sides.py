@@ -157,7 +157,7 @@ def _solve_for_other_side(
             for x in new_state
         )
         place = replace(current.place, z=z, source=SIDE)
-        if unless_it_fails(partial(probe.reading, place, current.h)) is None:
+        if unless_it_fails(partial(probe.jacobian, place, current.h)) is None:
             return None
         at_line = [x for x in probe.comparisons if x.line == line]
         if not at_line:

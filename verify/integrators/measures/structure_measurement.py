@@ -22,9 +22,9 @@ from verify.integrators.user_code.user_map import UserMap
 REFUTING_RATIO = 4.0  # an entry of S is not 0 if it exceeds its noise by more than this factor
 # The noise of entries of S, in units in which those of Ω are 1. With more than the first, nothing
 # is seen at a place; with more than the second, a map is not said to preserve anything.
-_MAX_BLUR = 1e-3
-_SHARP_BLUR = 1e-7
-_READING_DIVISORS = 1, 8  # S is read with a place's largest step size divided by each
+MAX_BLUR = 1e-3
+SHARP_BLUR = 1e-7
+READING_DIVISORS = 1, 8  # S is read with a place's largest step size divided by each
 _MAX_LADDER_PLACES = 3  # places at which S is followed as h falls
 # S jumps if a smaller step has a defect larger by this factor: with a power of h it would fall.
 _JUMP_FACTOR = 1.5
@@ -86,7 +86,7 @@ class StructureMeasurement:
         if ratio > REFUTING_RATIO:
             return False
         # A ratio that is no number fails both comparisons.
-        return True if ratio <= REFUTING_RATIO and self.noise <= _SHARP_BLUR else None
+        return True if ratio <= REFUTING_RATIO and self.noise <= SHARP_BLUR else None
 
     @property
     def power(self) -> int | None:
@@ -123,14 +123,14 @@ def structure_of(step: UserMap, probe: Probe, places: Sequence[TrialPlace]) -> S
     sides, readings, failures = Sides(step.names), list[DefectReading](), list[str]()
     _read_places(probe, places, readings, sides, failures)
     if isinstance(probe, DualProbe) and readings:
-        farthest = _farthest(step, places)
+        farthest = farthest_of(step, places)
         _read_places(probe, other_sides(probe, sides, farthest), readings, sides, failures)
     if not readings:
         raise StepError(failures[0] if failures else "it fails at all places")
     # If at least half of the readings are sharp, the others are left out; otherwise all count in
     # which anything can be seen. A defect that exceeds its noise always counts.
-    sharp = sum(x.blur <= _SHARP_BLUR for x in readings)
-    blur_limit = _SHARP_BLUR if 2 * sharp >= len(readings) else _MAX_BLUR
+    sharp = sum(x.blur <= SHARP_BLUR for x in readings)
+    blur_limit = SHARP_BLUR if 2 * sharp >= len(readings) else MAX_BLUR
     blind = tuple(x for x in readings if x.blur > blur_limit and x.beyond <= REFUTING_RATIO)
     seen_readings = tuple(x for x in readings if x not in blind)
     if not seen_readings:
@@ -140,7 +140,7 @@ def structure_of(step: UserMap, probe: Probe, places: Sequence[TrialPlace]) -> S
             "at the places"
         )
         raise StepError(problem)
-    ladder = _ladder_places(places) if step.takes_step_size else []
+    ladder = ladder_places(places) if step.takes_step_size else []
     rows, counts = _follow_defect(step, probe, ladder)
     return StructureMeasurement(
         probe.how, seen_readings, blind, tuple(ladder), rows, counts, tuple(failures), sides
@@ -156,7 +156,7 @@ def _read_places(
 ) -> None:
     """Append the readings at the places, their comparisons, and the messages of failed calls."""
     for place in places:
-        for divisor in _READING_DIVISORS if place.step else _READING_DIVISORS[:1]:
+        for divisor in READING_DIVISORS if place.step else READING_DIVISORS[:1]:
             if probe.step.seconds_left <= 0:
                 return
             h = place.step / divisor
@@ -168,7 +168,7 @@ def _read_places(
                 failures.append(f"{describe_error(error)}{call}")
 
 
-def _farthest(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
+def farthest_of(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
     """Return the largest |coordinate| up to which other sides are looked for: 100 units, or as far
     as 1,000 steps lead."""
     farthest = {
@@ -189,7 +189,7 @@ def _farthest(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]:
     return farthest
 
 
-def _ladder_places(places: Sequence[TrialPlace]) -> list[TrialPlace]:
+def ladder_places(places: Sequence[TrialPlace]) -> list[TrialPlace]:
     """Select a few places, the user's among them."""
     of_user = [x for x in places if x.source == USER]
     return [*of_user, *select_spread([x for x in places if x.source != USER], _MAX_LADDER_PLACES)]

@@ -15,6 +15,7 @@ from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
 from verify.integrators.measures.probes import DualProbe
+from verify.integrators.places.equation_units import units_of_system
 from verify.integrators.places.trial_places import (
     PATTERN,
     USER,
@@ -23,7 +24,7 @@ from verify.integrators.places.trial_places import (
     select_spread,
     states,
 )
-from verify.integrators.places.units import FloatField, Vector, units_of
+from verify.integrators.places.units import FloatField, Vector
 from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 
@@ -71,10 +72,10 @@ def check_request(names: Sequence[str], request: Request) -> None:
 def places_of_field(
     field_: FloatField, time_dependent: bool, request: Request = NO_REQUEST
 ) -> list[TrialPlace]:
-    """Choose the places for a step of that H, most of them in its first scale, a few in each other
-    one; none if Hamilton's equations are defined at none of them."""
+    """Choose the places for a step of that system, most of them in its first scale, a few in each
+    other one; none if its equations are defined at none of them."""
     q_max = max((float(abs(x)) for x in (request.z or ())[field_.degrees :]), default=0.0)
-    scales, unit_of_time = units_of(field_, q_max or 1.0)
+    scales, unit_of_time = units_of_system(field_, q_max or 1.0)
     unit_of_force = unit_of_time if time_dependent else None
 
     def place(
@@ -155,9 +156,8 @@ def _power_of_two(x: float) -> Fraction:
 def _find_reaches(field: FloatField, z: Vector, t: float, units: Vector) -> list[float]:
     """Return the distance that each coordinate may be moved before the field bends, at most its
     unit. Raises NoFlowError if the field is undefined at z."""
-    field_values = field(z, t)
-    if field_values is None:
-        raise NoFlowError("H is not defined there")
+    if (field_values := field(z, t)) is None:
+        raise NoFlowError("the field is not defined there")
     steep = field.jacobian(z, t, units)
     return [_find_reach(field, z, t, j, field_values, units[j], steep[j]) for j in range(len(z))]
 
@@ -256,8 +256,8 @@ def places_of_map(
         places.insert(0, replace(users_place, reach=tuple(
             _power_of_two(float(max(abs(x) / 4, u))) for x, u in zip(request.z, units, strict=True)
         )))  # fmt: skip
-    degrees = len(names) // 2
-    return places[: _MOST_PLACES.get(degrees, _MOST_PLACES_OTHERWISE) + (request.z is not None)]
+    count = _MOST_PLACES.get(len(names) // 2, _MOST_PLACES_OTHERWISE)
+    return places[: count + (request.z is not None)]
 
 
 def find_map_unit(step: UserMap) -> Fraction:
@@ -285,8 +285,8 @@ def _jacobian_at(
 ) -> list[list[float]] | None:
     units = (unit,) * len(names)
     place = TrialPlace(states(units)[0], Fraction(0), units, units)
-    reading = unless_it_fails(partial(probe.reading, place, Fraction(0)))
-    return None if reading is None else [list(row) for row in reading.jacobian]
+    measured = unless_it_fails(partial(probe.jacobian, place, Fraction(0)))
+    return None if measured is None else [[float(x) for x in row] for row in measured[0]]
 
 
 def _has_changed(one_jacobian: list[list[float]], other_jacobian: list[list[float]]) -> bool:

@@ -14,11 +14,11 @@ from typing import Any
 import gmpy2
 
 from verify.flows.extrapolation import NoFlowError, NumericalFlow
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.trial_places import round_to_simple
 
-_FIELD_DIGITS, _TIME = 20, 0.25
+_FIELD_DIGITS, TIME = 20, 0.25
 # The binary logarithms of the lengths that are tried: far from 1, as with atoms in SI units, every
 # fourth alone.
 _OCTAVES = *range(-140, -44, 4), *range(-44, 45), *range(48, 141, 4)
@@ -34,15 +34,15 @@ Vector = Sequence[float]
 
 
 class FloatField:
-    """f(z, t), the right-hand side of Hamilton's equations, as floats; None where it is undefined.
+    """f(z, t), the right-hand side of a system's equations, as floats; None where it is undefined.
 
-    The parameters of H must have values.
+    The parameters of the system must have values.
     """
 
     def __init__(self, hamiltonian: Hamiltonian) -> None:
         self.degrees, self.names = hamiltonian.degrees, hamiltonian.coordinates
-        self.timed = hamiltonian.time_dependent
-        self._flow = NumericalFlow(canonical_field(hamiltonian)[0], _FIELD_DIGITS)
+        self.timed, self.canonical = hamiltonian.time_dependent, hamiltonian.energy is not None
+        self._flow = NumericalFlow(field_of(hamiltonian)[0], _FIELD_DIGITS)
 
     def _slopes(self, z: Vector, t: float) -> list[Any] | None:
         try:
@@ -51,7 +51,7 @@ class FloatField:
         except (NoFlowError, ValueError, OverflowError):
             return None
 
-    def __call__(self, z: Vector, t: float = _TIME) -> list[float] | None:
+    def __call__(self, z: Vector, t: float = TIME) -> list[float] | None:
         slopes = self._slopes(z, t)
         if slopes is None or not all(map(math.isfinite, map(float, slopes))):
             return None
@@ -114,7 +114,7 @@ def units_of(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]
     lengths = [usual] * n
     scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
     return [[round_to_simple(x) for x in scale] for scale in scales], round_to_simple(
-        _find_duration(field, scales[0])
+        find_duration(field, scales[0])
     )
 
 
@@ -129,12 +129,12 @@ def _find_scales(field: FloatField, first: int, usual: float = 1.0) -> list[list
     is_defined = field(origin) is not None  # then the constant part of the force is subtracted
 
     def size(s: float) -> float | None:
-        moved = _pad_with_zeros(first, [s * x for x in _direction(n)])
+        moved = _pad_with_zeros(first, [s * x for x in direction(n)])
         if is_defined:
-            return field.octave(moved, _TIME, origin, _TIME)
-        return field.octave(moved, _TIME, half=0 if first else 1)
+            return field.octave(moved, TIME, origin, TIME)
+        return field.octave(moved, TIME, half=0 if first else 1)
 
-    turns = [*_find_turns(size), *_find_turns(lambda s: size(-s))]
+    turns = [*find_turns(size), *find_turns(lambda s: size(-s))]
     scales = turns[:1]
     for x in turns[1:]:
         if all(not 1 / _SCALE_RATIO < x / y < _SCALE_RATIO for y in scales):
@@ -150,11 +150,11 @@ def _sizes_near_scale(field: FloatField, first: int, scale: float) -> list[float
     """Return the size of each coordinate near that scale: the scale, or one that differs by more
     than `_SCALE_RATIO`."""
     n = field.degrees
-    base = _pad_with_zeros(first, [scale * x for x in _direction(n)])
+    base = _pad_with_zeros(first, [scale * x for x in direction(n)])
     sizes = [scale] * n
     for k in range(n):
         turns_by_state = [
-            _find_turns(_response(field, [x * y for x in base], first + k))[:1]
+            find_turns(response(field, [x * y for x in base], first + k))[:1]
             for y in _STATE_FACTORS
         ]
         local_sizes = [x for turns in turns_by_state for x in turns]
@@ -163,7 +163,7 @@ def _sizes_near_scale(field: FloatField, first: int, scale: float) -> list[float
     return sizes
 
 
-def _direction(n: int) -> list[float]:
+def direction(n: int) -> list[float]:
     return [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
 
 
@@ -178,18 +178,18 @@ def _slopes_of_other_half(slopes: Sequence[float], first: int) -> Sequence[float
     return slopes[: len(slopes) // 2] if first else slopes[len(slopes) // 2 :]
 
 
-def _response(field: FloatField, base: Vector, j: int) -> Callable[[float], float | None]:
+def response(field: FloatField, base: Vector, j: int) -> Callable[[float], float | None]:
     """Return a function that measures how far the forces change as one coordinate moves."""
 
     def size(s: float) -> float | None:
         moved = list(base)
         moved[j] += s
-        return field.octave(moved, _TIME, base, _TIME)
+        return field.octave(moved, TIME, base, TIME)
 
     return size
 
 
-def _find_turns(size: Callable[[float], float | None]) -> list[float]:
+def find_turns(size: Callable[[float], float | None]) -> list[float]:
     """Return the s at which a size turns from one power of s to another.
 
     `size` returns log₂ of the size. After the first turn, only powers on long stretches count: the
@@ -230,7 +230,7 @@ def _find_partners(field: FloatField, sizes: Vector, first: int) -> list[float]:
     """Return for each p the value whose kinetic energy is the work of the force over the length of
     its q; with `first` = 0, for each q the same from its p."""
     n = field.degrees
-    base = _pad_with_zeros(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
+    base = _pad_with_zeros(first, [x * y for x, y in zip(sizes, direction(n), strict=True)])
     works = zip(*_works_of_forces(field, base, sizes, first), strict=True)
     work = [min(works_of_force, default=0.0) for works_of_force in works]
     mean = sum(work) / max(len(work), 1) or 1.0
@@ -272,11 +272,11 @@ def _find_partner(field: FloatField, base: Vector, j: int, work: float) -> float
     return math.pow(2.0, high)
 
 
-def _find_duration(field: FloatField, units: Vector) -> float:
+def find_duration(field: FloatField, units: Vector) -> float:
     """Return the time, from t = 0 on, over which the field turns from one power of t to another; 1
     if it does not. If the field is undefined at 0, the start is 1/8."""
     if not field.timed:
         return 1.0
     begin = 0.0 if field(units, 0.0) is not None else 0.125
-    turns = _find_turns(lambda s: field.octave(units, begin + s, units, begin))
+    turns = find_turns(lambda s: field.octave(units, begin + s, units, begin))
     return turns[0] if turns else 1.0

@@ -18,7 +18,7 @@ from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.formula import symbol
 from verify.algebra.limits import check_expression
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import PlainField, canonical_field, field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, add, product, scale
 from verify.integrators.tracing.trace import Node, expressions, in_order, write_expressions
@@ -177,7 +177,7 @@ _MAX_OPERATIONS = 3000  # of z' written out as trees, up to which a closed form 
 _MAX_PLANAR_TERMS, _MAX_PLANAR_PRODUCTS = 800, 20_000  # of a closed form in the plane
 _SERIES_ORDER = 9  # the power of h up to which `series` is computed
 _SHEARS_CONDITION = Condition("every part is a shear", 0, "0", holds=True)
-Expand = Callable[[int], tuple[CanonicalField, State]]
+Expand = Callable[[int], tuple[PlainField, State]]
 
 
 @dataclass(frozen=True)
@@ -193,7 +193,7 @@ class TracedMap:
     expand: Expand | None
 
     @cached_property
-    def series(self) -> tuple[CanonicalField, State] | None:
+    def series(self) -> tuple[PlainField, State] | None:
         return self.expand(_SERIES_ORDER) if self.expand else None
 
 
@@ -202,11 +202,11 @@ def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
     closed form."""
     expand: Expand | None = None
     with suppress(InputError):
-        expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
+        expand = TracedSeries(roots, partial(field_of, hamiltonian))
     # Shears first: they prove det J = 1 without any closed form, which for many stages would be too
     # long to be expanded.
-    shears = shears_of(hamiltonian, *roots) if len(roots) == 2 and expand else None
-    field, _ = canonical_field(hamiltonian)
+    shears = shears_of(hamiltonian, *roots) if hamiltonian.planar and expand else None
+    field, _ = field_of(hamiltonian)
     if shears is not None:
         step_map = StepMap(hamiltonian, field, conditions=(_SHEARS_CONDITION,), expand=expand)
         return TracedMap(step_map, f"is {shears} shears in turn", expand)
@@ -226,13 +226,13 @@ def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
 
 
 def _build_closed_form(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> ClosedForm | None:
-    formulas, planar = write_expressions(roots, _MAX_OPERATIONS), len(roots) == 2
+    formulas, planar = write_expressions(roots, _MAX_OPERATIONS), hamiltonian.planar
     if formulas is None:
         return None
     try:
         smooth = [check_expression(x, "step", "its closed form") for x in formulas]
         term_limit = _MAX_PLANAR_TERMS if planar else MAX_TERMS
-        field, elements = canonical_field(hamiltonian, *smooth, most_terms=term_limit)
+        field, elements = field_of(hamiltonian, *smooth, most_terms=term_limit)
     except InputError:
         return None
     step = ClosedForm(field, tuple(elements))

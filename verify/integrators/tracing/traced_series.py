@@ -16,7 +16,7 @@ from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
 from verify.functions import by_name
 from verify.functions.function import Apply, Pair
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.integrators.tracing.named_functions import OPERATORS
 from verify.integrators.tracing.trace import Node, evaluate_nodes, expressions, in_order
 from verify.schemes.steps.step_algebra import State
@@ -33,7 +33,7 @@ class TracedSeries:
     """
 
     def __init__(
-        self, roots: Sequence[Node], field_with: Callable[..., tuple[CanonicalField, list[Poly]]]
+        self, roots: Sequence[Node], field_with: Callable[..., tuple[PlainField, list[Poly]]]
     ) -> None:
         self.roots = tuple(roots)
         self._series: dict[int, tuple[Series, ...]] = {}
@@ -53,7 +53,7 @@ class TracedSeries:
             zip(initial_expressions, elements, strict=True)
         )
 
-    def __call__(self, most: int) -> tuple[CanonicalField, State]:
+    def __call__(self, most: int) -> tuple[PlainField, State]:
         """Return the field, and the roots up to h^most."""
         reach = next((n for n in _COMPUTED_ORDERS if n >= most), most)
         if reach not in self._series:

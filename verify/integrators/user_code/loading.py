@@ -174,9 +174,7 @@ def callee_from(
     arguments' names. `parameters`: further arguments by name, which the function may take, and must
     if `strict`. Raises InputError for a wrong signature, or a time limit out of range.
     """
-    if not 0.01 <= time_limit <= _MAX_TIME_LIMIT:
-        problem = f"is no number of seconds from 0.01 to {_MAX_TIME_LIMIT}"
-        raise InputError("time limit", time_limit, problem)
+    check_time_limit(time_limit)
     values = dict(parameters or {})
     signature = _Signature(function, stepped, values, strict)
     places: tuple[int, ...] = ()
@@ -193,6 +191,13 @@ def callee_from(
     several = len({(x.roles, x.halves) for x in layouts}) > 1
     argument_names = tuple(x.name for x in signature.places[: len(orders[0])])
     return Callee(step, tuple(layouts), names_tell and not several, argument_names)
+
+
+def check_time_limit(seconds: float) -> None:
+    """Raise InputError if the number of seconds is out of range."""
+    if not 0.01 <= seconds <= _MAX_TIME_LIMIT:
+        problem = f"is no number of seconds from 0.01 to {_MAX_TIME_LIMIT}"
+        raise InputError("time limit", seconds, problem)
 
 
 def foreign_callee(step: UserMap) -> Callee:

@@ -12,29 +12,31 @@ A computation depends on no precision, and on no number system beyond the `StepR
 built once, and shared by all runs of the map.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import combinations
 
-from verify.algebra.ring import Poly
+from verify.algebra.ring import Ring
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.evaluator import Evaluator, increments
+from verify.kernels.step.integral import integral_of
 from verify.kernels.step.matrix_operations import (
     Matrix,
     Pfaffian,
     Place,
+    change_of_determinant,
     change_of_volume,
     defect_from_slopes,
     multiply,
 )
 from verify.kernels.step.operations import StepProgram
 from verify.kernels.step.program_algebra import Dual, ProgramAlgebra, ProgramValue, TangentAlgebra
+from verify.kernels.step.shared_part import common_power, shared_part, source_names, sum_of
 from verify.kernels.step.tangent_map import Tangent
 from verify.observables.observable import Need
 from verify.schemes import get
-from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.step_map import StepMap
 
 
@@ -44,7 +46,8 @@ class StepRequest:
 
     `needs`: the quantities that observables need. `tangent`: K = J − 1 in float64, for the tangent
     map. `slopes`: K itself. `scaled`: S and ΔJ are divided by their power of h and multiplied by κ.
-    `pipelined`: as in `verify.arithmetic.number_system.Arithmetic`.
+    `pipelined`: as in `verify.arithmetic.number_system.Arithmetic`. `integrals`: functions of the
+    state, see `verify.kernels.step.integral`.
     """
 
     pipelined: bool
@@ -52,6 +55,7 @@ class StepRequest:
     tangent: bool
     needs: frozenset[Need] = frozenset()
     slopes: bool = False
+    integrals: tuple[str, ...] = ()
 
     @property
     def defect(self) -> bool:
@@ -64,8 +68,9 @@ class Computation:
     """A step's program, and the indices of its values in it.
 
     `outputs`: the increments of the coordinates (`dp`, …), ΔJ (`dj`), and on request det J (`det`),
-    and the increments of H (`de`), of M's and of W's entries (`dm_a_b`, `dw_a_b`). `power`: the r
-    of κ = 2^s h^r. `parameters`: the names of H's. `timed`: t is one more input. `defect`: the
+    the increments of M's and of W's entries (`dm_a_b`, `dw_a_b`), and the integrals before the step
+    (`e0`, …). `power`: the r of κ = 2^s h^r. `parameters`: the names of H's. `timed`: t is one more
+    input. `coordinates`: their names in the source; `canonical`: they are p and q. `defect`: the
     requested entries of S (`s_a_b`); `slopes`: K by rows, on request. No operation is added later.
     """
 
@@ -76,6 +81,7 @@ class Computation:
     parameters: tuple[str, ...]
     timed: bool
     coordinates: tuple[str, ...]
+    canonical: bool
     defect: Mapping[str, int]
     slopes: Matrix
 
@@ -102,65 +108,16 @@ def computation_of(step_map: StepMap, request: StepRequest) -> Computation:
     return _Step(step_map, request).computation()
 
 
-@dataclass(frozen=True)
-class _SharedPart:
-    """The part that all computations of one map share, since S in closed form takes longest: a
-    program to be copied, and the indices of its inputs and of the entries of S."""
-
-    program: StepProgram
-    inputs: Mapping[str, int]
-    forms: Mapping[Place, int]
-
-
-@lru_cache(maxsize=64)
-def _shared_part(step_map: StepMap, pipelined: bool, scaled: bool, defect: bool) -> _SharedPart:
-    program, hamiltonian = StepProgram(), step_map.hamiltonian
-    # In the source H's parameters are x0, x1, …: a user may call a parameter `v1` or `steps`.
-    arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(hamiltonian.symbols)}
-    inputs = {n: program.input(a, static=True) for n, a in arguments.items()}
-    time = ("t",) if hamiltonian.time_dependent else ()
-    inputs |= {n: program.input(n, static=False) for n in (*hamiltonian.coordinates, *time)}
-    kappa = program.input("kappa", static=True) if scaled else None
-    closed_form = step_map.written_defect
-    forms: dict[Place, int] = {}
-    if defect and closed_form and not step_map.preserves_area:
-        evaluator = Evaluator(program, step_map.ring, inputs, pipelined)
-        power = common_power(step_map) if scaled else 0
-        for place in combinations(range(len(hamiltonian.coordinates)), 2):
-            forms[place] = evaluator.evaluate(_sum_of(closed_form, [place], power), kappa)
-    return _SharedPart(program, inputs, forms)
-
-
-def common_power(step_map: StepMap) -> int:
-    """Return the greatest r for which h^r divides all of S in closed form; 0 if there is none, or
-    the map preserves area."""
-    closed_form = step_map.written_defect
-    return (
-        min(closed_form.forms or {}, default=0)
-        if closed_form and not step_map.preserves_area
-        else 0
-    )
-
-
-def _sum_of(closed_form: ClosedForm, places: Sequence[Place], power: int) -> Poly:
-    """Return the sum of the entries of S at these places, divided by h^power."""
-    h, total = closed_form.ring.variable("h"), closed_form.ring.zero
-    for m, form in (closed_form.forms or {}).items():
-        for place in places:
-            if place in form.entries:
-                total += h ** (m - power) * form.entries[place]
-    return total
-
-
 class _Step:
     """One computation while it is being written."""
 
     def __init__(self, step_map: StepMap, request: StepRequest) -> None:
         self.step_map, self.request = step_map, request
         needs_defect = request.defect
-        shared = _shared_part(step_map, request.pipelined, request.scaled, needs_defect)
+        shared = shared_part(step_map, request.pipelined, request.scaled, needs_defect)
         self.program, self.inputs = shared.program.copy(), shared.inputs
-        self.names, self.forms = step_map.hamiltonian.coordinates, dict(shared.forms)
+        self.names, self.forms = source_names(step_map.hamiltonian), dict(shared.forms)
+        self.canonical = step_map.hamiltonian.has_energy
         self.preserved = not needs_defect or step_map.preserves_area
         self.closed_form = step_map.written_defect
         self.power = common_power(step_map) if request.scaled and needs_defect else 0
@@ -172,16 +129,20 @@ class _Step:
         outputs = {f"d{name}": index for name, index in zip(self.names, changes, strict=True)}
         outputs["dj"] = program.constant(Fraction(0))
         # Without a closed form S is computed numerically from K, with some loss of digits.
-        if not self.preserved and self.closed_form is None:
+        if not self.preserved and self.closed_form is None and self.canonical:
             self.forms = self.from_slopes()
         if "delta_j" in request.needs and self.forms:
             outputs["dj"] = self.volume()
+        elif "delta_j" in request.needs and not self.preserved:
+            outputs["dj"] = self.scale(change_of_determinant(program, self.slopes))
         if "determinant" in request.needs:
             outputs["det"] = self.determinant()
         if "carried" in request.needs and self.forms:
             outputs |= self.increments_of_matrices()
-        if "energy" in request.needs:
-            outputs["de"] = self.change_of_energy()
+        for k, formula in enumerate(request.integrals):
+            # Written last: its parts are mostly there already, for the slopes.
+            integral = integral_of(hamiltonian, formula)
+            outputs[f"e{k}"] = self.evaluator(integral.ring).evaluate(integral.element)
         tangent = None
         if request.tangent:
             tangent = Tangent(program)
@@ -190,7 +151,7 @@ class _Step:
         defect = {f"s_{a}_{b}": index for (a, b), index in entries.items()}
         return Computation(
             program, outputs, tangent, self.power, hamiltonian.symbols, hamiltonian.time_dependent,
-            self.names, defect, self.slopes if request.slopes else [],
+            self.names, self.canonical, defect, self.slopes if request.slopes else [],
         )  # fmt: skip
 
     @cached_property
@@ -224,18 +185,22 @@ class _Step:
             return self.step_map.step(TangentAlgebra(plain, coordinates=len(self.names)))
         return self.step_map.step(plain)
 
-    def evaluator(self) -> Evaluator:
-        return Evaluator(self.program, self.step_map.ring, self.inputs, self.request.pipelined)
+    def evaluator(self, ring: Ring | None = None) -> Evaluator:
+        ring = ring or self.step_map.ring
+        return Evaluator(self.program, ring, self.inputs, self.request.pipelined)
 
     # -- S and what follows from it -----------------------------------------------------------
 
     def from_slopes(self) -> dict[Place, int]:
         """Return the entries of S, or of 2^s S, from K."""
         entries = defect_from_slopes(self.program, self.slopes)
+        return {place: self.scale(index) for place, index in entries.items()}
+
+    def scale(self, index: int) -> int:
+        """Return a value, or 2^s times it."""
         if not self.request.scaled:
-            return entries
-        kappa = self.program.input("kappa", static=True)
-        return {place: self.program.mul(kappa, index) for place, index in entries.items()}
+            return index
+        return self.program.mul(self.program.input("kappa", static=True), index)
 
     def volume(self) -> int:
         """Return det J − 1, or 2^s (det J − 1)."""
@@ -248,9 +213,7 @@ class _Step:
                 pair_sum = program.add(pair_sum, self.forms[pair])
         elif n > 1:
             kappa = program.input("kappa", static=True) if self.request.scaled else None
-            pair_sum = self.evaluator().evaluate(
-                _sum_of(self.closed_form, pairs, self.power), kappa
-            )
+            pair_sum = self.evaluator().evaluate(sum_of(self.closed_form, pairs, self.power), kappa)
         # Each entry has the factor 2^s, and a product of k entries 2^(k s): `down` = 2^−s removes
         # the excess.
         down = program.input("down", static=True) if self.request.scaled else None
@@ -267,17 +230,6 @@ class _Step:
             (a, b), (c, d) = self.slopes
             a, d = (program.add(program.quotient(1, 1), x) for x in (a, d))
         return program.add(program.mul(a, d), program.neg(program.mul(b, c)))
-
-    def change_of_energy(self) -> int:
-        """Return H after the step minus H before it."""
-        program, field = self.program, self.step_map.field
-        moves = dict(zip(self.names, self.changes, strict=True))
-        after = {**self.inputs, **{n: program.add(self.inputs[n], x) for n, x in moves.items()}}
-        energy_before, energy_after = (
-            Evaluator(program, field.ring, inputs, self.request.pipelined).evaluate(field.energy)
-            for inputs in (self.inputs, after)
-        )
-        return program.add(energy_after, program.neg(energy_before))
 
     def increments_of_matrices(self) -> dict[str, int]:
         """Return the increments of M and of W."""

@@ -227,25 +227,25 @@ def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
 
 
 def increments(evaluator: Evaluator, moves: Sequence[Poly], h: int) -> list[int]:
-    """Return the indices of the increments `moves` of all p, then of all q; `h` is the index of the
-    step size.
+    """Return the indices of the increments `moves` of all p, then of all q; `h`: that of h.
 
     For H = p²/2 + V(q) the Lie-derivative scheme has q' = q + h p + (h²/2) X p + (h³/6) X² p + …
     beside p' = p + h X p + (h²/2) X² p + …, where X is the derivative along the flow. With
     a_k = h^k/(k+1)! X^k p they are p' = p + 2 a_1 + 3 a_2 + … and q' = q + h (p + a_1 + a_2 + …).
     So if the coefficient of h^k in one increment is a small integer times that of h^(k+1) in the
-    other, it is computed once. Sharing is tried in both directions, and the cheapest form is taken.
+    other, it is computed once. Sharing is tried in both directions; the cheapest form is taken.
     """
+    if len(moves) % 2:  # of equations
+        return [evaluator.evaluate(x) for x in moves]
     n, pairs = len(moves) // 2, []
     for pair in zip(moves[:n], moves[n:], strict=True):
         forms = [_IncrementPair(evaluator.ring, pair, None)]
-        # Sharing saves operations but makes p' wait for q': it is not tried if latency counts.
+        # Sharing makes p' wait for q': not if latency counts.
         if not (evaluator.pipelined or h_inside(evaluator.ring, *pair)):
             sharing = (_IncrementPair(evaluator.ring, pair, taker) for taker in (0, 1))
             forms += [form for form in sharing if form.ratios]
-        pairs.append(
-            evaluator.choose_cheapest([partial(form.write, evaluator, h) for form in forms])
-        )
+        writers = [partial(form.write, evaluator, h) for form in forms]
+        pairs.append(evaluator.choose_cheapest(writers))
     return [pair[part] for part in (0, 1) for pair in pairs]
 
 

@@ -94,6 +94,30 @@ def defect_from_slopes(program: StepProgram, slopes: Matrix) -> dict[Place, int]
     return entries
 
 
+def change_of_determinant(program: StepProgram, slopes: Matrix) -> int:
+    """Return the index of det(1 + K) − 1, the sum of all principal minors of K: no 1 cancels."""
+    size, minors = len(slopes), dict[tuple[tuple[int, ...], tuple[int, ...]], int]()
+
+    def minor(rows: tuple[int, ...], columns: tuple[int, ...]) -> int:
+        """Return the index of a minor, by expansion along its first row; each is written once."""
+        if len(rows) == 1:
+            return slopes[rows[0]][columns[0]]
+        if (rows, columns) not in minors:
+            total = program.constant(Fraction(0))
+            for k, column in enumerate(columns):
+                rest = minor(rows[1:], (*columns[:k], *columns[k + 1 :]))
+                term = program.mul(slopes[rows[0]][column], rest)
+                total = program.add(total, program.neg(term) if k % 2 else term)
+            minors[rows, columns] = total
+        return minors[rows, columns]
+
+    change = program.constant(Fraction(0))
+    for count in range(1, size + 1):
+        for chosen in combinations(range(size), count):
+            change = program.add(change, minor(chosen, chosen))
+    return change
+
+
 class Pfaffian:
     """The Pfaffians of principal submatrices of one matrix, by expansion; each is computed once.
 

@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.algebra.ring import Poly
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.kernels.step.evaluator import Evaluator, increments
 from verify.kernels.step.matrix_operations import eliminate, one_minus
 from verify.kernels.step.operations import NewtonLoop, StepProgram
@@ -52,7 +52,7 @@ class ProgramAlgebra(StepAlgebra[ProgramValue]):
     def __init__(
         self,
         program: StepProgram,
-        field: CanonicalField,
+        field: PlainField,
         inputs: Mapping[str, int],
         pipelined: bool,
         outer: ProgramAlgebra | None = None,

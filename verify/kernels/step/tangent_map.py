@@ -7,8 +7,10 @@ precision (Knuth's two-sum), so that the error of one step is about h·2⁻⁵³
 `verify.runs.a_posteriori_bound` bounds the orbit's error by these numbers:
 
 - `growth`: Σ ‖M‖²; `growth_top`: its greatest term;
-- `det_low`: the least det M; in n degrees of freedom det M is computed as Pf(MᵀΩM)/Pf Ω;
-- `form_top`, for n > 1: the greatest sum of squares of the entries of MᵀΩM above the diagonal;
+- `det_low`: the least det M; in n degrees of freedom det M is computed as Pf(MᵀΩM)/Pf Ω, and for
+  coordinates that are no p and q by its minors;
+- `form_top`, for n > 1 degrees of freedom: the greatest sum of squares of the entries of MᵀΩM above
+  the diagonal;
 - `p_low`, `p_high`, …: the box that the orbit has visited;
 - `least`, `most`, which the kernel adds: bounds of Λ so far.
 """
@@ -28,7 +30,9 @@ def names_of(coordinates: Sequence[str]) -> tuple[str, ...]:
     return (*_NOTED_SUMS, *(f"{name}_{end}" for name in coordinates for end in ("low", "high")))
 
 
-def initial_values(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
+def initial_values(
+    coordinates: Sequence[str], canonical: bool = True
+) -> list[tuple[str, int | str]]:
     """Return (name, initial value) of the carried numbers, which are float64; the name of a
     coordinate stands for its initial value."""
     size = len(coordinates)
@@ -39,7 +43,7 @@ def initial_values(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
     values += [(f"m_{entry}_rest", 0) for entry in entries]
     values += [("growth", size), ("growth_top", size), ("det_low", 1)]
     # In the plane det M is computed directly, and MᵀΩM has one entry, det M itself.
-    if size > 2:
+    if size > 2 and canonical:
         values.append(("form_top", size // 2))
     return values + [(f"{name}_{end}", name) for name in coordinates for end in ("low", "high")]
 
@@ -97,9 +101,11 @@ def _input_name(index: int) -> str:
     return f"approx(v{index})"
 
 
-def statements(change: Sequence[str], coordinates: Sequence[str] = PLANE) -> list[str]:
+def statements(
+    change: Sequence[str], coordinates: Sequence[str] = PLANE, canonical: bool = True
+) -> list[str]:
     """Return the statements of M ← M + (A − 1) M and of the noted numbers; `change`: the names of
-    the entries of A − 1, row by row."""
+    the entries of A − 1, row by row; `canonical`: the coordinates are p and q."""
     size = len(coordinates)
     lines = [
         *(f"f{n} = approx({n})" for n in coordinates),
@@ -123,15 +129,30 @@ def statements(change: Sequence[str], coordinates: Sequence[str] = PLANE) -> lis
     return [
         *lines,
         f"f_size = {' + '.join(f'({row})' for row in squares)}",
-        *(_form(coordinates) if size > 2 else [_determinant(*coordinates)]),
+        *(_form(coordinates) if size > 2 and canonical else _determinant(coordinates)),
         "growth = growth + f_size",
         "if f_size > growth_top: growth_top = f_size",
         "if f_det < det_low: det_low = f_det",
     ]
 
 
-def _determinant(p: str, q: str) -> str:
-    return f"f_det = m_{p}{p} * m_{q}{q} - m_{p}{q} * m_{q}{p}"
+def _determinant(coordinates: Sequence[str]) -> list[str]:
+    """Return the statements of det M, by the minors of its last rows; each is computed once."""
+    lines: list[str] = []
+    last = coordinates[-1]
+    minors: dict[tuple[str, ...], str] = {(x,): f"m_{last}{x}" for x in coordinates}
+    for count in range(2, len(coordinates) + 1):
+        row, longer = coordinates[-count], dict[tuple[str, ...], str]()
+        for columns in combinations(coordinates, count):
+            total = ""
+            for k, column in enumerate(columns):
+                term = f"m_{row}{column} * {minors[*columns[:k], *columns[k + 1 :]]}"
+                total += f" {'-' if k % 2 else '+'} {term}" if total else term
+            name = "f_det" if count == len(coordinates) else f"f_minor{len(lines)}"
+            longer[columns] = name
+            lines.append(f"{name} = {total}")
+        minors = longer
+    return lines or [f"f_det = m_{last}{last}"]
 
 
 def _form(coordinates: Sequence[str]) -> list[str]:

@@ -117,6 +117,7 @@ def _merge_group(group: Sequence[SeriesPoint]) -> SeriesPoint:
         last=group[-1].last,
         delta_j=_hull([p.delta_j for p in group]),
         lam=_hull([p.lam for p in group]),
+        energy=group[-1].energy,
     )
 
 

@@ -19,6 +19,7 @@ from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
 from verify.functions import by_name
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
+from verify.hamiltonians.equations import are_equations
 from verify.pages.text.formula_parts import Expr, FormulaTerm, factor_key, split_name, terms_of
 from verify.pages.text.inline_math import flatten_fractions
 
@@ -122,11 +123,22 @@ def free_names(text: str) -> tuple[str, ...]:
 
 
 def hamiltonian(text: str) -> Markup:
-    """Return H(p, q) = …, or H(p, q, t) = … for a formula with t, as a display."""
+    """Return H(p, q) = …, or H(p, q, t) = … for a formula with t, as a display; of equations
+    without an H each with a dot on the left."""
+    if are_equations(text):
+        pairs = (line.split(" = ", 1) for line in text.split("; "))
+        return Markup("").join(
+            equation(_put_dot(left.removesuffix("_dot")), right) for left, right in pairs
+        )
     names = free_names(text)
     left = "H(p, q, t)" if "t" in names else "H(p, q)"
     plane = coordinates_of({*names, *_identifiers(text)}) == PLANE
     return equation(NAMED[left if plane else "H"], text)
+
+
+def _put_dot(variable: str) -> str:
+    # A dot that combines with the letter before it, which is understood in TeX as well.
+    return identifier(variable).replace("</mi>", "\u0307</mi>", 1)
 
 
 def read(text: str) -> Expr | None:

@@ -171,7 +171,7 @@ RAISED_INDEX: Rule = (re.compile(r"(?<=\S)\^(\([^()]*_[^()]*\))"), _superscript)
 # A letter, perhaps with an accent, and its index: H_qq, z̄_(k+1), L_{H_p}, e^p_k.
 INDEX: Rule = (
     re.compile(
-        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])"
+        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣΦ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])"
         r"(?:\^([a-z]))?_"
         r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
     ),

@@ -43,7 +43,7 @@ import sympy
 
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field, require_canonical
 from verify.hamiltonians.coordinates import PLANE, coordinates_in
 from verify.proof.certificates.certificate_file import FORMAT, Certificate
 from verify.proof.certificates.coefficient_entries import write_coefficients
@@ -164,7 +164,9 @@ def _in_degrees(proof: Proof, _: Potential) -> tuple[CanonicalField, Statement]:
     eta = step.flow_up_to
     has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # for odd η there is none
     potential = entries_of(potential_of_lie(field, eta)) if has_potential else None
-    return field, Statement(layout_of(field.names), rows, order, agreed, entries, potential)
+    names = layout_of(field.names)
+    statement = Statement(names, rows, order, agreed, entries, potential)
+    return require_canonical(field), statement
 
 
 def _coefficients(ring: Ring, x: Poly) -> list[Poly]:

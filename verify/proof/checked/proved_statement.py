@@ -12,7 +12,7 @@ from verify.proof.plane.potential import Potential
 from verify.proof.proof_for_every_h import ProofForEveryH
 from verify.proof.proof_for_one_h import Proof
 from verify.schemes.scheme import Scheme
-from verify.structures import Structure, structure_in
+from verify.structures import CanonicalForm, structure_in
 
 About = Literal["defect", "volume", "map", "telescopes", "product"]
 DEFECT: frozenset[About] = frozenset({"defect"})
@@ -46,7 +46,7 @@ class ProvedStatement:
     certificates: tuple[Callable[[], Certificate], ...] = ()
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that a canonical step preserves: area, or the symplectic form."""
         return structure_in(self.degrees)
 

@@ -26,7 +26,7 @@ from verify.algebra.linear_algebra import solve_combination
 from verify.algebra.power_series import CoefficientRing, Derivatives
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, require_canonical
 from verify.proof.expansion import MOST_ORDERS, ClosedSeries
 from verify.proof.order_for_one_h import leading_of, nearby_of_scheme
 from verify.proof.plane.modified_equation import ModifiedEquation, judge_equation
@@ -76,12 +76,12 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
     series = step_map.series(most)
     if series is not None:
         source, (p, q) = series
-        return source, p.coefficients, q.coefficients
+        return require_canonical(source), p.coefficients, q.coefficients
     closed = ClosedSeries(step_map.flat)
     if most > MOST_ORDERS and not closed.polynomial:
         raise InputError("order", most - 1, f"must be {MOST_ORDERS - 1} at most for this map")
     source, (p_next, q_next), _ = closed.in_one_field(step_map.hamiltonian, most)
-    return source, p_next, q_next
+    return require_canonical(source), p_next, q_next
 
 
 # -- the search for G -----------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The search for a G with X·G = L, the leading coefficient of ΔJ, for one H.
+"""The search for a G with X·G = L, the leading coefficient of a defect, for one H.
 
 If H depends on time, D·G = L is solved instead, D = ∂_t + X.
 
@@ -17,21 +17,23 @@ from itertools import chain, combinations_with_replacement, islice, product
 
 import sympy
 
+from verify.algebra.domain import EVERYWHERE, FormulaDomain
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose, points
+from verify.algebra.formula import symbol
 from verify.algebra.linear_algebra import may_combine, solve_combination
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.symbols import P, Q
 from verify.effort import answer_unless_long
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import PlainField, field_of
+from verify.hamiltonians.coordinates import PLANE
 from verify.proof.proof_for_one_h import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 
-_MOST_MONOMIALS, _MOST_DEGREE = 300, 20
-# Values of p and q at which an equilibrium is searched.
+_MOST_MONOMIALS, _MOST_DEGREE, _MOST_EQUILIBRIA = 300, 20, 125
+# Values of the coordinates at which an equilibrium is searched.
 _VALUES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
 
 
@@ -74,47 +76,66 @@ def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
     if proof.order is None or proof.first.element is None:
         return Potential(None, "the leading coefficient is not known")
     field, leading = _in_one_ring(proof)
+    every_h = scheme and scheme.every_h
+    formula = None
+    if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
+        eta = every_h.eta
+        formula = lambda: potential_of_lie(field, eta).divergence  # noqa: E731
+    return potential_along(field, leading, formula, proof.step_map.domain)
+
+
+def potential_along(
+    field: PlainField,
+    leading: Poly,
+    formula: Callable[[], Poly] | None = None,
+    domain: FormulaDomain = EVERYWHERE,
+) -> Potential:
+    """Decide whether L = X·G in a domain, D·G if the system depends on time.
+
+    `formula`: returns a G that holds by a theorem; without it G is searched.
+    """
     # At an equilibrium D·G is ∂G/∂t, which need not vanish.
-    equilibrium = None if field.timed else _equilibrium_against(field, leading)
+    equilibrium = None if field.timed else _equilibrium_against(field, leading, domain)
     if equilibrium is not None:
         return Potential(
             False, f"X·G vanishes at the equilibrium {equilibrium}, for any smooth G; L does not"
         )
-    every_h = scheme and scheme.every_h
-    if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
-        candidate: Poly | None = potential_of_lie(field, every_h.eta).divergence
+    if formula is not None:
+        candidate: Poly | None = formula()
         reason = "by the formula for every H"
     else:
         elements = *field.slopes, leading
-        candidate = among_polynomials(field.ring, elements, field.derive, leading)
+        candidate = among_polynomials(field.ring, elements, field.derive, leading, field.names)
         reason = "by linear algebra over monomials"
     if candidate is not None and field.ring.decide(field.derive(candidate) - leading).zero is True:
         return Potential(True, reason, (field.ring, candidate))
     return Potential(None, "no G is found, and no equilibrium at which L is not zero")
 
 
-def _in_one_ring(proof: Proof) -> tuple[CanonicalField, Poly]:
+def _in_one_ring(proof: Proof) -> tuple[PlainField, Poly]:
     """Return the vector field of H and the leading coefficient, as elements of one ring."""
     assert proof.first.element is not None  # noqa: S101 - the caller's condition
     ring, leading = proof.first.element
     for candidate in (proof.step_map.field, *(x.field for x in (proof.step_map.closed,) if x)):
         if candidate.ring is ring:
             return candidate, leading
-    field, (leading,) = canonical_field(proof.step_map.hamiltonian, proof.leading)
+    field, (leading,) = field_of(proof.step_map.hamiltonian, proof.leading)
     return field, leading
 
 
-def _equilibrium_against(field: CanonicalField, leading: Poly) -> str | None:
-    """Find an equilibrium at which L does not vanish, for some values of the parameters."""
+def _equilibrium_against(field: PlainField, leading: Poly, domain: FormulaDomain) -> str | None:
+    """Find an equilibrium of the domain at which L does not vanish, for some parameter values."""
     ring = field.ring
     force = [ring.expression(x) for x in field.slopes]
-    for p, q in sorted(product(_VALUES, repeat=2), key=lambda at: _VALUES.index(at[0])):
-        values = {P: p, Q: q}
+    for numbers in islice(product(_VALUES, repeat=len(field.names)), _MOST_EQUILIBRIA):
+        values = {symbol(name): x for name, x in zip(field.names, numbers, strict=True)}
         try:
             if not answer_unless_long(partial(_rests, force, values), otherwise=False):
                 continue
-            if p.is_Rational and q.is_Rational:
-                nonzero = _not_zero_at(ring, leading, Fraction(int(p)), Fraction(int(q)))
+            domain.substitute(values)  # InputError outside of it, where G need not be smooth
+            if all(x.is_Rational for x in numbers):
+                point = dict(zip(field.names, map(Fraction, map(int, numbers)), strict=True))
+                nonzero = _not_zero_at(ring, leading, point)
             else:
                 nonzero = len(leading) <= _MOST_MONOMIALS and _not_zero(
                     answer_unless_long(
@@ -125,7 +146,7 @@ def _equilibrium_against(field: CanonicalField, leading: Poly) -> str | None:
         except (InputError, ZeroDivisionError):
             continue  # H is not defined there
         if nonzero:
-            return f"p = {p}, q = {q}"
+            return ", ".join(f"{name} = {x}" for name, x in values.items())
     return None
 
 
@@ -133,10 +154,10 @@ def _rests(force: Sequence[sympy.Expr], point: Mapping[sympy.Expr, sympy.Expr]) 
     return all(sympy.expand(x.subs(point)) == 0 for x in force)
 
 
-def _not_zero_at(ring: Ring, x: Poly, p: Fraction, q: Fraction) -> bool:
-    names = [n for n in ring.variables if n not in ("p", "q", "h")]
+def _not_zero_at(ring: Ring, x: Poly, point: Mapping[str, Fraction]) -> bool:
+    names = [n for n in ring.variables if n not in point and n != "h"]
     for values in islice(points(names), 4):
-        value = enclose(ring, x, {**values, "p": p, "q": q}, 128)
+        value = enclose(ring, x, {**values, **point}, 128)
         if value is not None and not value.contains(0):
             return True
     return False
@@ -150,20 +171,24 @@ def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
 
 
 def among_polynomials(
-    ring: Ring, elements: Sequence[Poly], derive: Callable[[Poly], Poly], target: Poly
+    ring: Ring,
+    elements: Sequence[Poly],
+    derive: Callable[[Poly], Poly],
+    target: Poly,
+    names: Sequence[str] = PLANE,
 ) -> Poly | None:
     """Find a polynomial G of least degree with derive(G) = target in normal form.
 
-    G is a polynomial in p, q and the generators of `elements`; `derive` is linear. None if there is
-    none within the limits of degree and monomials.
+    G is a polynomial in the coordinates and the generators of `elements`; `derive` is linear. None
+    if there is none within the limits of degree and monomials.
     """
-    indices = [g.index for g in ring.generators_in(*elements, ring.variable("p"))]
-    # h is no function of p and q, and G is a coefficient of a series in h.
+    coordinates = list(map(ring.variable, names))
+    indices = [g.index for g in ring.generators_in(*elements, coordinates[0])]
+    # h is no function of z, and G is a coefficient of a series in h.
     gens = [
         x for k, x in enumerate(ring.context.gens()) if k in indices and x != ring.variable("h")
     ]
-    if ring.variable("q") not in gens:
-        gens.append(ring.variable("q"))
+    gens += [x for x in coordinates if x not in gens]
     degrees = list(_by_degree(gens, ring.one))
     images = [[derive(m) for m in monomials] for monomials in degrees]
     # A test modulo a prime excludes most cases without rational elimination.

@@ -22,7 +22,7 @@ from verify.reference.compare.setting import Setting
 from verify.reference.compare.table_agreement import nearest_single
 from verify.runs.run_start import Start
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
 _MAX_SUBSET_INPUTS = 4  # all subsets are tried of at most so many inexact inputs
 _SCHEME_PREFIX = "scheme "  # of names of mistakes
@@ -117,7 +117,7 @@ def _changes_in_degrees(right_setting: Setting) -> Iterator[Change]:
         yield f"scheme-{other.scheme}", says, {"orbit": other}
 
 
-_OF_INPUTS: Mapping[Structure, Changes] = {AREA: _doubles_for_inputs, SYMPLECTIC: lambda _: ()}
+_OF_INPUTS: Mapping[CanonicalForm, Changes] = {AREA: _doubles_for_inputs, SYMPLECTIC: lambda _: ()}
 _OF_STATES = {AREA: _changes_in_plane, SYMPLECTIC: _changes_in_degrees}
 
 

@@ -13,6 +13,7 @@ from verify.scenes.paper_sections import Assumption, Cause, PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult, StatementResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
+from verify.scenes.results.kept import KeptResult
 from verify.scenes.results.orbit_points import PoincareResult, StroboscopicResult
 from verify.scenes.results.proof_result import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
@@ -42,7 +43,8 @@ class SceneResult(Frozen):
     the proofs on its schemes for every H, `work_precision` error against run time, `flows` regions
     carried by maps, `stroboscopic` orbits once in each period, `poincare` orbits where they pass a
     surface; `stability`, `largest_steps` and `stability_maps` the stability of the schemes,
-    `orbit_maps` the kinds of orbits over two of their initial values.
+    `orbit_maps` the kinds of orbits over two of their initial values. `keeps`: what each scheme
+    keeps, where the scene asks; of equations, which stand in place of `hamiltonian`, all there is.
     """
 
     name: str
@@ -71,6 +73,7 @@ class SceneResult(Frozen):
     largest_steps: tuple[LargestStepResult, ...] = ()
     stability_maps: tuple[StabilityMapResult, ...] = ()
     orbit_maps: tuple[OrbitMapResult, ...] = ()
+    keeps: tuple[KeptResult, ...] = ()
 
 
 class Provenance(Frozen):

@@ -6,7 +6,7 @@ first and the last state always there:
 | column | what it is |
 |---|---|
 | `t` | k h |
-| `p`, `q` | the state; in n degrees of freedom `p1` … `qn` |
+| `p`, `q` | the state; in n degrees of freedom `p1` … `qn`; of equations its own names |
 | `energy_error` | H − H₀ at the state, 0 in the first row |
 | `delta_j` | ΔJ at the state: of the step that begins there, which Λ of the next row has in it |
 | `lambda` | Λ of the k steps that led there, 0 in the first row |
@@ -23,7 +23,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Self
 
-from pydantic import PrivateAttr
+from pydantic import Field, PrivateAttr
 
 from verify import observables
 from verify.errors import InputError, unknown_name
@@ -56,11 +56,13 @@ class OrbitTable:
     digits: str
     coordinates: tuple[str, ...] = ("p", "q")
     observables: tuple[str, ...] = ("delta_j", "lambda")
+    has_energy: bool = True
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the columns."""
-        return ("t", *self.coordinates, "energy_error", *self.observables)
+        energy = ("energy_error",) if self.has_energy else ()
+        return ("t", *self.coordinates, *energy, *self.observables)
 
     def texts(self, name: str) -> tuple[str, ...]:
         """Return the exact texts of one of the `columns`; InputError for another name."""
@@ -153,12 +155,16 @@ class EnergyDrift:
 
 
 class SeriesPoint(Frozen):
-    """The least and greatest ΔJ and Λ over the steps first … last."""
+    """The least and greatest ΔJ and Λ over the steps first … last.
+
+    `energy`: H − H₀ at the run's numbers after the last of them, where the run asks for energy.
+    """
 
     first: int
     last: int
     delta_j: tuple[str, str]
     lam: tuple[str, str]
+    energy: str | None = None
 
 
 class RunResult(OfScheme):
@@ -171,7 +177,8 @@ class RunResult(OfScheme):
     than the requested one; `left_domain` names the step by which the orbit has left the domain of
     H, if that is seen: the scheme continues there, but no solution does. `exact` names the
     observables that follow from a proof, without a run. `t0` is the time at which it started, where
-    H depends on time. `source` is the part of a paper that the run repeats, as the scene says.
+    H depends on time. Of equations q and p are empty, and `start` has the initial values by name.
+    `source` is the part of a paper that the run repeats, as the scene says.
     """
 
     arithmetic: str
@@ -182,6 +189,7 @@ class RunResult(OfScheme):
     steps: int
     q: str | tuple[str, ...]
     p: str | tuple[str, ...]
+    start: dict[str, str] = Field(default_factory=dict)
     t0: str = "0"
     status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None
@@ -242,14 +250,17 @@ class RunResult(OfScheme):
         return InputError("run", self.scheme, "has its values alone; verify.RunResult has more")
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        aside = {each.name for each in observables.select(self.values) if each.aside}
+        shown = ((name, value) for name, value in self.values.items() if name not in aside)
+        values = ", ".join(f"{name} = {value}" for name, value in shown)
         heading = f"{self.scheme}, {self.steps} steps of h = {self.step_size}, {self.arithmetic}"
         return f"RunResult({heading}: {values or self.status})"
 
     def _repr_html_(self) -> str:
         """Return the values, each with its error bound, as a table."""
-        start = f"from q = {self.start_text('q')}, p = {self.start_text('p')}"
-        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size} {start}"
+        first = self.start or {letter: self.start_text(letter) for letter in ("q", "p")}
+        start = ", ".join(f"{name} = {x}" for name, x in first.items())
+        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size} from {start}"
         bounds = f"bounds {self.error_kind}: {self.error_method}"
         foot = f"{self.arithmetic}, {self.digits} digits; {bounds}"
         if self.fallback:
@@ -277,7 +288,8 @@ class RunResult(OfScheme):
 
     def _labelled_values(self) -> list[tuple[str, str, Value]]:
         """Return the values with their labels as text and in LaTeX; coordinates come last."""
-        labels = {name: (each.label, each.tex) for name, each in observables.by_name().items()}
+        labels = {x.name: (x.label, x.tex) for x in observables.select(self.values)}
         labels |= {"q": ("q", "q"), "p": ("p", "p")}
+        labels |= {name: (name, rf"\text{{{name}}}") for name in self.start}
         labels |= {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
         return [(*names, self.values[n]) for n, names in labels.items() if n in self.values]

@@ -4,13 +4,13 @@ from typing import ClassVar, Literal
 
 from verify.scenes.frozen import Frozen, ProseText, WithProse
 from verify.scenes.results.bounded_value import FormValue, Value
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
 
 class PartsOfRun(Frozen):
     """The parts of float64's value, which is the first field; `rounding`: the parts of rounding."""
 
-    structure: ClassVar[Structure]
+    structure: ClassVar[CanonicalForm]
     rounding: ClassVar[tuple[str, ...]]
 
     @property

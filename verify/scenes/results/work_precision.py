@@ -6,7 +6,7 @@ from typing import Literal
 from verify.scenes.frozen import Frozen, ProseText, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.values import describe_rounding
-from verify.structures import Structure, structure_in
+from verify.structures import CanonicalForm, structure_in
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
 
@@ -188,7 +188,7 @@ class WorkPrecisionResult(Frozen):
     seconds: Seconds
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that the schemes are meant to preserve."""
         return structure_in(1 if isinstance(self.q, str) else len(self.q))
 

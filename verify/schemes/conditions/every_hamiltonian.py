@@ -240,7 +240,8 @@ def _stage_moves(
     """
     n = algebra.size // 2
     # The first n coordinates are momenta, which the kick changes; the others the drift.
-    shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
+    m = algebra.size - n
+    shares, weights = [stage.at_p] * n + [stage.at_q] * m, [stage.kick] * n + [stage.drift] * m
     triples = zip(before, change, shares, strict=False)
     stage_point = [*(algebra.add_share(*triple) for triple in triples), *before[len(change) :]]
     slopes = algebra.slopes(stage_point, stage.at_q, range(count))  # t moves with q

@@ -17,7 +17,7 @@ from verify.algebra.enclosure import Enclosures, enclose_over, points
 from verify.algebra.ring import Poly
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, PlainField
 from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
@@ -45,7 +45,7 @@ class BallAlgebra(StepAlgebra[Change]):
     It works at flint's present precision.
     """
 
-    def __init__(self, field: CanonicalField, point: Mapping[str, Ball], h: Ball) -> None:
+    def __init__(self, field: PlainField, point: Mapping[str, Ball], h: Ball) -> None:
         self.field, self.point, self.h = field, point, h
 
     @property
@@ -118,12 +118,12 @@ class BallAlgebra(StepAlgebra[Change]):
 
 
 @lru_cache(maxsize=64)
-def _slope_enclosures(field: CanonicalField, places: tuple[int, ...]) -> Enclosures:
+def _slope_enclosures(field: PlainField, places: tuple[int, ...]) -> Enclosures:
     return _with_gradients(field, [field.slopes[k] for k in places])
 
 
 @lru_cache(maxsize=64)
-def _flow_enclosures(field: CanonicalField, n: int) -> Enclosures:
+def _flow_enclosures(field: PlainField, n: int) -> Enclosures:
     return _with_gradients(field, field.term(n))
 
 
@@ -132,13 +132,13 @@ def _closed_form_enclosures(closed_form: ClosedForm) -> Enclosures:
     return _with_gradients(closed_form.field, closed_form.increments)
 
 
-def _with_gradients(field: CanonicalField, elements: Sequence[Poly]) -> Enclosures:
+def _with_gradients(field: PlainField, elements: Sequence[Poly]) -> Enclosures:
     with_slopes = [y for x in elements for y in (x, *field.gradient(x))]
     return Enclosures(field.ring, with_slopes)
 
 
 def step_in_balls(
-    field: CanonicalField,
+    field: PlainField,
     step: Step | ClosedForm,
     point: Mapping[str, Ball],
     h: Ball,
@@ -156,7 +156,7 @@ _POINTS, _BITS = 8, 128  # tested points, and their precision
 Point = Mapping[str, Ball]
 
 
-def may_preserve(field: CanonicalField, step: Step) -> bool:
+def may_preserve(field: PlainField, step: Step) -> bool:
     """Return False if S = JᵀΩJ − Ω is shown not to be 0 at a tested point, else True.
 
     Most steps that are not symplectic are refuted at the first point.
@@ -187,7 +187,7 @@ def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
     return _may_vanish(field, step, gap)
 
 
-def may_be_uniform(field: CanonicalField, step: Step | ClosedForm) -> bool:
+def may_be_uniform(field: PlainField, step: Step | ClosedForm) -> bool:
     """Return False if det J is shown to differ between tested points, else True."""
     first: list[Ball] = []
 
@@ -201,7 +201,7 @@ def may_be_uniform(field: CanonicalField, step: Step | ClosedForm) -> bool:
 
 
 def _may_vanish(
-    field: CanonicalField,
+    field: PlainField,
     step: Step | ClosedForm,
     gap: Callable[[Point, Sequence[Ball], flint.arb_mat], Sequence[Ball]],
 ) -> bool:

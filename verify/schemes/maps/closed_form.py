@@ -14,7 +14,7 @@ from itertools import combinations
 from verify.algebra.formula import symbol
 from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.lazy_sympy import sympy
 from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.step_algebra import State
@@ -28,7 +28,7 @@ _MOST_JACOBIAN_TERMS = 300  # limit of the terms of J, all entries, for multiply
 class ClosedForm:
     """The map z' as `elements` of the ring of H's `field`, one for each coordinate."""
 
-    field: CanonicalField
+    field: PlainField
     elements: tuple[Poly, ...]
 
     @property

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import PlainField
 from verify.lazy_sympy import sympy
 from verify.schemes.maps.closed_form import arguments, terms_of
 from verify.schemes.steps.step_algebra import Number, StepAlgebra
@@ -27,7 +27,7 @@ class TooLongError(Exception):
 
 
 class _Writing:
-    def __init__(self, field: CanonicalField) -> None:
+    def __init__(self, field: PlainField) -> None:
         self.field, self.ring = field, field.ring
 
     @property
@@ -76,7 +76,7 @@ class _Counting(_Writing, StepAlgebra[None]):
         return [None] * count
 
 
-def terms_in(field: CanonicalField, step: Step) -> int:
+def terms_in(field: PlainField, step: Step) -> int:
     """Return the number of terms in the slopes and sums of a step, not written out."""
     counting = _Counting(field)
     step(counting)
@@ -86,7 +86,7 @@ def terms_in(field: CanonicalField, step: Step) -> int:
 class RingAlgebra(_Writing, StepAlgebra[Poly]):
     """Changes of z as elements of the field's ring, for a polynomial H; `most` limits terms."""
 
-    def __init__(self, field: CanonicalField, most: int) -> None:
+    def __init__(self, field: PlainField, most: int) -> None:
         super().__init__(field)
         self.most, self.h = most, field.ring.variable("h")
 
@@ -141,7 +141,7 @@ class Written:
 class FormulaAlgebra(_Writing, StepAlgebra[Written]):
     """Changes of z as expressions; `most` limits the occurrences of coordinates in each."""
 
-    def __init__(self, field: CanonicalField, most: int | None = None) -> None:
+    def __init__(self, field: PlainField, most: int | None = None) -> None:
         super().__init__(field)
         self.most, self.h = most, symbol("h")
 
@@ -203,14 +203,14 @@ class FormulaAlgebra(_Writing, StepAlgebra[Written]):
         return Written(expression.xreplace(moves), count)
 
 
-def is_polynomial(field: CanonicalField) -> bool:
+def is_polynomial(field: PlainField) -> bool:
     """Return True if f is a polynomial in z and t: neither occurs in a generator."""
     inside = arguments(field.ring, *field.slopes)
     moving = [*field.names, *("t" * field.timed)]
     return not any(field.ring.depends(a, name) for a in inside for name in moving)
 
 
-def expressions_of(field: CanonicalField, step: Step, most: int | None = None) -> list[sympy.Expr]:
+def expressions_of(field: PlainField, step: Step, most: int | None = None) -> list[sympy.Expr]:
     """Return z' as expressions; TooLongError if coordinates occur more than `most` times."""
     changes = step(FormulaAlgebra(field, most))
     if most is not None and sum(1 + x.count for x in changes) > most:
@@ -219,7 +219,7 @@ def expressions_of(field: CanonicalField, step: Step, most: int | None = None) -
     return [symbol(name) + x.expression for name, x in pairs]
 
 
-def elements_of(field: CanonicalField, step: Step, most: int) -> tuple[Poly, ...]:
+def elements_of(field: PlainField, step: Step, most: int) -> tuple[Poly, ...]:
     """Return z' of a polynomial H in its field's ring; TooLongError beyond `most` terms."""
     changes = step(RingAlgebra(field, most))
     return tuple(x + y for x, y in zip(field.start, changes, strict=True))

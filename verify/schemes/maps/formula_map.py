@@ -9,11 +9,11 @@ from verify.algebra.expressions.function_nodes import requirements_of_expression
 from verify.algebra.formula import read, symbol
 from verify.effort import limit_effort
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 from verify.schemes.maps.step_map import StepMap
-from verify.structures import AREA, SYMPLECTIC
+from verify.structures import AREA
 
 _NEXT = "_next"
 
@@ -55,11 +55,11 @@ def step_map_from_formulas(
 def _other_coordinates(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> InputError:
     formula_text = "; ".join(map(" = ".join, formulas.items()))
     required_names = ", ".join(name + _NEXT for name in hamiltonian.coordinates)
-    value, problem = {
-        AREA: (formula_text, "H has other coordinates; allowed: formulas of p_next and q_next"),
-        SYMPLECTIC: ("; ".join(formulas), f"H needs {required_names}, once each"),
-    }[hamiltonian.structure]
-    return InputError("scheme", value, problem)
+    if hamiltonian.structure is AREA:
+        problem = "H has other coordinates; allowed: formulas of p_next and q_next"
+        return InputError("scheme", formula_text, problem)
+    system = "the field" if hamiltonian.energy is None else "H"
+    return InputError("scheme", "; ".join(formulas), f"{system} needs {required_names}, once each")
 
 
 def map_from_expressions(
@@ -70,7 +70,7 @@ def map_from_expressions(
     `domain`: a domain besides that of these expressions. Raises InputError as `canonical_field`
     does.
     """
-    field, elements = canonical_field(hamiltonian, *exact)
+    field, elements = field_of(hamiltonian, *exact)
     smooth = FormulaDomain.from_requirements(
         r for x in exact for r in requirements_of_expression(x, smooth=True)
     )

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
 from verify.effort import limit_effort
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import PlainField, field_of
 from verify.lazy_sympy import sympy
 from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.closed_form_algebras import TooLongError
@@ -30,7 +30,7 @@ class _Shear:
 class _ShearRecorder(StepAlgebra[None]):
     """A step algebra that records the shears of a step, and nothing else."""
 
-    def __init__(self, field: CanonicalField) -> None:
+    def __init__(self, field: PlainField) -> None:
         self.field, self.shears = field, list[_Shear]()
 
     @property
@@ -82,7 +82,7 @@ def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
     return tuple(parts)
 
 
-def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField, Sequence[Poly]]:
+def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[PlainField, Sequence[Poly]]:
     """Return the increments of all shears, one after the other, with a field in their ring.
 
     If H depends on time, each shear takes f at its own time.
@@ -98,4 +98,4 @@ def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField,
             later = t + h * expression_of(shear.clock)
             share = h * expression_of(shear.size)
             moves += [share * slopes[k].subs(t, later) for k in shear.places]
-    return canonical_field(exact, *moves)
+    return field_of(exact, *moves)

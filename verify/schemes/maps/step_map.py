@@ -18,7 +18,7 @@ from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly, Ring
 from verify.effort import MAX_CALLS, limit_effort
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, PlainField, field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 from verify.notebook import aligned_latex, short_latex
@@ -38,7 +38,7 @@ from verify.schemes.maps.closed_form_algebras import (
     terms_in,
 )
 from verify.schemes.steps.step_algebra import State, Step, series_of
-from verify.structures import Structure
+from verify.structures import CanonicalForm
 
 # Limits of a composition in closed form: terms in its parts, terms written out, terms of S, and
 # occurrences of coordinates.
@@ -48,7 +48,7 @@ AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 
 
-def solvable(structure: Structure) -> str:
+def solvable(structure: CanonicalForm) -> str:
     """Return the assumption under which an implicit scheme has a smooth map, as text."""
     return f"the stages have a solution that depends smoothly on {structure.state}"
 
@@ -66,7 +66,7 @@ class StepMap:
     """
 
     hamiltonian: Hamiltonian
-    field: CanonicalField
+    field: PlainField
     step: Step | None = None
     formulas: tuple[Poly, ...] | None = None
     conditions: tuple[Condition, ...] = ()
@@ -74,7 +74,7 @@ class StepMap:
     formula_domain: FormulaDomain = EVERYWHERE
     implicit: bool = False
     keeps_quadratic: bool = False
-    expand: Callable[[int], tuple[CanonicalField, State]] | None = None
+    expand: Callable[[int], tuple[PlainField, State]] | None = None
 
     def __repr__(self) -> str:
         return f"StepMap of {self.hamiltonian!r}"
@@ -95,7 +95,7 @@ class StepMap:
         return self.field.degrees
 
     @property
-    def structure(self) -> Structure:
+    def structure(self) -> CanonicalForm:
         """The structure that the exact flow keeps: area in the plane, else the symplectic form."""
         return self.hamiltonian.structure
 
@@ -126,7 +126,7 @@ class StepMap:
         """The power of h up to which the formulas are the exact flow's terms; −1 if not seen."""
         return self._written_form.flow_up_to if self._written_form and self.expand is None else -1
 
-    def series(self, most: int) -> tuple[CanonicalField, State] | None:
+    def series(self, most: int) -> tuple[PlainField, State] | None:
         """Return z' up to h^most, with the field in the ring of the coefficients.
 
         None for a map that has only formulas, which are no polynomials in h.
@@ -156,7 +156,7 @@ class StepMap:
                 field, elements = self.field, elements_of(self.field, self.step, _MOST_COMPOSED)
             else:
                 exact = expressions_of(self.field, self.step, _MOST_WRITTEN)
-                field, items = canonical_field(self.hamiltonian, *exact, most_terms=_MOST_COMPOSED)
+                field, items = field_of(self.hamiltonian, *exact, most_terms=_MOST_COMPOSED)
                 elements = tuple(items)
         except (TooLongError, InputError):
             return None
@@ -211,14 +211,24 @@ class StepMap:
     # -- S, and det J − 1 -------------------------------------------------------------------------
 
     @property
+    def conditions_hold(self) -> bool:
+        """True if all conditions on its coefficients hold, and there are any."""
+        return bool(self.conditions) and all(c.holds is True for c in self.conditions)
+
+    @property
+    def is_canonical(self) -> bool:
+        """True if it is a step of a Hamiltonian."""
+        return isinstance(self.field, CanonicalField)
+
+    @property
     def symplectic_by_conditions(self) -> bool:
         """True if it is symplectic by the conditions on its coefficients."""
-        return bool(self.conditions) and all(c.holds is True for c in self.conditions)
+        return self.is_canonical and self.conditions_hold
 
     @property
     def written_defect(self) -> ClosedForm | None:
         """The closed form of a map that is defined by formulas; None if S is too long."""
-        written = self._written_form
+        written = self._written_form if self.is_canonical else None
         return written if written is not None and written.forms is not None else None
 
     @cached_property
@@ -226,12 +236,22 @@ class StepMap:
         """True if S, in the plane ΔJ, is shown to vanish."""
         if self.symplectic_by_conditions:
             return True
+        if not self.is_canonical:
+            return self._preserves_volume
         if self._written_form is None and self.step is not None:
             # Balls refute most schemes at the first point; only the others need a closed form.
             if self.implicit or not may_preserve(self.field, self.step):
                 return False
             return self.closed is not None and self.closed.symplectic
         return self._written_form is not None and self._written_form.symplectic
+
+    @property
+    def _preserves_volume(self) -> bool:
+        """True if det J ≡ 1 is shown, for a step of equations without an H."""
+        step = self.step or self._written_form
+        if self.implicit or step is None or not may_be_uniform(self.field, step):
+            return False
+        return self.closed is not None and self.closed.preserves_volume() is True
 
     @cached_property
     def uniform_delta_j(self) -> Poly | None:
@@ -248,6 +268,8 @@ class StepMap:
     def conserves_energy(self) -> bool:
         """True if it is shown that no step changes H."""
         field, step = self.field, self.step or self._written_form
+        if not isinstance(field, CanonicalField):
+            return False
         if self.keeps_quadratic and self.symplectic_by_conditions and field.quadratic:
             return True
         if field.timed or self.implicit or step is None or not may_conserve(field, step):
@@ -259,7 +281,7 @@ class StepMap:
         sides = zip(self.hamiltonian.coordinates, self.closed.elements, strict=True)
         after = before.xreplace({symbol(name): ring.expression(x) for name, x in sides})
         try:
-            whole, (change,) = canonical_field(self.hamiltonian, after - before)
+            whole, (change,) = field_of(self.hamiltonian, after - before)
         except InputError:
             return False
         return whole.ring.vanishes(change) is True

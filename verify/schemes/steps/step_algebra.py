@@ -122,12 +122,16 @@ class SeriesAlgebra(StepAlgebra[Series]):
         self, count: int, right: Callable[[StepAlgebra[Series], Sequence[Series]], list[Series]]
     ) -> list[Series]:
         """Solve by iteration: each pass makes one more power of h right."""
-        solution = [SeriesAlgebra(self.field, 0).nothing] * count
+        solution = [self.up_to(0).nothing] * count
         # The right side is O(h): if Z is right up to h^(k−1), right(Z) is right up to h^k.
         for longest in range(1, self.most + 1):
-            shorter = SeriesAlgebra(self.field, longest, self._recent)
+            shorter = self.up_to(longest)
             solution = right(shorter, list(map(shorter._cut, solution)))
         return solution
+
+    def up_to(self, most: int) -> "SeriesAlgebra":
+        """Return the algebra of shorter series, with the same cache."""
+        return SeriesAlgebra(self.field, most, self._recent)
 
     def _cut(self, x: Series) -> Series:
         return Series.from_coefficients(self.field.ring, x.coefficients, self.most)

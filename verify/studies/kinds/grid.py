@@ -1,5 +1,6 @@
 """Runs of every scheme over step sizes and initial values."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -53,10 +54,20 @@ def _common_fields(scene: Scene) -> dict[str, Any]:
     grid = scene.grid
     return scene.hamiltonian_fields() | {
         "t0": scene.t0, "arithmetic": grid.arithmetic, "digits": grid.digits, "points": 0,
-        "observables": select_observables(scene.exact_hamiltonian(), grid.observables),
+        "observables": observables_of(scene, grid.observables),
         "sections": POINTS if shares_runs(scene) else DEFAULT_SECTIONS,
         "shares_kernel": grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     }  # fmt: skip
+
+
+def observables_of(scene: Scene, requested: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the requested observables of runs; by default the usual ones, and those of what the
+    scene asks whether a step keeps it."""
+    hamiltonian = scene.exact_hamiltonian()
+    names = select_observables(hamiltonian, requested)
+    if requested is not None or scene.keeps is None:
+        return names
+    return tuple(dict.fromkeys((*names, *scene.keeps.observables(hamiltonian))))
 
 
 def shares_runs(scene: Scene) -> bool:
@@ -64,10 +75,8 @@ def shares_runs(scene: Scene) -> bool:
     grid = scene.grid
     if grid is None or not grid.separate:
         return False
-    hamiltonian = scene.exact_hamiltonian()
-    has_links = way_for(hamiltonian).observables <= set(
-        select_observables(hamiltonian, grid.observables)
-    )
+    observable_names = set(observables_of(scene, grid.observables))
+    has_links = way_for(scene.exact_hamiltonian()).observables <= observable_names
     return has_links and serves_first_link(grid.arithmetic, grid.digits)
 
 
@@ -85,9 +94,7 @@ def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, tasks = scene_name(scene), grid_tasks(scene, scheme)
     hamiltonian = scene.exact_hamiltonian()
-    observable_names = (
-        set(select_observables(hamiltonian, scene.grid.observables)) if scene.grid else set()
-    )
+    observable_names = set(observables_of(scene, scene.grid.observables)) if scene.grid else set()
     catalogue = observables.by_name().items()
     vanishing = {name for name, entry in catalogue if entry.vanishes is has_no_defect}
     # Observables that measure the loss of area are exactly 0: no run is needed for them alone.

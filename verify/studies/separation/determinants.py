@@ -39,11 +39,11 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, SystemNumber, UnsupportedError
 from verify.kernels.kernel import Kernel, KernelWriter
 from verify.kernels.rounding import PRECISION_BITS
-from verify.kernels.step.computation import common_power
 from verify.kernels.step.kinds import may_leave_range
+from verify.kernels.step.shared_part import common_power
 from verify.kernels.stepping import KernelRun, RunOutcome, limits
 from verify.runs.estimates import working_digits
-from verify.runs.requested_run import prove_observables
+from verify.runs.proved_values import prove_observables
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_parts import Parts
 from verify.schemes import get

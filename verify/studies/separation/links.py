@@ -26,7 +26,7 @@ from verify.runs.digits_on_demand import Measurement, choose, measure
 from verify.runs.estimates import working_digits
 from verify.runs.requested_run import RequestedRun
 from verify.schemes.maps.step_map import StepMap
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 from verify.studies.separation.chain import Chain, Kind, Links, lacking, links_of
 from verify.studies.separation.determinants import Determinants
 from verify.studies.separation.matrix_products import Matrices
@@ -41,7 +41,7 @@ from verify.studies.separation.mixed_run import (
 )
 from verify.studies.separation.way import Size, Way
 
-_WAYS: dict[Structure, type[Way]] = {AREA: Determinants, SYMPLECTIC: Matrices}
+_WAYS: dict[CanonicalForm, type[Way]] = {AREA: Determinants, SYMPLECTIC: Matrices}
 _DOUBLINGS = 6
 _ATTEMPTS = 4
 EachWay = tuple[tuple[Chain, ...], tuple[Chain, ...] | None]

@@ -18,7 +18,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, SystemNumber, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.execution.keeper import fraction_of, fraction_text
-from verify.kernels.chunked_loop import last_good
+from verify.kernels.last_in_range import last_good
 from verify.kernels.notes import LazyNote
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course

@@ -27,7 +27,7 @@ from verify.scenes.results.work_precision import (
     WorkPoint,
 )
 from verify.schemes.scheme import Scheme
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
 SETTLED = 0.1  # the greatest difference of slopes in the asymptotic range
 ALIKE = 1.1  # a ratio between 1/ALIKE and this is within the error of run times
@@ -48,7 +48,7 @@ def build_line(
     cost: CostResult | None,
     compile_seconds: float,
     scale: str = _NO_LIMIT,
-    structure: Structure = AREA,
+    structure: CanonicalForm = AREA,
 ) -> WorkLine:
     """Build a scheme's line, or a peer's if `scheme` is a name; `scale` is the orbit's size."""
     peer, keeps_area = isinstance(scheme, str), bool(preserves_area)
@@ -80,7 +80,7 @@ def lambda_slope(
     points: Sequence[WorkPoint],
     preserves_area: bool,
     scale: str = _NO_LIMIT,
-    structure: Structure = AREA,
+    structure: CanonicalForm = AREA,
 ) -> SlopeResult:
     """Fit the order of |Λ| in h; in n degrees of freedom that of max |W|."""
     if preserves_area:
@@ -153,7 +153,7 @@ def log10_of(text: str) -> float:
 
 
 def compare_all(
-    lines: Sequence[WorkLine], scale: str, structure: Structure = AREA
+    lines: Sequence[WorkLine], scale: str, structure: CanonicalForm = AREA
 ) -> tuple[ComparisonResult, ...]:
     """Compare every two schemes that claim the same order; `scale` is the orbit's size."""
     pairs = combinations([line for line in lines if not line.peer], 2)
@@ -161,7 +161,7 @@ def compare_all(
 
 
 def compare_lines(
-    line: WorkLine, other_line: WorkLine, scale: str, structure: Structure = AREA
+    line: WorkLine, other_line: WorkLine, scale: str, structure: CanonicalForm = AREA
 ) -> ComparisonResult:
     """Compare two lines at equal run time; see the module's text."""
     errors = _log_points(line, "error", scale), _log_points(other_line, "error", scale)
@@ -252,7 +252,7 @@ def _describe_structure(
     other_line: WorkLine,
     ratio: RatioResult | None,
     scale: str,
-    structure: Structure,
+    structure: CanonicalForm,
 ) -> str:
     """Compare two lines in the structure that a step should keep."""
     subject, both_keep, keeps = _PHRASES[structure]

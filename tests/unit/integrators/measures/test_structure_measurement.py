@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from verify.integrators.measures.structure_measurement import StructureMeasurement, _farthest
+from verify.integrators.measures.structure_measurement import StructureMeasurement, farthest_of
 
 NAMES = ("q", "p")
 
@@ -17,7 +17,7 @@ def place(z: tuple[float, float], units: tuple[float, float], t: float = 0.0) ->
 
 
 def followed(step: Any, *places: Any, moving: bool = True) -> dict[str, float]:
-    return _farthest(SimpleNamespace(names=NAMES, evaluate=step, time_dependent=moving), places)
+    return farthest_of(SimpleNamespace(names=NAMES, evaluate=step, time_dependent=moving), places)
 
 
 def test_a_force_that_grows_in_time_is_read_at_the_time_of_each_step() -> None:

@@ -42,7 +42,7 @@ from verify.scenes.results.separation import (
     SeparationResult,
 )
 from verify.scenes.results.separation_parts import AnyEvaluation, GrowthResult
-from verify.structures import AREA, SYMPLECTIC, Structure
+from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class SeparationView:
     `crossovers`: sentences on those in W.
     """
 
-    structure: Structure
+    structure: CanonicalForm
     finding: tuple[str, ...]
     table: PartsTable
     growths: tuple[Group, ...]

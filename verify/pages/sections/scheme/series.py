@@ -29,7 +29,12 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
 
 def _plots(scene: SceneResult, proof: ProofResult, anchor: str) -> Iterator[tuple[Plot, str]]:
     """Yield a plot for all runs with the same step size that repeat the same part of a paper."""
-    scheme_series = [run for run in scene.series if run.scheme == proof.scheme and run.series]
+    # Where a proof gives Λ, ΔJ and Λ are lines at 0; such a series is there for its energy.
+    scheme_series = [
+        run
+        for run in scene.series
+        if run.scheme == proof.scheme and run.series and "lambda" not in run.exact
+    ]
     groups = by_key(scheme_series, lambda run: (run.source, run.step_size, run.arithmetic))
     for index, ((source, *_), runs) in enumerate(groups.items()):
         yield _over_time(runs, name=f"time-{index}-of-{anchor}"), source

@@ -18,7 +18,7 @@ def _says(proved: ProvedStatement) -> str:
     parts = f"d(`{derivative}` `p_i`)∧d`q_i` + d`p_i`∧d(`{derivative}` `q_i`)"
     form = f"−1/{last}! `Σ_i` ({parts})"
     coefficient = {AREA: divergence(proved), SYMPLECTIC: form}[proved.structure]
-    return first_term(proved, proved.structure.defect, coefficient)
+    return first_term(proved, proved.structure.symbol, coefficient)
 
 
 APPLIES = Applies(

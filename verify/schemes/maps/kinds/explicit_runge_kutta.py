@@ -3,7 +3,7 @@
 from fractions import Fraction
 from functools import partial
 
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
@@ -21,7 +21,7 @@ def build(
     `standing`: every stage is at t + `standing` h, which is a wrong clock (see
     `verify.schemes.methods.user.wrong_clocks`); None for the right clock.
     """
-    field, _ = canonical_field(hamiltonian)
+    field, _ = field_of(hamiltonian)
     return StepMap(hamiltonian, field, partial(coefficients.changes, standing=standing))
 
 

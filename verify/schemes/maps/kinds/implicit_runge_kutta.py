@@ -31,7 +31,7 @@ from verify.algebra.enclosure import enclose, enclose_defined, points
 from verify.algebra.formula import symbol
 from verify.algebra.power_series import Derivatives
 from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 from verify.schemes.conditions.coloured_trees import symmetry
@@ -68,13 +68,15 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
     """Return the map by its equations, for any H."""
     count = tableau.stages
     numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
-    field, exact = canonical_field(hamiltonian, *numbers)
+    field, exact = field_of(hamiltonian, *numbers)
     rows = [exact[count * i : count * (i + 1)] for i in range(count)]
     clocks = [sum(row, field.ring.zero) for row in rows]
 
     def known_order() -> int | None:
         """Return the order by rooted trees, for an H in the plane without time; else None."""
-        return order_of(tableau, field) if hamiltonian.planar and not field.timed else None
+        if not isinstance(field, CanonicalField) or not hamiltonian.planar or field.timed:
+            return None
+        return order_of(tableau, field)
 
     return StepMap(
         hamiltonian,
@@ -104,7 +106,7 @@ def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | Non
     where α, β and γ are polynomials in μ² = −h² D.
     """
     p, q, h = map(symbol, "pqh")
-    field, _ = canonical_field(hamiltonian)
+    field, _ = field_of(hamiltonian)
     ring, (u, v) = field.ring, field.slopes
     matrix = [x for slope in field.slopes for x in field.gradient(slope)]
     if any(ring.vanishes(ring.diff(x, n)) is not True for x in matrix for n in field.names):

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 from verify.algebra.formula import symbol
 from verify.effort import limit_effort
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import PlainField, field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
@@ -28,7 +28,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> 
     For H = T(p) + V(q), symplectic Euler is a kick and a drift. If ∂H/∂q is linear in p, it has a
     closed form in the plane.
     """
-    field, _ = canonical_field(hamiltonian)
+    field, _ = field_of(hamiltonian)
     if all(s.at_p == 1 and s.at_q == 0 for s in coefficients.stages):
         if field.separable:
             parts = [
@@ -48,7 +48,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> 
 _EULER = Stage(kick=Fraction(1), drift=Fraction(1), at_p=Fraction(1))
 
 
-def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | None:
+def _linear_in_p(hamiltonian: Hamiltonian, field: PlainField) -> StepMap | None:
     """Return p' = p − h H_q/(1 + h H_pq), q' = q + h H_p(p', q); None unless H_q is linear in p."""
     ring, (force, speed) = field.ring, field.slopes
     # Linearity in p is decided exactly: the second derivative must be the zero function.

@@ -1,0 +1,96 @@
+"""The options that name what a step is meant to keep: --keeps and what refines it."""
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.input import options
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+
+_OPTIONS = options(
+    click.option(
+        "--keeps",
+        multiple=True,
+        metavar="NAME[: K]",
+        help="A structure that the step is meant to keep: area, symplectic, volume, energy,"
+        " momentum, angular-momentum, reversible, symmetric, conformal, poisson, or the formula of"
+        " a first integral; with K, that its defect is O(h^K); repeatable.",
+    ),
+    click.option(
+        "--form", default="", metavar="FORM", help="The 2-form of symplectic, as m1*dv1^dx1."
+    ),
+    click.option(
+        "--density", default="", metavar="FORMULA", help="The density of volume, as 1/(u*v)."
+    ),
+    click.option(
+        "--poisson",
+        default="",
+        metavar="MATRIX",
+        help="The matrix of the bracket, rows by ; and entries by , as '0, u*v; -u*v, 0'.",
+    ),
+    click.option(
+        "--casimir",
+        "casimirs",
+        multiple=True,
+        metavar="FORMULA",
+        help="A Casimir of the bracket, which is to be kept too; repeatable.",
+    ),
+    click.option(
+        "--reverses",
+        default="",
+        metavar="FORMULAS",
+        help="The involution that turns the flow round, as '-v, x'; by default p to -p.",
+    ),
+    click.option(
+        "--factor",
+        default="",
+        metavar="FORMULA",
+        help="The factor of the form in one step, as exp(-gamma*h), of conformal.",
+    ),
+)
+split_option = click.option(
+    "--split",
+    "splits",
+    multiple=True,
+    metavar="NAME: FIELD",
+    help="A part of --field that flows exactly, as 'A: x_dot = y*z'; the scheme is then such as"
+    " 'A 1/2; B 1; A 1/2'; repeatable.",
+)
+_NAMES = ("keeps", "form", "density", "poisson", "casimirs", "reverses", "factor")
+
+
+def structure_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options to a command, which gets them as the argument `keeps`, a KeepsRequest."""
+
+    @wraps(command)
+    def wrapper(*args: Any, **arguments: Any) -> Any:
+        from verify.structures.reading import KeepsRequest
+
+        request = KeepsRequest(**{name: arguments.pop(name) for name in _NAMES})
+        return command(*args, keeps=request, **arguments)
+
+    return _OPTIONS(wrapper)
+
+
+def compose_scheme(scheme: str, splits: Sequence[str], system: "Hamiltonian") -> str:
+    """Return the scheme, or the formulas of one that is composed of the parts in `splits`."""
+    if not splits:
+        return scheme
+    from verify.hamiltonians.equations import Equations
+    from verify.schemes.field_splitting import formulas_of_splitting
+
+    if not isinstance(system, Equations):
+        raise InputError("--split", splits[0], "goes with --field")
+    parts: dict[str, str] = {}
+    for text in splits:
+        name, colon, field = text.partition(":")
+        if not colon or name.strip() in parts:
+            problem = "stands twice" if colon else "has no name; write NAME: FIELD"
+            raise InputError("--split", text, problem)
+        parts[name.strip()] = field
+    return formulas_of_splitting(system, parts, scheme)

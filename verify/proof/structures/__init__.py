@@ -1,0 +1,1 @@
+"""Proofs of what one step map keeps: any structure of `verify.structures`."""

@@ -1,0 +1,35 @@
+"""A first integral I of the flow, such as energy: its defect is I(z') − I(z)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from verify.lazy_sympy import sympy
+from verify.structures.structure import StepValues, Structure, Value
+
+
+@dataclass(frozen=True)
+class FirstIntegral(Structure):
+    """A function of z, and perhaps of t, that is constant along every solution."""
+
+    integral: sympy.Expr
+
+    @property
+    def defect_formula(self) -> str:
+        letter = "H" if self.name == "energy" else "I"
+        return f"{letter}(z') − {letter}(z)"
+
+    @property
+    def formulas(self) -> tuple[sympy.Expr, ...]:
+        return (self.integral,)
+
+    def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        return FirstIntegral(self.name, self.label, self.integral.xreplace(values))
+
+    def mistake(self, names: Sequence[str]) -> str:
+        varying = {x.name for x in self.integral.free_symbols} & {*names, "t"}
+        return "" if varying else "is a constant, which every step keeps"
+
+    def defect(self, step: StepValues) -> dict[str, Value]:
+        return {"": step.after(self.integral) - step.before(self.integral)}

@@ -1,0 +1,54 @@
+"""Volume ρ dz, with a density ρ(z) that is 1 by default: its defect is ρ(z') det J − ρ(z)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from verify.lazy_sympy import sympy
+from verify.structures.structure import StepValues, Structure, Value, is_zero
+
+
+@dataclass(frozen=True)
+class Volume(Structure):
+    """Volume with a density, in any number of coordinates."""
+
+    density: sympy.Expr
+
+    @property
+    def defect_formula(self) -> str:
+        return "ΔJ = det J − 1" if self.density == 1 else "ρ(z') det J − ρ(z)"
+
+    @property
+    def formulas(self) -> tuple[sympy.Expr, ...]:
+        return (self.density,)
+
+    def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        return Volume(self.name, self.label, self.density.xreplace(values))
+
+    def defect(self, step: StepValues) -> dict[str, Value]:
+        volume = step.after(self.density) * determinant(step.jacobian)
+        return {"": volume - step.before(self.density)}
+
+    def mistake(self, names: Sequence[str]) -> str:
+        return "vanishes everywhere" if is_zero(self.density, names) is not False else ""
+
+
+def determinant(matrix: Sequence[Sequence[Value]]) -> Value:
+    """Return the determinant by its minors of the first k rows, k = 1, 2, …, without division."""
+    size = len(matrix)
+    minors: dict[tuple[int, ...], Value] = {(k,): matrix[0][k] for k in range(size)}
+    for row in matrix[1:]:
+        longer: dict[tuple[int, ...], Value] = {}
+        for columns, minor in minors.items():
+            for column in set(range(size)).difference(columns):
+                key = tuple(sorted((*columns, column)))
+                # The sign of the last row's entry in the expansion of the larger minor.
+                term = row[column] * minor
+                odd = (len(key) - 1 - key.index(column)) % 2
+                if key not in longer:
+                    longer[key] = term * -1 if odd else term
+                else:
+                    longer[key] = longer[key] - term if odd else longer[key] + term
+        minors = longer
+    return minors[tuple(range(size))]
