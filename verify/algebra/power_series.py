@@ -272,7 +272,7 @@ class QuotientSeries:
                 self._cache[index] = self._root(inner, g.degree)
             else:
                 numbers = _taylor_numbers(g.kind, self.most) if g.kind in in_rings() else None
-                self._cache[index] = self._at(numbers, inner)
+                self._cache[index] = self._series_at(numbers, inner)
         return self._cache[index]
 
     def _root(self, inner: Series, degree: int) -> Series | None:
@@ -291,9 +291,9 @@ class QuotientSeries:
         for n in range(self.most):
             numbers.append(numbers[-1] * (Fraction(1, degree) - n) / (n + 1))
         share = inner.times(Fraction(int(c.q), int(c.p)))
-        return self._at(numbers, share - self._series([self.ring.one]))
+        return self._series_at(numbers, share - self._series([self.ring.one]))
 
-    def _at(self, numbers: list[Fraction] | None, inner: Series) -> Series | None:
+    def _series_at(self, numbers: list[Fraction] | None, inner: Series) -> Series | None:
         """Return Σ numbers[n] xⁿ for a series x that is O(h); None for another series."""
         if numbers is None or not inner.coefficients[0].is_zero():
             return None
