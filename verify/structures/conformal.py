@@ -20,20 +20,25 @@ class Conformal(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "Jᵀω(z')J − c(h) ω(z)"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return (self.factor, *self.entries.values())
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         entries = {place: x.xreplace(values) for place, x in self.entries.items()}
         return Conformal(self.name, self.label, self.factor.xreplace(values), entries)
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries, step.factor(self.factor))
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         h = symbol("h")
         if is_zero(self.factor.subs(h, 0) - 1, ()) is not True:
             return "has a factor that is not 1 at h = 0"

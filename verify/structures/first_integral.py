@@ -17,19 +17,24 @@ class FirstIntegral(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         letter = "H" if self.name == "energy" else "I"
         return f"{letter}(z') − {letter}(z)"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return (self.integral,)
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         return FirstIntegral(self.name, self.label, self.integral.xreplace(values))
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         varying = {x.name for x in self.integral.free_symbols} & {*names, "t"}
         return "" if varying else "is a constant, which every step keeps"
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return {"": step.after(self.integral) - step.before(self.integral)}

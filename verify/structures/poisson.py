@@ -21,17 +21,21 @@ class Poisson(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "J B(z) Jᵀ − B(z')"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return tuple(self.entries.values())
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         entries = {place: x.xreplace(values) for place, x in self.entries.items()}
         return Poisson(self.name, self.label, entries)
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         before = {place: step.before(x) for place, x in self.entries.items()}
         rows, result = step.jacobian, {}
         for a, b in combinations(range(len(step.names)), 2):
@@ -51,6 +55,7 @@ class Poisson(Structure):
         return matrix
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         matrix, symbols = self.matrix(len(names)), [symbol(name) for name in names]
         for a, b, c in combinations(range(len(names)), 3):
             # Jacobi's identity: Σ over the cyclic orders of B_ad ∂_d B_bc.

@@ -18,19 +18,24 @@ class Reversible(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "ρΦ_hρΦ_h(z) − z"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return self.reflection
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         return Reversible(self.name, self.label, tuple(x.xreplace(values) for x in self.reflection))
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return dict(zip(step.names, step.return_by(self.reflection), strict=True))
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         if len(self.reflection) != len(names):
             return f"has {len(self.reflection)} formulas, and there are {len(names)} coordinates"
         images = {symbol(n): x for n, x in zip(names, self.reflection, strict=True)}

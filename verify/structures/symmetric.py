@@ -11,7 +11,9 @@ class Symmetric(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "Φ_(−h)Φ_h(z) − z"
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return dict(zip(step.names, step.return_by(None), strict=True))

@@ -25,20 +25,25 @@ class SymplecticForm(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "S = Jᵀω(z')J − ω(z)"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return tuple(self.entries.values())
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         entries = {place: x.xreplace(values) for place, x in self.entries.items()}
         return type(self)(self.name, self.label, entries)
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries)
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         if len(names) % 2:
             return f"is degenerate: {len(names)} coordinates are an odd number"
         matrix = sympy.zeros(len(names), len(names))
@@ -108,16 +113,20 @@ class CanonicalForm(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return self.symbol
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return (sympy.S.One,)
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         return form_defect(step, canonical_entries(len(step.names)))
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         return f"is of pairs p, q, and there are {len(names)} coordinates" if len(names) % 2 else ""
 
 

@@ -17,20 +17,25 @@ class Volume(Structure):
 
     @property
     def defect_formula(self) -> str:
+        """The formula of the defect of one step."""
         return "ΔJ = det J − 1" if self.density == 1 else "ρ(z') det J − ρ(z)"
 
     @property
     def formulas(self) -> tuple[sympy.Expr, ...]:
+        """The formulas of which the structure is made."""
         return (self.density,)
 
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
+        """Return the structure with these values in place of parameters."""
         return Volume(self.name, self.label, self.density.xreplace(values))
 
     def defect(self, step: StepValues) -> dict[str, Value]:
+        """Return the components of the defect of one step, by their names."""
         volume = step.after(self.density) * determinant(step.jacobian)
         return {"": volume - step.before(self.density)}
 
     def mistake(self, names: Sequence[str]) -> str:
+        """Return what keeps it from being a structure; "" if nothing does."""
         return "vanishes everywhere" if is_zero(self.density, names) is not False else ""
 
 
