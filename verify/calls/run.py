@@ -172,8 +172,8 @@ def sweep(
 
     Parameters
     ----------
-    scheme, step_size, q, p, each of the parameters: one value, or a list, a range or an array with
-        one axis; all combinations of the values are run, 100,000 at most.
+    scheme, step_size, q, p, parameters: one value, of each of the parameters too, or a list, a
+        range or an array with one axis; all combinations are run, 100,000 at most.
     steps, time: one of the two; with `time` a step size h has N = ⌊time / h⌋ steps.
     observables: as in `verify.run`; by default delta_j_max, mse and lambda.
     progress: as in `verify.run`; it counts runs.
