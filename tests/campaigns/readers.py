@@ -83,10 +83,10 @@ def _parquet(path: Path) -> object:
 
 def _claims(path: Path) -> object:
     """A claims file beside the scenes that its claims name."""
-    for name in ("duffing.toml", "pendulum.toml"):
-        beside = path.parent / name
-        if not beside.exists():
-            beside.symlink_to(ROOT / "reports" / "paper" / name)
+    for scene in (ROOT / "reports/paper").glob("*.toml"):
+        beside = path.parent / scene.name
+        if scene.name != "claims.toml" and not beside.exists():
+            beside.symlink_to(scene)
     return load_claims(path)
 
 

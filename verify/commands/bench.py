@@ -11,7 +11,6 @@ from verify.commands.shared.execution_options import cache_option, cluster_optio
 from verify.commands.shared.output import CommandAnswer, answering, plain_json
 from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
-from verify.structures import AREA, SYMPLECTIC
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -21,16 +20,14 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-# The columns of errors, by the structure that schemes should keep: the head of each column, and the
-# field of a `WorkPoint`. The last one is the defect of that structure.
-_ERRORS = {
-    AREA: {"error": "error", "Λ": "lam"},
-    SYMPLECTIC: {
-        "error": "error",
-        "energy": "energy",
-        "Λ": "lam",
-        "max |W|": "symplectic_defect",
-    },
+# The columns of errors: the head of each column, and the field of a `WorkPoint`. The last one is
+# the defect of the structure that schemes should keep.
+_ERRORS_IN_THE_PLANE = {"error": "error", "Λ": "lam"}
+_ERRORS_IN_DEGREES = {
+    "error": "error",
+    "energy": "energy",
+    "Λ": "lam",
+    "max |W|": "symplectic_defect",
 }
 
 
@@ -171,7 +168,7 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
 
     console = Console(highlight=False)
     console.print(_table(name, result))
-    *_, defect_name = _ERRORS[result.structure]
+    *_, defect_name = _error_columns(result)
     for line in result.lines:
         console.print(_describe_line(line, defect_name))
     for system in result.systems:
@@ -190,11 +187,17 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
     )
 
 
+def _error_columns(result: "WorkPrecisionResult") -> dict[str, str]:
+    from verify.structures import AREA
+
+    return _ERRORS_IN_THE_PLANE if result.structure is AREA else _ERRORS_IN_DEGREES
+
+
 def _table(name: str, result: "WorkPrecisionResult") -> "Table":
     from rich import box
     from rich.table import Table
 
-    errors = _ERRORS[result.structure]
+    errors = _error_columns(result)
     title = f"{name}: error at T = {result.time} against run time"
     table = Table(
         title=title,

@@ -14,7 +14,8 @@ from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, is_zero
 
-Entries = Mapping[tuple[int, int], sympy.Expr]  # the coefficients of dz_a∧dz_b, a < b
+# The coefficients of dz_a∧dz_b, a < b. In quotes, for here sympy would be imported.
+Entries = Mapping[tuple[int, int], "sympy.Expr"]
 
 
 @dataclass(frozen=True)

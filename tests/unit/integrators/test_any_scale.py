@@ -389,9 +389,9 @@ def test_the_time_limit_holds_for_all_that_is_done(limit: float) -> None:
             p, q = steps.bodies(p, q, h / 100)
         return p, q
 
-    begun = time.perf_counter()
+    begun = time.process_time()  # the seconds on the wall depend on what else runs
     found = judged(step, BOTH, limit, steps.TWO_BODIES)
-    assert time.perf_counter() - begun < 2 * limit + 2
+    assert time.process_time() - begun < 2 * limit + 2
     assert found.verdict in ("MEASURED", "UNDECIDED")
 
 
