@@ -94,6 +94,16 @@ def test_the_answer_and_its_picture_are_on_the_first_screen(
             assert box["y"] + box["height"] <= 800, part
 
 
+def test_formulas_are_set_in_the_font_of_the_page(browser: Browser, folder: Path) -> None:
+    path = file_of(folder, page_of("paper"))
+    fonts = "[...document.fonts].map(font => `${font.family} ${font.status}`)"
+    with opened(browser, path) as found:
+        assert found.page.evaluate(fonts) == ["Formulas loaded"]
+    refused = file_of(folder, page_of("paper").replace("; font-src data:", "", 1))
+    with opened(browser, refused) as found:
+        assert found.page.evaluate(fonts) == ["Formulas error"], "a planted error"
+
+
 # -- ways through the page ------------------------------------------------------------------------
 
 

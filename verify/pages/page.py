@@ -160,6 +160,7 @@ def _describe_floors(scene: SceneResult) -> str:
 
 
 TEMPLATES = Path(__file__).parent / "templates"
+FONT = Path(__file__).parent / "fonts" / "formulas.woff"
 _FILTERS = (
     prose_markup.prose, prose_markup.prose_with_backticks, prose_markup.sentence,
     prose_markup.cell, prose_markup.notation,
@@ -210,9 +211,14 @@ def render(report: Report, *, full: bool = False) -> str:
         page=page_view(report),
         full=full,
         script=Markup(script),  # noqa: S704 - our own
-        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        digest=_base64(hashlib.sha256(script.encode()).digest()),
+        font=_base64(FONT.read_bytes()),
     )
     return page.replace("<details", "<details open") if full else page
+
+
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode()
 
 
 @cache

@@ -213,7 +213,7 @@ def test_the_page_needs_nothing_from_outside(name: str) -> None:
             assert not key.startswith("on")
     assert reader.scripts == [SCRIPT]
     assert "@import" not in page
-    assert not re.search(r"url\((?!#)", page)
+    assert not re.search(r'url\((?!#|"data:font)', page)
 
 
 def test_the_pages_policy_lets_its_own_script_run_and_no_other() -> None:
