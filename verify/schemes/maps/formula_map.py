@@ -1,4 +1,4 @@
-"""A user's own map: `p_next = …; q_next = …`, or `p1_next = …; q1_next = …`."""
+"""A user's own map: `p_next = …; q_next = …`, or `p1_next = …; q1_next = …`, and steps between."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Collection, Mapping, Sequence
 
 from verify.algebra.domain import FormulaDomain
 from verify.algebra.expressions.function_nodes import requirements_of_expression
-from verify.algebra.formula import read, symbol
+from verify.algebra.formula import symbol
 from verify.effort import limit_effort
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
+from verify.schemes.maps.step_formula import StepFormula, names_of_time
 from verify.schemes.maps.step_map import StepMap
 from verify.structures import AREA
 
@@ -24,28 +25,30 @@ def step_map_from_formulas(
     """Return the map that has a formula for each coordinate, by its name with `_next`.
 
     A formula may use the coordinates, h, the parameters of H, t if H depends on it, the names in
-    `numbers`, and the names of earlier formulas. Raises InputError.
+    `numbers`, the names of earlier formulas, and derivatives of H as `H_q(p_half, q_next)`.
+    Formulas with other names, such as p_half, are steps in between. Raises InputError.
     """
     coordinates = hamiltonian.coordinates
-    if sorted(formulas) != sorted(name + _NEXT for name in coordinates):
+    last = [name for name in formulas if name.endswith(_NEXT)]
+    if sorted(last) != sorted(name + _NEXT for name in coordinates):
         raise _other_coordinates(hamiltonian, formulas)
-    time = ("t",) if hamiltonian.time_dependent else ()
+    time = names_of_time(hamiltonian)
     names = [*coordinates, "h", *time, *hamiltonian.parameters, *numbers]
-    if "p_next" in formulas and "p_next" in names:
-        raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
+    for name in formulas:
+        if name in names:
+            problem = "stands for a value of the step in the map's formulas"
+            raise InputError("parameter", name, problem)
     substitutions: dict[sympy.Symbol, sympy.Expr] = {}
     domain = FormulaDomain.from_requirements(())
     for name, formula in formulas.items():
-        expression, requirements = read(formula, names, source=name)
+        read = StepFormula(hamiltonian, formula, names, name)
         # Formulas may use earlier ones, so that substitution can grow exponentially.
         with limit_effort(name, formula, "to put what stands before into it"):
-            domain &= (
-                FormulaDomain.from_requirements(requirements)
-                .substitute(substitutions)
-                .substitute(hamiltonian.value_substitutions)
+            domain &= read.domain.substitute(substitutions).substitute(
+                hamiltonian.value_substitutions
             )
             substitutions[symbol(name)] = hamiltonian.substitute_values(
-                expression.xreplace(substitutions)
+                read.expression.xreplace(substitutions)
             )
         names.append(name)
     exact = [substitutions[symbol(name + _NEXT)] for name in coordinates]
