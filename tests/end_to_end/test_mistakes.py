@@ -262,10 +262,9 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "reference check nope": ("DIR=nope: is no folder",),
     "reference compare mien.csv": ("file=mien.csv: No such file", "is mine.csv meant?"),
     "reference compare notes.txt": ("line 1 names no column of p, q", "it has hello"),
-    "schemes lie2": ("lie2: not allowed here; write verify schemes [OPTIONS] for all of them, or "
-        "verify prove --scheme lie2 … for this one",),
-    "systems duffing": ("or verify prove --system duffing … for this one",),
-    "schemes nope": ("nope: not allowed here; write verify schemes [OPTIONS]",),
+    "schemes lie2 lie3": ("lie3: not allowed here; write verify schemes NAME [OPTIONS]",),
+    "schemes gaus4": ("scheme=gaus4: unknown; is gauss4 meant?",),
+    "systems dufing": ("system=dufing: unknown; is duffing meant?",),
     f"export {PENDULUM} --language c++": ("language=c++: unknown; is c meant? allowed: c, julia, ",
         'a C++ step that is extern "C"'),
     f"export {PENDULUM} --language rust":
@@ -334,6 +333,9 @@ RIGHT_FORMULAS = (
     "x*q + v*p", "p**2/2 + .5*q", " p**2/2\n+ q ", "p**2/2 + sqrt(1 + q**2)", "pendulum*p + q",
 )  # fmt: skip
 RIGHT = (
+    "schemes leapfrog",
+    "systems Kepler",
+    "schemes 'p_half = p - h*q; q_next = q + h*p_half; p_next = p_half'",
     "prove --system Pendulum --scheme leapfrog",
     "prove --system 'double well' --scheme RK4",
     "prove --system duffing --scheme lie2 --param delta=7/3",

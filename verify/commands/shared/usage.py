@@ -202,8 +202,6 @@ def _explain_extra_words(extra: str, context: click.Context, command_line: Seque
         if isinstance(parameter, click.Argument)
     ]
     takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
-    added = "" if arguments else _add_options([extra], _all_commands(context)["prove"])
-    takes += added and f" for all of them, or verify prove {added} … for this one"
     return f"{extra}: not allowed here; write {takes}"
 
 

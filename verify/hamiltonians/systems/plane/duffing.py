@@ -9,7 +9,7 @@ SYSTEM = System(
     name="duffing",
     title="Duffing oscillator",
     formula="p**2/2 + q**2/2 + delta*q**4/4",
-    source="Eq. 17–18",
+    source="A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, Eq. 17–18",
     parameters={"delta": "coefficient of the cubic restoring force"},
     flow=in_potential(
         lambda v: (Fraction(0), Fraction(0), Fraction(1, 2), Fraction(0), v["delta"] / 4)

@@ -77,7 +77,7 @@ SYSTEM = System(
     name="pendulum",
     title="mathematical pendulum",
     formula="p**2/2 - cos(q)",
-    source="Eq. 25–26",
+    source="A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, Eq. 25–26",
     flow=_motion,
     regimes={
         "libration": {"p": "1/3", "q": "3/2"},

@@ -15,5 +15,5 @@ SCHEME = splitting(
     PARTS,
     order=1,
     symmetric=False,
-    source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
 )

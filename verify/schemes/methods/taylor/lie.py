@@ -19,12 +19,13 @@ from verify.schemes.scheme import Scheme
 
 EXAMPLES = ("lie1", "lie2", "lie3", "lie4", "lie5", "lie6")
 MAX_ETA = 100
+_SOURCE = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, Eq. 2–5"
 
 
 def make(name: str) -> Scheme | None:
     """Return the scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
     eta = eta_of(name)
-    return None if eta is None else lie_series(f"lie{eta}", eta, source="Eq. 2–5")
+    return None if eta is None else lie_series(f"lie{eta}", eta, source=_SOURCE)
 
 
 def lie_series(name: str, eta: int, *, source: str) -> Scheme:
