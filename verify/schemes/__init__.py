@@ -3,9 +3,12 @@
 A file of `methods/` defines `SCHEME`, the Scheme that has the file's name. For a family it defines
 `EXAMPLES`, some names of members, and `make(name)`, which returns the member of that name or None.
 The names of members begin with the file's name; the files in `methods/user/` take texts that users
-write. `ALIASES` are other names of the scheme. To add a scheme is to add one file.
+write, and that may begin with a title: `mine: p_half = …`. `ALIASES` are other names of the scheme.
+To add a scheme is to add one file.
 """
 
+import re
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -19,6 +22,7 @@ if TYPE_CHECKING:
 
 _FILES = Catalogue(f"{__name__}.methods", [f"{folder}/methods" for folder in __path__])
 _USER_FOLDER = "user"
+_TITLED = re.compile(r"([A-Za-z][\w-]*)\s*:\s*(.*)", re.ASCII | re.DOTALL)
 
 
 @cache
@@ -34,10 +38,13 @@ def get(name: str) -> "Scheme":
     """Return the scheme of that name, which is read as `canonical` reads it.
 
     The name may be an alias, a member of a family such as `lie7`, or a user's own formulas or
-    coefficients. Raises InputError if it is none of these.
+    coefficients, with a title before them or not. Raises InputError if it is none of these.
     """
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
+    title, text = separate_title(name)
+    if title:
+        return _titled(title, text)
     # Importing every file would load sympy: only files whose name begins the scheme's are tried.
     for file in _candidates(canonical(name)):
         scheme = _scheme_from_file(file, canonical(name))
@@ -45,6 +52,31 @@ def get(name: str) -> "Scheme":
             return scheme
     advice = "; code of your own goes with verify check-integrator" if ".py" in name else ""
     raise unknown_name("scheme", name, names(), f", …{advice}", aliases())
+
+
+def separate_title(name: str) -> tuple[str, str]:
+    """Return the title that a user gave a scheme, or "", and what stands behind it.
+
+    >>> separate_title("mine: kick 1; drift 1"), separate_title("rk4")
+    (('mine', 'kick 1; drift 1'), ('', 'rk4'))
+    """
+    match = _TITLED.fullmatch(name)
+    return (match[1], match[2]) if match else ("", name)
+
+
+def _titled(title: str, text: str) -> "Scheme":
+    if not text.strip() or separate_title(text)[0]:
+        raise InputError("scheme", f"{title}: {text}", "has no scheme behind its one title")
+    try:
+        taken = get(title).name
+    except InputError:
+        taken = ""
+    if taken:
+        raise InputError("scheme", title, f"is the scheme {taken}; give yours another title")
+    scheme = get(text)
+    if family(text) != _USER_FOLDER:
+        raise InputError("scheme", f"{title}: {text}", f"has the name {scheme.name}; write that")
+    return replace(scheme, name=f"{title}: {scheme.name}")
 
 
 @cache
@@ -56,7 +88,7 @@ def family(name: str) -> str:
     >>> family("leapfrog"), family("lie2")
     ('splitting', 'taylor')
     """
-    plain = canonical(get(name).name)
+    plain = canonical(get(separate_title(name)[1]).name)
     file = next(file for file in _candidates(plain) if _scheme_from_file(file, plain) is not None)
     return _FILES.folder(file).replace("_", "-")
 

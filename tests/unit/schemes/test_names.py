@@ -59,3 +59,33 @@ def test_what_is_found_goes_by_the_scheme_s_own_name() -> None:
     assert run(Hamiltonian.parse("p**2/2 + q**2/2"), "Leapfrog", **at).scheme == "stormer-verlet"
     scene = Scene(system="Pendulum", schemes=("RK4", "verlet"))
     assert (scene.system, scene.schemes) == ("pendulum", ("rk4", "stormer-verlet"))
+
+
+MINE = "p_half = p - h/2*q; q_next = q + h*p_half; p_next = p_half - h/2*q_next"
+
+
+@pytest.mark.parametrize("text", [MINE, "kick 1/2; drift 1; kick 1/2; order 2"])
+def test_a_scheme_of_ones_own_may_have_a_title(text: str) -> None:
+    titled, plain = schemes.get(f"mine-2: {text}"), schemes.get(text)
+    assert titled.name == f"mine-2: {plain.name}"
+    assert schemes.get(titled.name) == titled
+    assert schemes.family(titled.name) == schemes.family(text) == "user"
+    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2")
+    assert titled.step_map(hamiltonian).composed == plain.step_map(hamiltonian).composed
+
+
+@pytest.mark.parametrize(
+    ("given", "problem"),
+    [
+        (f"RK4: {MINE}", "RK4: is the scheme rk4; give yours another title"),
+        (f"lie9: {MINE}", "is the scheme lie9"),
+        ("mine: leapfrog", "has the name stormer-verlet; write that"),
+        ("mine: ", "has no scheme behind its one title"),
+        (f"mine: yours: {MINE}", "has no scheme behind its one title"),
+        ("mine: nothing", "scheme=nothing: unknown"),
+        (f"my own: {MINE}", "write it as"),
+    ],
+)
+def test_a_title_stands_before_ones_own_scheme_alone(given: str, problem: str) -> None:
+    with pytest.raises(InputError, match=problem):
+        schemes.get(given)
