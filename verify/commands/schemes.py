@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared.input import SCHEME
 from verify.commands.shared.output import CommandAnswer, answering, pick, print_line
 
 if TYPE_CHECKING:
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("name", metavar="[NAME]", required=False)
+@click.argument("name", metavar="[NAME]", required=False, type=SCHEME)
 @answering
 def schemes(name: str | None) -> CommandAnswer:
     """List the schemes: the order, whether symplectic, for which H, the cost of a step.

@@ -44,7 +44,7 @@ def get(name: str) -> "Scheme":
         raise InputError("scheme", name, "is not a name")
     title, text = separate_title(name)
     if title:
-        return _titled(title, text)
+        return _get_titled(title, text)
     # Importing every file would load sympy: only files whose name begins the scheme's are tried.
     for file in _candidates(canonical(name)):
         scheme = _scheme_from_file(file, canonical(name))
@@ -64,7 +64,7 @@ def separate_title(name: str) -> tuple[str, str]:
     return (match[1], match[2]) if match else ("", name)
 
 
-def _titled(title: str, text: str) -> "Scheme":
+def _get_titled(title: str, text: str) -> "Scheme":
     if not text.strip() or separate_title(text)[0]:
         raise InputError("scheme", f"{title}: {text}", "has no scheme behind its one title")
     try:

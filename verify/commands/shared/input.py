@@ -55,6 +55,17 @@ class CatalogueName(click.ParamType[str]):
         return [CompletionItem(name) for name in matches]
 
 
+class _SchemeName(CatalogueName):
+    """The type of a scheme: a name, formulas, coefficients, or a TOML file with one table."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        if str(value).strip().endswith(".toml"):
+            from verify.integrators.tables.table_scheme import scheme_from_file
+
+            return scheme_from_file(Path(value.strip()))
+        return super().convert(value, param, ctx)
+
+
 class _FileOr(click.ParamType[str]):
     """The type of a file, or of one of these names; a shell completes both."""
 
@@ -86,7 +97,7 @@ PATH = NonemptyPath(path_type=Path)
 SCENE = _FileOr(lambda: ("paper", *suites()))
 CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
-SCHEME = CatalogueName("scheme", _schemes)
+SCHEME = _SchemeName("scheme", _schemes)
 _SYSTEM = CatalogueName("system", _systems)
 Command = Callable[..., Any]
 

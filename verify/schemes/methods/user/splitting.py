@@ -33,7 +33,7 @@ def make(name: str) -> Scheme | None:
     # Each part needs a size, and long texts are refused before sympy sees them.
     if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
         raise InputError("scheme", name, _FORM)
-    order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
+    order = order_of(name, words.pop()[1]) if words[-1][0] == "order" else 1
     part_texts = [_part(name, *part) for part in words]
     parts = tuple((kind, parse(size, (), source=kind)) for kind, size, _ in part_texts)
     times = tuple(
@@ -61,7 +61,8 @@ def make(name: str) -> Scheme | None:
     )
 
 
-def _order(name: str, text: str) -> int:
+def order_of(name: str, text: str) -> int:
+    """Return the order that a user's scheme claims; InputError for one that is none."""
     if not (text.strip().isascii() and text.strip().isdigit()):
         raise InputError("scheme", name, f"order {text.strip()}: is not a whole number")
     order = int(text)
