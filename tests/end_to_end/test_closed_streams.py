@@ -61,6 +61,7 @@ COMMANDS = {
     "explore": "--examples 3 --workers 2",
     "export": f"{OF} --language c",
     "flow": f"{FROM} --shape cat --time 0.2",
+    "init": "claims -o first.toml",
     "modified": OF,
     "plan": "scene.toml",
     "prove": f"{OF} --certificate lie2.json",

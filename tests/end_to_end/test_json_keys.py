@@ -55,6 +55,7 @@ COMMANDS = {
     "reference check": ["reference", "check", "data"],
     "reference compare": ["reference", "compare", "theirs.csv", "--data", "data", "--scene", "made",
                           "--scheme", "lie1", *START[:2], *PLANE],
+    "init": ["init", "scene"],
     "plan": ["plan", "paper"],
     "schemes": ["schemes"],
     "systems": ["systems"],

@@ -40,7 +40,7 @@ from verify.errors import InputError, LimitError, unknown_name
 from verify.files import read_text
 from verify.scenes.model_mistakes import describe_first_error
 from verify.scenes.scene import Scene
-from verify.scenes.toml_file import lines_of, read_toml
+from verify.scenes.toml_file import check_kind, lines_of, read_toml
 
 _ROOT = ("title", "defaults", "scene", "report_scenes", "claim", *TABLES)
 # A claim needs one key of each group. If it gives one itself, it takes none of that group from the
@@ -98,12 +98,11 @@ class ClaimsFile(PaperFile):
 def load_claims(path: Path) -> ClaimsFile:
     """Read the claims in a TOML file; InputError names file, line, claim and problem."""
     data = read_toml(path)
+    check_kind(data, "claim", path.name)
     file = ClaimsFile(path.name, "", lines=lines_of(read_text(path)))
     tables = data.get("claim")
     if not isinstance(tables, list) or not tables:
-        raise InputError(
-            "file", path.name, "must hold [[claim]] tables; a scene goes with verify report"
-        )
+        raise InputError("file", path.name, "must hold [[claim]] tables")
     # Sorted, so that the error does not depend on the order of a set.
     for key in sorted(set(data) - set(_ROOT)):
         line = file.lines.line_of("", 0, key) if key in file.lines.tables[""][0].keys else (

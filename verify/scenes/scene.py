@@ -84,7 +84,7 @@ from verify.scenes.orbit_sections import Poincare, Stroboscopic
 from verify.scenes.region_sections import RegionFlow
 from verify.scenes.run_sections import Grid, PlottedSeries, Reference, SeparationOver, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stability, StabilityMap
-from verify.scenes.toml_file import check_depth, read_toml, toml_data
+from verify.scenes.toml_file import check_depth, check_kind, read_toml, toml_data
 from verify.scenes.toml_text import toml_lines
 from verify.scenes.values import ExactNumber, SchemeName, SystemName
 
@@ -260,7 +260,9 @@ class Scene(Frozen):
 
 def load_scene(path: Path) -> Scene:
     """Read a scene from a TOML file; InputError names the file, key, value and problem."""
-    return scene_from(read_toml(path), path.name, default_name=path.stem)
+    data = read_toml(path)
+    check_kind(data, "schemes", path.name)
+    return scene_from(data, path.name, default_name=path.stem)
 
 
 def scene_from_toml(content: str, name: str) -> Scene:

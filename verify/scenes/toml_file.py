@@ -192,6 +192,21 @@ def toml_data(content: str, source: str) -> dict[str, Any]:
     return data
 
 
+# The key by which each kind of file is known, what it is, and who reads it.
+_KINDS = {
+    "claim": ("a file of claims", "verify check"),
+    "table": ("a file of printed tables", "verify check-table"),
+    "schemes": ("a scene", "verify report"),
+}
+
+
+def check_kind(data: dict[str, Any], key: str, source: str) -> None:
+    """Raise InputError if data without this key have that of another kind of file."""
+    for other, (kind, command) in _KINDS.items():
+        if key not in data and other in data:
+            raise InputError("file", source, f"is {kind}; {command} takes it")
+
+
 def check_depth(data: Any, name: str, source: str) -> None:
     """Raise InputError, which names the source, where data are nested too deep."""
     # Level by level, since a recursive walk of hostile data could exhaust the stack.

@@ -22,7 +22,7 @@ from verify.integrators.tables import kinds
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.table_claim import TableClaim
 from verify.scenes.model_mistakes import describe_first_error
-from verify.scenes.toml_file import Lines, lines_of, read_toml
+from verify.scenes.toml_file import Lines, check_kind, lines_of, read_toml
 
 MOST_TABLES = 1000
 _ROOT = ("table", "title", "about", "left_out")
@@ -68,6 +68,7 @@ def read_tables(path: Path) -> TableFile:
     """Read the tables of a TOML file. InputError names the file, the line, the table and the
     problem."""
     data = read_toml(path)
+    check_kind(data, "table", path.name)
     lines = lines_of(read_text(path))
     for key in sorted(set(data) - set(_ROOT)):
         line = lines.line_of("", 0, key) if lines.has("", 0, key) else lines.line_of(key)
