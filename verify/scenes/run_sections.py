@@ -82,7 +82,7 @@ class Grid(Section):
     def _check(self) -> Self:
         check_one_length(self.time, self.steps)
         for name in self.observables or ():
-            if name not in observables.by_name():
+            if observables.find(name) is None:
                 raise unknown_name("observable", name, observables.by_name())
         if self.growth and self.observables and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")

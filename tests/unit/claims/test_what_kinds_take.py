@@ -29,6 +29,7 @@ KEYS: dict[str, dict[str, Any]] = {
     "delta_j": {"formula": "h**3", "up_to": 4},
     "lambda": {**RUN, "printed": "1e-5"},
     "mse": {**RUN, "printed": "1e-5"},
+    "run_value": {**RUN, "of": "lambda", "printed": "1e-5"},
     "less": {**RUN, "quantity": "mse", "than": "abs_lambda"},
     "magnitude": {**RUN, "quantifier": "every", "exponents": {"abs_lambda": -5}},
     "growth": {**RUN, "growth": "linear"},
