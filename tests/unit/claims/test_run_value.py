@@ -123,3 +123,54 @@ WRONG = {
 def test_what_is_wrong_is_said_in_a_line(keys: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=WRONG[keys]):
         check_file(tmp_path, f'{HEAD}\n[[claim]]\nid = "a"\n{keys}\n')
+
+
+# -- ratios of two runs ---------------------------------------------------------------------------
+
+RATIOS = """
+[defaults]
+system = "pendulum"
+time = 5
+q = 1
+p = 0
+step_sizes = [0.1, 0.05]
+kind = "run_ratio"
+
+[[claim]]
+id = "{}"
+scheme = "{}"
+of = "{}"
+{}
+"""
+
+
+@pytest.mark.parametrize(
+    ("scheme", "keys", "planted"),
+    [
+        ("stormer-verlet", 'printed = "4.0"', 'printed = "4.1"'),
+        ("stormer-verlet", 'order = true\nprinted = "2.00"', 'order = true\nprinted = "2.02"'),
+        ("rk4", "order = true\nat_least = 4", "order = true\nat_least = 5"),
+        ("rk4", 'lg_printed = "1.4"', 'lg_printed = "1.5"'),
+    ],
+)
+def test_a_ratio_of_two_runs_and_the_order_that_it_measures(
+    scheme: str, keys: str, planted: str, tmp_path: Path
+) -> None:
+    results = [
+        check_file(tmp_path, RATIOS.format("a", scheme, "energy_error_max", x))["a"].verdict
+        for x in (keys, planted)
+    ]
+    assert results == [Verdict.ENCLOSED, Verdict.REFUTED]
+
+
+def test_where_both_are_0_there_is_no_ratio(tmp_path: Path) -> None:
+    content = RATIOS.format("a", "stormer-verlet", "lambda", "at_least = 1")
+    result = check_file(tmp_path, content)["a"]
+    assert result.verdict is Verdict.UNDECIDED
+    assert "a value is 0" in str(result.evidence)
+
+
+def test_a_ratio_is_of_two_runs(tmp_path: Path) -> None:
+    content = RATIOS.format("a", "rk4", "lambda", "at_least = 1").replace(", 0.05", "")
+    with pytest.raises(InputError, match="speaks of two runs; give two step_sizes"):
+        check_file(tmp_path, content)

@@ -30,6 +30,7 @@ KEYS: dict[str, dict[str, Any]] = {
     "lambda": {**RUN, "printed": "1e-5"},
     "mse": {**RUN, "printed": "1e-5"},
     "run_value": {**RUN, "of": "lambda", "printed": "1e-5"},
+    "run_ratio": {**RUNS, "of": "lambda", "printed": "4"},
     "less": {**RUN, "quantity": "mse", "than": "abs_lambda"},
     "magnitude": {**RUN, "quantifier": "every", "exponents": {"abs_lambda": -5}},
     "growth": {**RUN, "growth": "linear"},
@@ -52,6 +53,7 @@ KEYS: dict[str, dict[str, Any]] = {
     "table_until": {**RUNS, "printed": ["-1.0", "-2.0"]},
 }
 OF_NO_SCHEME_AND_H = {"theorem", "printed_power", "flow_area", "flow_distance", "lambda_factor",
+                      "stability_limit",
                       "mse_summand"}  # fmt: skip
 OF_A_PARAMETER = {"table_for_some"}
 PLANAR = {"step_map", "jacobian", "delta_j", "shifted", "solution_error"}

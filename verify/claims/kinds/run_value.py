@@ -15,7 +15,15 @@ from pydantic import model_validator
 from verify import observables
 from verify.algebra.enclosure import enclose
 from verify.algebra.formula import parse
-from verify.arithmetic.arb import Ball, ball, bounds, format_ball, lg, rational_ball
+from verify.arithmetic.arb import (
+    Ball,
+    ball,
+    bounds,
+    format_ball,
+    is_representable,
+    lg,
+    rational_ball,
+)
 from verify.claims.base_claim import Findings
 from verify.claims.quantities import PrintedDecimal, all_hold, rounds_to
 from verify.claims.run_claims import RunClaim
@@ -26,6 +34,7 @@ from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
+from verify.verdict import Verdict
 
 _MORE_DIGITS = 3  # digits beyond those that are printed
 _COORDINATE = re.compile(r"[pq]([1-9]\d{0,2})?", re.ASCII)
@@ -94,33 +103,41 @@ class RunValueClaim(RunClaim):
         return [x for x in (self.printed, self.lg_printed, self.at_most, self.at_least) if x]
 
     def compare(self, findings: Findings) -> ClaimResult:
-        (run, *other_runs), *other_rows = self.run_rows(findings)
-        if other_runs or other_rows:
-            problem = "speaks of one run; give step_size, q and p"
-            raise InputError(f"claim {self.id}", NOT_GIVEN, problem)
-        value = self._value(findings, run)
+        value, runs = self.compute(findings)
         (text,) = self.printed_texts()
+        if not is_representable(value):
+            evidence = prose(f"{self.label} is no number that is known, or a value is 0{runs}")
+            return self.result(Verdict.UNDECIDED, evidence)
         if self.at_most is None and self.at_least is None:
             answer = rounds_to(value, text)
             relation = _ROUNDS[answer]
         else:
             answer, relation = _is_within(value, self.at_most, self.at_least)
         digits = format_ball(value, len(text.partition("e")[0]) + _MORE_DIGITS)
-        evidence = prose(
-            f"{self._label} = ", number(digits), f", {relation} ", Number(text),
-            f", in {run.steps} steps",
-        )  # fmt: skip
+        evidence = prose(f"{self.label} = ", number(digits), f", {relation} ", Number(text), runs)
         return self.result(all_hold([answer]), evidence)
 
+    def compute(self, findings: Findings) -> tuple[Ball, str]:
+        """Return the number, and of which runs it is, in words."""
+        (run, *other_runs), *other_rows = self.run_rows(findings)
+        if other_runs or other_rows:
+            problem = "speaks of one run; give step_size, q and p"
+            raise InputError(f"claim {self.id}", NOT_GIVEN, problem)
+        value = self.value_of_run(findings, run)
+        value = lg(value) if self.lg_printed is not None else value
+        return value, f", in {run.steps} steps"
+
     @property
-    def _label(self) -> str:
+    def label(self) -> str:
+        """The number in words."""
         observable = observables.find(self._name)
         label = observable.label if observable else self._name
         label = f"|{label}|" if self._is_size else label
         label = f"lg {label}" if self.lg_printed is not None else label
         return f"{label}, relative," if self.relative else label
 
-    def _value(self, findings: Findings, run: RunResult) -> Ball:
+    def value_of_run(self, findings: Findings, run: RunResult) -> Ball:
+        """Return the number of a run, not its logarithm."""
         (name,) = self.observables()
         value = ball(run.values[name])
         if name != self._name:
@@ -128,7 +145,7 @@ class RunValueClaim(RunClaim):
         value = abs(value) if self._is_size else value
         if self.relative:
             value /= abs(self._initial_value(findings, run))
-        return lg(value) if self.lg_printed is not None else value
+        return value
 
     def _initial_value(self, findings: Findings, run: RunResult) -> Ball:
         """Return the energy, or the integral, of the initial state; InputError if it is 0."""
