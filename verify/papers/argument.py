@@ -202,7 +202,7 @@ def _count_steps(steps: Sequence[Step]) -> Prose:
     marks = "all checked by machine"
     if checked < len(steps):
         marks = f"{checked or 'none'} checked by machine, {len(steps) - checked} not"
-    return prose(f"paper: an argument in {count(len(steps), 'step')}, {marks}")
+    return prose(f"by hand: an argument in {count(len(steps), 'step')}, {marks}")
 
 
 def _read(text: str) -> Prose:

@@ -38,7 +38,7 @@ def test_each_step_is_marked_by_rows_of_its_table_by_theorems_or_not_at_all(name
     (said,) = argument.checked_by
     checked = sum(1 for each in argument.steps if each.checked_by)
     count = len(argument.steps)
-    assert said.startswith(f"paper: an argument in {count} step")
+    assert said.startswith(f"by hand: an argument in {count} step")
     told = "all checked" if checked == count else f"{checked or 'none'} checked"
     assert told in said
 
@@ -109,10 +109,10 @@ def test_how_many_steps_a_machine_checked_is_said() -> None:
     def said(*steps: Step) -> str:
         return str(proof("because", steps).checked_by[0])
 
-    assert said(step("a", ONE)) == "paper: an argument in 1 step, all checked by machine"
+    assert said(step("a", ONE)) == "by hand: an argument in 1 step, all checked by machine"
     assert said(step("a", ONE), step("b")) == (
-        "paper: an argument in 2 steps, 1 checked by machine, 1 not"
+        "by hand: an argument in 2 steps, 1 checked by machine, 1 not"
     )
     assert said(step("a", tried=[ONE])) == (
-        "paper: an argument in 1 step, none checked by machine, 1 not"
+        "by hand: an argument in 1 step, none checked by machine, 1 not"
     )
