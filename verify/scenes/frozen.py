@@ -54,6 +54,13 @@ class OfScheme(Frozen):
     parameters: dict[str, str]
     scheme: str
 
+    @property
+    def scheme_title(self) -> str:
+        """The scheme for a title: of a splitting of a field its steps, without the parts."""
+        from verify.schemes.field_splitting import separate_parts
+
+        return separate_parts(self.scheme)[0]
+
 
 class WithProse(Frozen):
     """A model with fields of type `ProseText`, each of which is its plain text in data.

@@ -17,6 +17,7 @@ from verify.pages.sections.table_rows import (
 )
 from verify.pages.text import legend
 from verify.pages.text.typography import number, start, value, whole
+from verify.scenes.results.kept import KeptResult
 from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
@@ -36,7 +37,7 @@ class RunTable:
     proved_columns: tuple[str, ...]  # those whose values a proof gives for all runs
 
 
-def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
+def _view(scene: SceneResult, proof: ProofResult | KeptResult, _: str) -> RunTable | None:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
     columns = {
         name: observable.heading or observable.label
@@ -116,4 +117,4 @@ def _row(run: RunResult, names: Sequence[str]) -> TableRow:
     return TableRow(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
 
 
-SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN)
+SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN, takes_field=True)

@@ -10,6 +10,7 @@ from verify.pages.sections.section import Picture, ReportSection
 from verify.pages.text import legend
 from verify.pages.text.typography import interval
 from verify.pages.text.typography import power_of_h as _h
+from verify.scenes.results.kept import KeptResult
 from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
@@ -18,13 +19,13 @@ if TYPE_CHECKING:
     from verify.pages.figures.step_size_figures import LogarithmicLine, QuantityPanel
 
 
-def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> tuple[Plot, ...]:
+def _view(scene: SceneResult, proof: ProofResult | KeptResult, anchor: str) -> tuple[Plot, ...]:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
     return tuple(_plots(runs, scene, proof, anchor))
 
 
 def _plots(
-    runs: Sequence[RunResult], scene: SceneResult, proof: ProofResult, name: str
+    runs: Sequence[RunResult], scene: SceneResult, proof: ProofResult | KeptResult, name: str
 ) -> Iterator[Plot]:
     """Yield the plot of |Λ| and MSE/|Λ| over h, if there are several step sizes.
 
@@ -113,6 +114,7 @@ def _describe_guides(guides: Sequence[int]) -> str:
 SECTION = ReportSection(
     order=40,
     view=_view,
+    takes_field=True,
     pictures=lambda plots: [Picture((0,), plots[0])],
     terms=lambda _: legend.RAN,
     shows="runs",
