@@ -14,7 +14,7 @@ field = "x_dot = v"
 
 from collections.abc import Sequence
 
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import InputError
 from verify.hamiltonians.equations import EXAMPLE, are_equations
 from verify.scenes.frozen import Frozen
 from verify.scenes.run_sections import Grid

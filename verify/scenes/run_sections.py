@@ -60,7 +60,7 @@ class Grid(Section):
     """The step sizes h, each once."""
     initial_values: Annotated[tuple[AnyStart, ...], Field(min_length=1, max_length=1000)]
     """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once; in n degrees of freedom lists,
-    such as `{ q = [0.3, -0.1], p = [0.1, 0.2] }`; of a field by name, such as `{ u = 1, v = 2 }`."""
+    such as `{ q = [0.3, -0.1], p = [0.1, 0.2] }`; of a field by name, as `{ u = 1, v = 2 }`."""
     arithmetic: ArithmeticName = "float64"
     """The number system; `auto` where `digits` stand and this does not."""
     digits: Digits = 17

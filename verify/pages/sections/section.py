@@ -101,7 +101,7 @@ class ReportSection:
     matching_plots: Callable[[Any, str], Iterable[tuple[Plot | None, str]]] = _nothing
     # A sentence and tiles for the first screen of a report without claims and proofs.
     speaks: Callable[[Report], tuple[str, Sequence[Tile]] | None] = lambda _: None
-    takes_field: bool = False  # of a scheme: also of equations, with a KeptResult for the proof
+    takes_field: bool = False  # of a scheme: also of equations without an H
 
 
 @dataclass(frozen=True)

@@ -142,7 +142,8 @@ def start(
     """Return a run's initial value, and the time at which it starts if that is not 0."""
     t0 = getattr(run, "t0", "0")
     named: dict[str, str] = getattr(run, "start", {})
-    texts = {f"{name}₀": x for name, x in named.items()} or {"q₀": run.q, "p₀": run.p}
+    texts: dict[str, str | tuple[str, ...]] = {f"{name}₀": x for name, x in named.items()}
+    texts = texts or {"q₀": run.q, "p₀": run.p}
     texts |= {} if t0 == "0" else {"t₀": t0}
     return ", ".join(f"{name}{IS}{coordinates(x)}" for name, x in texts.items())
 

@@ -44,5 +44,5 @@ class KeptResult(OfScheme, WithProse):
 
     @property
     def order_of_delta_j(self) -> int | None:
-        """The order in h of ΔJ = det J − 1, if it was looked at and is not 0."""
+        """The proved order in h of ΔJ = det J − 1; None if it is 0, or was not asked for."""
         return next((x.order for x in self.keeps if x.label == "volume"), None)

@@ -15,6 +15,7 @@ from verify.scenes.observables import select_observables
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import start_arguments
+from verify.schemes.field_splitting import separate_parts
 from verify.structures import SYMPLECTIC
 from verify.studies.separation.determinants import POINTS, Determinants
 from verify.studies.separation.links import way_for
@@ -102,7 +103,7 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
         structure = hamiltonian.structure
         of_form = "S, W, " if structure is SYMPLECTIC else ""
         reason = f"{structure.identity} is proved: {of_form}ΔJ, MSE and Λ are exactly 0"
-        plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", reason)
+        plan.leave_out(f"{name}: {len(tasks)} runs of {separate_parts(scheme)[0]}", reason)
         return
     for task in tasks:
         plan.need(task, f"{name}: grid")

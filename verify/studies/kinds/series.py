@@ -9,6 +9,7 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import PlottedSeries
 from verify.scenes.scene import Scene
 from verify.scenes.values import start_arguments
+from verify.schemes.field_splitting import separate_parts
 from verify.studies.kinds.grid import observables_of
 
 
@@ -25,7 +26,8 @@ def series_task(scene: Scene, scheme: str, series: PlottedSeries) -> RunTask:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     for series in scene.series:
-        description = f"{scene_name(scene)}: series of {scheme} at h = {text(series.step_size)}"
+        title, h = separate_parts(scheme)[0], text(series.step_size)
+        description = f"{scene_name(scene)}: series of {title} at h = {h}"
         task = series_task(scene, scheme, series)
         if preserves and "energy_error_max" not in (task.observables or ()):
             plan.leave_out(description, "ΔJ ≡ 0 is proved: it is a line at 0")
