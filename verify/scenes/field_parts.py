@@ -18,7 +18,7 @@ from verify.errors import InputError
 from verify.hamiltonians.equations import EXAMPLE, are_equations
 from verify.scenes.frozen import Frozen
 from verify.scenes.run_sections import Grid
-from verify.schemes.field_splitting import add_parts, has_steps
+from verify.schemes.field_splitting import add_parts, has_steps, separate_parts
 
 
 class FieldPart(Frozen):
@@ -30,19 +30,26 @@ class FieldPart(Frozen):
     """Its equations; a coordinate that it does not move may be left out."""
 
 
-def add_field_parts(schemes: Sequence[str], parts: Sequence[FieldPart]) -> tuple[str, ...]:
-    """Return the schemes, with the parts in those that are composed of them.
+def with_field_parts(scheme: str, parts: Sequence[FieldPart]) -> str:
+    """Return a scheme with the parts of which it is composed, and any other scheme as it is.
 
-    Raises InputError for parts that no scheme has, and for a name that stands twice.
+    Raises InputError for a name that stands twice.
     """
     fields = {part.name: part.field for part in parts}
     if len(fields) < len(parts):
         raise InputError("split", len(parts), "a name stands twice; each part has its own")
-    texts = tuple(add_parts(x, fields) if fields and has_steps(x) else x for x in schemes)
-    if fields and texts == tuple(schemes) and not any(" with " in x for x in schemes):
-        example = "; ".join(f"{name} 1" for name in fields)
-        problem = f'no scheme is composed of its parts; write "{example}"'
-        raise InputError("split", ", ".join(fields), problem)
+    return add_parts(scheme, fields) if fields and has_steps(scheme) else scheme
+
+
+def add_field_parts(schemes: Sequence[str], parts: Sequence[FieldPart]) -> tuple[str, ...]:
+    """Return the schemes as `with_field_parts` does; InputError for parts that none is made of."""
+    texts = tuple(with_field_parts(scheme, parts) for scheme in schemes)
+    if parts and not any(separate_parts(text)[1] for text in texts):
+        names = [part.name for part in parts]
+        problem = (
+            f"no scheme is composed of its parts; write '{'; '.join(f'{n} 1' for n in names)}'"
+        )
+        raise InputError("split", ", ".join(names), problem)
     return texts
 
 

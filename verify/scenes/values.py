@@ -221,4 +221,8 @@ def check_initial_value(start: AnyStart, system: Hamiltonian) -> None:
         missing = ", ".join(x for x in ("q", "p") if x not in arguments)
         problem = f"is one of these meant: {missing}?" if missing else "allowed: q, p"
         raise InputError(f"initial_value: {name}", text(arguments[name]), f"unknown key; {problem}")
-    start_of(system, *map(arguments.get, ("q", "p", "start")))
+    try:
+        start_of(system, *map(arguments.get, ("q", "p", "start")))
+    except InputError as error:
+        name = "initial_value" if error.name == "start" else error.name
+        raise type(error)(name, error.value, error.problem) from None
