@@ -18,13 +18,14 @@ from verify.effort import limit_effort
 from verify.errors import InputError, unknown_name
 from verify.hamiltonians.equations import Equations, are_equations, read_system
 from verify.lazy_sympy import sympy
+from verify.schemes import separate_title
 from verify.schemes.maps.formula_map import map_from_expressions
 from verify.schemes.maps.step_map import StepMap
 from verify.structures.structure import is_zero
 
 _NAME = r"[A-Za-z]\w*"
 _STEP = re.compile(rf"\s*({_NAME})\s+(\S+)\s*", re.ASCII)
-_WITH_PARTS = re.compile(rf"(.*?)\s+with\s+({_NAME}\s*:.*)", re.ASCII | re.DOTALL)
+_WITH = re.compile(rf"\swith\s+(?={_NAME}\s*:)", re.ASCII)
 _PART = re.compile(rf"(?:^|;)\s*({_NAME})\s*:", re.ASCII)
 _MAX_STEPS = 200
 _MAX_POWER = 8  # the power of X at which a part's Lie series has ended
@@ -39,7 +40,8 @@ def has_steps(scheme: str) -> bool:
     >>> has_steps("A 1/2; B 1; A 1/2"), has_steps("rk4"), has_steps("A 1 with A: x_dot = 1")
     (True, False, False)
     """
-    return all(map(_STEP.fullmatch, scheme.strip().rstrip(";").split(";")))
+    _, steps = separate_title(scheme)
+    return all(map(_STEP.fullmatch, steps.strip().rstrip(";").split(";")))
 
 
 def add_parts(scheme: str, parts: Mapping[str, str]) -> str:
@@ -55,8 +57,10 @@ def add_parts(scheme: str, parts: Mapping[str, str]) -> str:
             raise InputError("split", name, "is no name of a part: letters, digits and _")
         if ":" in field:
             raise InputError("split", field.strip(), "has a colon; give each part by itself")
-    steps = "; ".join(f"{name} {size}" for name, size in _steps(scheme, parts))
-    return f"{steps} with {'; '.join(f'{name}: {x.strip()}' for name, x in parts.items())}"
+    title, text = separate_title(scheme)
+    steps = "; ".join(f"{name} {size}" for name, size in _steps(text, parts))
+    fields = "; ".join(f"{name}: {field.strip()}" for name, field in parts.items())
+    return f"{f'{title}: ' if title else ''}{steps} with {fields}"
 
 
 def separate_parts(scheme: str) -> tuple[str, dict[str, str]]:
@@ -65,16 +69,16 @@ def separate_parts(scheme: str) -> tuple[str, dict[str, str]]:
     >>> separate_parts("A 1; B 1 with A: x_dot = y; B: y_dot = -x")
     ('A 1; B 1', {'A': 'x_dot = y', 'B': 'y_dot = -x'})
     """
-    match = _WITH_PARTS.fullmatch(scheme)
+    match = _WITH.search(scheme)
     if match is None:
         return scheme, {}
-    _, *texts = _PART.split(match[2])
+    _, *texts = _PART.split(scheme[match.end() :])
     parts: dict[str, str] = {}
     for name, field in zip(texts[::2], texts[1::2], strict=True):
         if name in parts:
             raise InputError("split", name, "stands twice; each part has a name of its own")
         parts[name] = field.strip()
-    return match[1], parts
+    return scheme[: match.start()].rstrip(), parts
 
 
 def _steps(scheme: str, names: Mapping[str, object]) -> list[tuple[str, str]]:

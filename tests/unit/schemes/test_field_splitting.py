@@ -84,6 +84,9 @@ def test_a_splitting_is_named_by_its_steps_and_parts_and_read_back() -> None:
     assert separate_parts(scheme.name) == ("A 1/2; B 1; A 1/2", parts)
     assert (has_steps("kick 1/2; drift 1"), has_steps(scheme.name)) == (True, False)
     assert separate_parts("u_next = u; v_next = v")[1] == {}
+    assert has_steps("mine: A 1; B 1")
+    titled = add_parts("mine: A 1", {"A": "x_dot = 1"})
+    assert get(titled).name == titled == "mine: A 1 with A: x_dot = 1"
     with pytest.raises(InputError, match="split=A: stands twice"):
         get("A 1 with A: x_dot = y; A: y_dot = -x")
 
