@@ -59,6 +59,8 @@ def _written(value: Any) -> str:
 def _words(hint: Any) -> str:
     if hint in _NAMED:
         return _NAMED[hint]
+    if hint is values.NamedState:
+        return "{ NAME = number, … }"
     origin, given = get_origin(hint), get_args(hint)
     if origin is Annotated:
         inner, *more = given

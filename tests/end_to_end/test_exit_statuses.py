@@ -25,9 +25,13 @@ FREE_NUMBERS = (
     '[[table]]\nname = "x"\nkind = "splitting"\nfirst = "kick"\norder = 2\n'
     'sizes = ["0.123456789", "0.5", "0.753086422", "0.5", "0.123456789"]\n'
 )
+KEEPS = 'field = "x_dot = y*z; y_dot = -x; z_dot = 0"\nschemes = ["rk4"]\nkeeps = ["{}"]\n'
 FILES = {
     "open.toml": OPEN_CLAIM,
     "free.toml": FREE_NUMBERS,
+    "kept.toml": KEEPS.format("volume: 5"),
+    "not_kept.toml": KEEPS.format("volume"),
+    "no_integral.toml": KEEPS.format("x"),
     "true.toml": CLAIM.format(2),
     "false.toml": CLAIM.format(3),
     "right.toml": TABLE.format("1/2"),
@@ -65,6 +69,8 @@ CASES = {
                                  "certificate check missing.json"),
     "verify run": (f"run --hamiltonian p**2/2-q**4 {RUN} 90", f"run --system pendulum {RUN} 2",
                    f"run --system pendulum {RUN} 0"),
+    "verify report": ("report not_kept.toml -o 1", "report kept.toml -o 0",
+                      "report no_integral.toml -o 2"),
     "verify flow": (f"flow --hamiltonian p**2/2-q**4 {RUN} 90",
                     f"flow --system pendulum {RUN} 1", f"flow --system pendulum {RUN} 0"),
     "verify reference check": ("reference check damaged", "reference check data",
@@ -134,6 +140,17 @@ def test_a_command_ends_with_the_status_that_the_manual_says(
         status(capsys, [*(x.split() if isinstance(x, str) else x), flag])
         for x in (failed, done, refused)
     ] == [1, 0, 2]
+
+
+@pytest.mark.usefixtures("_folder")
+def test_a_report_of_what_is_only_looked_at_was_made(capsys: pytest.CaptureFixture[str]) -> None:
+    for name, change in (("asked.toml", KEEPS.partition("keeps")[0]), ("false.toml", None)):
+        if change is not None:
+            Path(name).write_text(change, encoding="utf-8")
+        assert status(capsys, f"report {name} -o {name}-report") == 0
+    claims = FILES["false.toml"] + '[[scene]]\nname = "own"\n' + FILES["not_kept.toml"]
+    Path("with_scene.toml").write_text(claims, encoding="utf-8")
+    assert status(capsys, "report with_scene.toml -o page") == 1
 
 
 @pytest.mark.usefixtures("_folder")

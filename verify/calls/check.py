@@ -18,6 +18,7 @@ from verify.calls.inputs import (
     SystemLike,
     Texts,
     hamiltonian_from,
+    names_from,
     scheme_from,
     step_map_from,
     texts_from,
@@ -51,7 +52,7 @@ def check(
     order: int | None = None,
     area_preserving: bool = False,
     symplectic: bool = False,
-    arguments: str | None = None,
+    arguments: Texts | None = None,
     p: NumberOrList | None = None,
     q: NumberOrList | None = None,
     step_size: Number | None = None,
@@ -78,7 +79,8 @@ def check(
         the order that a scheme itself claims.
     area_preserving, symplectic: True claims det J ≡ 1, or JᵀΩJ ≡ Ω, which is the same in one degree
         of freedom.
-    arguments: their order, such as "q,p,h", if the names of the function's arguments do not tell.
+    arguments: their order, such as "q,p,h" or ["q", "p", "h"], if the names of the function's
+        arguments do not tell.
     q, p: the first state to try, numbers or, in n degrees of freedom, lists of n numbers.
     step_size: the largest step size to try.
     within: an allowed defect.
@@ -137,12 +139,13 @@ def check(
 
 
 def callee_of_system(
-    system: Hamiltonian, step: Callable[..., Any], arguments: str | None, time_limit: float
+    system: Hamiltonian, step: Callable[..., Any], arguments: Texts | None, time_limit: float
 ) -> Callee:
     """Return a step of H, or of equations, as a callee. Raises InputError."""
     if system.energy is not None:
         return callee_from(
-            step, system.coordinates, arguments=arguments, parameters=dict(system.values),
+            step, system.coordinates, arguments=names_from("arguments", arguments),
+            parameters=dict(system.values),
             time_limit=time_limit,
         )  # fmt: skip
     if arguments is not None:
@@ -157,11 +160,11 @@ def check_map(
     function: Callable[..., Any],
     degrees: int = 1,
     *,
-    arguments: str | None = None,
+    arguments: Texts | None = None,
     parameters: Mapping[str, Number] | None = None,
     point: Sequence[Number] | None = None,
     within: Number | None = None,
-    coordinates: str | None = None,
+    coordinates: Texts | None = None,
     keeps: Texts = (),
     form: str = "",
     density: str = "",
@@ -185,8 +188,8 @@ def check_map(
     parameters: the exact values of further arguments, which the function takes by name.
     point: the first point to try, 2·degrees numbers p1, …, pn, q1, …, qn.
     within: an allowed defect.
-    coordinates: the names of the arguments, flattened, in their order, as "v1,v2,x1,x2"; any
-        number. By default p1, …, pn, q1, …, qn.
+    coordinates: the names of the arguments, flattened, in their order, as "v1,v2,x1,x2" or
+        ["v1", "v2", "x1", "x2"]; any number. By default p1, …, pn, q1, …, qn.
     keeps, form, …, factor: structures that the map is meant to keep, as in `verify.prove`.
     time_limit: seconds for all calls.
 
@@ -210,13 +213,14 @@ def check_map(
         texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
         reverses, factor,
     )  # fmt: skip
-    names = coordinates_in(degrees) if coordinates is None else coordinates_from(coordinates)
+    own_names = names_from("coordinates", coordinates)
+    names = coordinates_in(degrees) if own_names is None else coordinates_from(own_names)
     values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
     if coordinates is None:
         callee = callee_from(
             # `stepped=False`: the map has no step size h among its arguments.
-            function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
-            time_limit=time_limit,
+            function, names, stepped=False, arguments=names_from("arguments", arguments),
+            parameters=values, strict=True, time_limit=time_limit,
         )  # fmt: skip
     elif arguments is not None:
         raise InputError("arguments", arguments, "goes without coordinates")

@@ -145,6 +145,11 @@ def texts_from(name: str, values: Texts) -> tuple[str, ...]:
     return tuple(texts)
 
 
+def names_from(name: str, values: Texts | None) -> str | None:
+    """Return names, in a text or a list of texts, as a text with commas; None for None."""
+    return None if values is None else ",".join(texts_from(name, values))
+
+
 def as_list(name: str, value: Any) -> list[Any]:
     """Return the values as a list, and one value as a list of it. InputError for an empty list."""
     values = list(value) if is_list(value) else [value]

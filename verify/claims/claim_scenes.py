@@ -1,11 +1,12 @@
 """The scenes of claims: built from a claim's own Hamiltonian and runs, or looked up by name.
 
 One of the keys `scene`, `system`, `hamiltonian` and `every`, with `parameters`, selects H, and
-`field` equations without an H; see `verify.claims.run_claims` for the keys of runs.
+`field` equations without an H, with the parts of a `split`; see `verify.claims.run_claims` for the
+keys of runs.
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -14,13 +15,14 @@ from pydantic import Field
 
 from verify.claims.base_claim import Claim
 from verify.errors import NOT_GIVEN, InputError
+from verify.scenes.field_parts import FieldPart, with_field_parts
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, load_scene, scene_from
 from verify.scenes.toml_file import Lines, tables_of
 from verify.scenes.values import ExactNumber, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "field", "every")
-HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters", "t0")
+HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters", "t0", "split")
 
 
 class ClaimedHamiltonian(Frozen):
@@ -37,6 +39,8 @@ class ClaimedHamiltonian(Frozen):
     """The values of H's parameters; those without one stay symbols."""
     t0: ExactNumber = Fraction(0)
     """When its runs start, if H depends on t."""
+    split: tuple[FieldPart, ...] = ()
+    """The parts of a splitting of `field`, of which the scheme is composed, as in a scene."""
 
 
 def scene_for(
@@ -44,8 +48,8 @@ def scene_for(
     hamiltonian_keys: Mapping[str, Any],
     runs: Mapping[str, Any],
     find_scene: Callable[[str], Scene],
-) -> tuple[str, Scene]:
-    """Return a unique name, and the scene that the claim is about.
+) -> tuple[Claim, Scene]:
+    """Return the claim with the unique name of its scene, and the scene.
 
     `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `find_scene` returns a
     scene by its name. Raises pydantic's ValidationError, and InputError, whose name is the key,
@@ -57,19 +61,28 @@ def scene_for(
         raise InputError(" and ".join(sources) or "scene", NOT_GIVEN, problem)
     if "scene" not in hamiltonian_keys:
         hamiltonian = ClaimedHamiltonian.model_validate(hamiltonian_keys)
-        scene = Scene(**hamiltonian.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
+        claim = _with_parts(claim, hamiltonian.split)
+        keys = hamiltonian.model_dump(exclude={"split"})
+        scene = Scene(**keys, schemes=(claim.scheme,), name=slug(claim.id))
+        if hamiltonian.split and scene.field is None:
+            raise InputError("split", hamiltonian.split[0].name, "goes with field")
         _check_field(claim, scene)
-        named_scene = claim.separate_scene(hamiltonian.system or "own", scene, runs)
+        name, scene = claim.separate_scene(hamiltonian.system or "own", scene, runs)
     else:
-        for key in ("parameters", "t0"):
+        for key in ("parameters", "t0", "split"):
             if key in hamiltonian_keys:
                 raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
         name = hamiltonian_keys["scene"]
         scene = find_scene(name)
         _check_field(claim, scene)
-        named_scene = claim.selected_scene(name, scene, runs)
-    _check_hamiltonian(claim, named_scene[1])
-    return named_scene
+        claim = _with_parts(claim, scene.split)
+        name, scene = claim.selected_scene(name, scene, runs)
+    _check_hamiltonian(claim, scene)
+    return claim.model_copy(update={"scene": name}), scene
+
+
+def _with_parts(claim: Claim, parts: Sequence[FieldPart]) -> Claim:
+    return claim.model_copy(update={"scheme": with_field_parts(claim.scheme, parts)})
 
 
 def _check_field(claim: Claim, scene: Scene) -> None:

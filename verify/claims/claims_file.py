@@ -201,11 +201,11 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: Name
         claim.check_every()
         _append(file, claim)
         return
-    name, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
+    claim, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
     claim.check_scene(scene)
-    _append(file, claim.model_copy(update={"scene": name}))
+    _append(file, claim)
     # Several claims may share one scene, which is then stored once, under its name.
-    file.scenes.setdefault(name, scene)
+    file.scenes.setdefault(claim.scene, scene)
 
 
 def _append(file: ClaimsFile, claim: Claim) -> None:
@@ -219,7 +219,7 @@ def _with_defaults(
 ) -> dict[str, Any]:
     """Return the claim's keys, completed by the defaults that apply to its kind."""
     fields = set(model.model_fields)
-    keys = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters"}
+    keys = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters", "split"}
     keys -= set() if "every" in fields else {"every"}
     if model.run_keys:
         # Of the defaults a claim on one run prefers single values, and other claims prefer lists.

@@ -27,6 +27,7 @@ from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import (
     AUTO,
+    AnyStart,
     Coordinates,
     Digits,
     InitialState,
@@ -282,7 +283,7 @@ def _step_sizes(keys: RunKeys, base: Grid | None) -> tuple[Any, ...]:
     return keys.step_sizes or (base.step_sizes if base else ())
 
 
-def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue | InitialState, ...]:
+def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[AnyStart, ...]:
     if keys.q is None and keys.p is None:
         if keys.initial_values is None and base is None:
             raise InputError("q", NOT_GIVEN, "is missing: give q and p, or initial_values")

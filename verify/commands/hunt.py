@@ -73,6 +73,7 @@ def _answer_in_degrees(
     from verify.exploration.measures import MEASURES
     from verify.pages.page import write
     from verify.scenes.scene import scene_text
+    from verify.scenes.values import start_arguments
 
     sentence = MEASURES[request.measure].describe(request.drawn.degrees)
     scenes = [
@@ -103,7 +104,8 @@ def _answer_in_degrees(
             click.echo(f"{rank}. 10^{sample.value:.2f}  H = {scene.hamiltonian}")
             assert scene.grid is not None  # noqa: S101 - as drawn
             start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
-            q, p = (", ".join(map(text, x)) for x in (start.q, start.p) if isinstance(x, tuple))
+            coordinates = start_arguments(start, of_field=False).values()
+            q, p = (", ".join(map(text, x)) for x in coordinates)
             click.echo(
                 f"   {scene.schemes[0]}, h = {text(h)}, q = ({q}), p = ({p}); "
                 f"{output / f'worst-{rank}.toml'}"

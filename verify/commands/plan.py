@@ -32,10 +32,13 @@ def plan(scene: str) -> CommandAnswer:
 
 
 def _print(plan_json: dict[str, Any]) -> None:
+    from verify.schemes.field_splitting import separate_parts
+
     task_count = count(len(plan_json["tasks"]), "task")
     click.echo(f"{task_count}, {_format_seconds(float(plan_json['seconds']))}")
     for task in plan_json["tasks"]:
-        click.echo(f"  {_DESCRIBERS[task['kind']](task)} ({'; '.join(task['reasons'])})")
+        titled = {**task, "scheme": separate_parts(task.get("scheme", ""))[0]}
+        click.echo(f"  {_DESCRIBERS[task['kind']](titled)} ({'; '.join(task['reasons'])})")
     click.echo(f"{len(plan_json['left_out'])} left out")
     for item in plan_json["left_out"]:
         click.echo(f"  {item['what']}: {item['why']}")
@@ -60,7 +63,8 @@ _UNITS = ((2 * 86400, 86400, "days"), (3600, 3600, "h"), (120, 60, "min"), (1, 1
 
 
 def _describe_run(task: TaskData) -> str:
-    start = f"q = {task['q']}, p = {task['p']}"
+    point = task.get("start") or {"q": task["q"], "p": task["p"]}
+    start = ", ".join(f"{name} = {x}" for name, x in point.items())
     # Tasks without a time of their own have no key, or none in it.
     start_time_text = f", t = {task['t0']}" if task.get("t0") not in (None, "0") else ""
     steps = f"{task['steps']} steps of {task['step_size']}"

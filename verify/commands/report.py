@@ -109,6 +109,7 @@ def report(
         typed_options += " --full"
     if findings is not None and scene != _INTEGRATORS:
         raise InputError("--findings", str(findings), "is of `verify report integrators`")
+    refutes_keeps = False
     if scene == _INTEGRATORS:
         _check_errata(errata, None)
         folder, result = _verify_integrators(scene, output, typed_options, placement, force)
@@ -116,6 +117,7 @@ def report(
         request = _read_request(scene, options)
         _check_errata(errata, request.claims)
         folder, result = _verify_scene(request, output, typed_options, placement, force)
+        refutes_keeps = _refutes_keeps(request.scenes, result)
     # Each format once, in the order in which they were typed.
     paths = [_select_writer(name, full)(result, folder) for name in dict.fromkeys(formats)]
     if findings is not None:
@@ -125,7 +127,9 @@ def report(
 
         paths += write_errata(result, errata)
     return CommandAnswer(
-        lambda: result.model_dump(mode="json"), lambda: show.print_report(result, *paths)
+        lambda: result.model_dump(mode="json"),
+        lambda: show.print_report(result, *paths),
+        failed=refutes_keeps,
     )
 
 
@@ -215,6 +219,12 @@ def _verify_scene(
             done=on_result,
         )
     return folder, result
+
+
+def _refutes_keeps(scenes: "Sequence[Scene]", report: "Report") -> bool:
+    """Return True if a structure is refuted that a scene says is kept, not one only looked at."""
+    claiming = (x for scene, x in zip(scenes, report.scenes, strict=True) if scene.keeps)
+    return any(kept.verdict == "REFUTED" for scene in claiming for kept in scene.keeps)
 
 
 def _verify_integrators(

@@ -53,6 +53,8 @@ def _row_json(scheme: "Scheme", aliases: list[str]) -> dict[str, Any]:
 def _describe_hamiltonians(scheme: "Scheme") -> str:
     if scheme.formulas:
         return "the H for which it is written"
+    if scheme.takes_equations:
+        return "the equations of which these are the parts"
     return "H = T(p) + V(q)" if scheme.needs_separable else "every smooth H"
 
 

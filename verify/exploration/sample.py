@@ -21,6 +21,7 @@ from verify.proof.order_for_one_h import prove
 from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof_for_one_h import Proof
 from verify.scenes.scene import Scene
+from verify.scenes.values import start_arguments
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import StepMap
@@ -78,6 +79,8 @@ class Sample:
         """
         if scene.grid is None:
             raise InputError("scene", scene.name, "has no [grid], which gives step and start")
+        if scene.field is not None:
+            raise InputError("scene", scene.name, "has no H, of which all properties are")
         h, start = scene.grid.step_sizes[0], scene.grid.initial_values[0]
         hamiltonian = scene.exact_hamiltonian()
         return cls(
@@ -87,7 +90,7 @@ class Sample:
             steps=scene.grid.steps_for(h),
             t0=scene.t0,
             scene=scene,
-            place=tuple(point_of(hamiltonian, start.q, start.p).values()),
+            place=tuple(point_of(hamiltonian, **start_arguments(start, of_field=False)).values()),
         )
 
     def with_place(self, place: Iterable[Fraction]) -> Self:

@@ -6,25 +6,28 @@ from typing import Literal
 from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeper import NOTHING, Keeper
-from verify.execution.task import StartTask
+from verify.execution.task import SchemeTask
 from verify.kernels.run_inputs import DEFAULT_SECTIONS
 from verify.lockstep import Course, run_alone
 from verify.runs.float64_bounds import DIRECT_STEPS
 from verify.runs.requested_run import RequestedRun
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import ExactNumber, StepSize
+from verify.scenes.values import Coordinates, ExactNumber, StepSize
 
 # The cost of any run beside its steps, and that of a run too long to be compared with a certified
 # one. Costs are in the unit of `step_cost`.
 _RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
 
 
-class RunTask(StartTask):
-    """Run N steps and report the observables."""
+class RunTask(SchemeTask):
+    """Run N steps, from q and p or of equations from `start`, and report the observables."""
 
     result = RunResult
     kind: Literal["run"] = "run"
+    q: Coordinates | None = None
+    p: Coordinates | None = None
+    start: dict[str, ExactNumber] | None = None
     step_size: StepSize
     steps: int
     t0: ExactNumber = Fraction(0)

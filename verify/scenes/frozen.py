@@ -54,6 +54,23 @@ class OfScheme(Frozen):
     parameters: dict[str, str]
     scheme: str
 
+    @property
+    def order_of_delta_j(self) -> int | None:
+        """The proved order in h of ΔJ = det J − 1; None if there is none."""
+        return None
+
+    @property
+    def scheme_title(self) -> str:
+        """The scheme for a title: of a splitting of a field its steps, without the parts."""
+        from verify.schemes.field_splitting import separate_parts
+
+        return separate_parts(self.scheme)[0]
+
+    @property
+    def scheme_parts(self) -> str:
+        """The parts of a splitting of a field with their equations; "" of any other scheme."""
+        return self.scheme[len(self.scheme_title) :].strip().removeprefix("with ")
+
 
 class WithProse(Frozen):
     """A model with fields of type `ProseText`, each of which is its plain text in data.

@@ -112,8 +112,6 @@ def read_claims(
 
 def observable_of(structure: Structure, system: Hamiltonian) -> str:
     """Return the observable of runs in which the defect accumulates; "" if there is none."""
-    if system.energy is None:
-        return ""
     name = ""
     if isinstance(structure, CanonicalForm):
         name = structure.of_run

@@ -33,6 +33,7 @@ from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
     AUTO,
+    AnyStart,
     ArithmeticName,
     Digits,
     InitialValue,
@@ -57,9 +58,9 @@ class Grid(Section):
     """The number N of steps of each run; or `time`."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""
-    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=1000)]
+    initial_values: Annotated[tuple[AnyStart, ...], Field(min_length=1, max_length=1000)]
     """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once; in n degrees of freedom lists,
-    such as `{ q = [0.3, -0.1], p = [0.1, 0.2] }`."""
+    such as `{ q = [0.3, -0.1], p = [0.1, 0.2] }`; of a field by name, as `{ u = 1, v = 2 }`."""
     arithmetic: ArithmeticName = "float64"
     """The number system; `auto` where `digits` stand and this does not."""
     digits: Digits = 17
@@ -153,8 +154,8 @@ class PlottedSeries(Section):
 
     step_size: StepSize
     """The step size h."""
-    initial_value: Start
-    """Where the run starts; in n degrees of freedom with lists."""
+    initial_value: AnyStart
+    """Where the run starts; in n degrees of freedom with lists, of a field by name."""
     time: Time | None = None
     """The length of the run; or `steps`."""
     steps: Steps | None = None

@@ -4,7 +4,8 @@ Unknown keys are refused.
 
     title = "My oscillator"
     hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"; or equations without an H:
-                                           # field = "u_dot = u*(v - 2); v_dot = v*(1 - u)"
+                                           # field = "u_dot = u*(v - 2); v_dot = v*(1 - u)",
+                                           # see `verify.scenes.field_parts`
     parameters = { delta = "7/3" }
     schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
     criteria = [1, 2, 3, 4]
@@ -67,15 +68,15 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, without_controls
 from verify.hamiltonians import systems
-from verify.hamiltonians.equations import EXAMPLE, are_equations, read_system
+from verify.hamiltonians.equations import read_system
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.run_domain import point_of
+from verify.scenes.field_parts import FieldPart, add_field_parts, check_equations, check_field_scene
 from verify.scenes.frozen import Frozen, Section
 from verify.scenes.keeps_section import Keeps
 from verify.scenes.model_mistakes import describe_first_error
@@ -86,10 +87,13 @@ from verify.scenes.run_sections import Grid, PlottedSeries, Reference, Separatio
 from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stability, StabilityMap
 from verify.scenes.toml_file import check_depth, check_kind, read_toml, toml_data
 from verify.scenes.toml_text import toml_lines
-from verify.scenes.values import ExactNumber, SchemeName, SystemName
+from verify.scenes.values import ExactNumber, SchemeName, SystemName, check_initial_value
 
 _PLANE_KEYS = ("criteria", "stroboscopic")
-_IDENTITY = ("name", "title", "system", "hamiltonian", "field", "parameters", "t0", "schemes")
+_IDENTITY = (
+    "name", "title", "system", "hamiltonian", "field", "parameters", "t0", "split", "schemes",
+)  # fmt: skip
+_OF_FIELDS = (*_IDENTITY, "keeps")
 
 
 @drawn_by("scenes")
@@ -111,11 +115,14 @@ class Scene(Frozen):
     """H as a formula in p, q and parameters; or `system`."""
     field: str | None = None
     """Equations without an H in place of it, as `u_dot = u*(v - 2); v_dot = v*(1 - u)`, with
-    coordinates of your own names; then a scene has `keeps` alone, which is volume by default."""
+    coordinates of your own names; then a scene has `keeps`, which is volume by default, and
+    runs, `grid` and `series`."""
     parameters: dict[str, ExactNumber] = Field(default_factory=dict)
     """The values of H's parameters; a section that runs needs all of them."""
     t0: ExactNumber = Fraction(0)
     """When its runs start, where H depends on t."""
+    split: Annotated[tuple[FieldPart, ...], Field(max_length=100)] = ()
+    """The parts of a splitting of `field`, which schemes such as `A 1/2; B 1; A 1/2` compose."""
     schemes: Annotated[tuple[SchemeName, ...], Field(min_length=1, max_length=100)]
     """Names of schemes, or formulas `p_next = …; q_next = …` of your own."""
     every_hamiltonian: bool = False
@@ -149,6 +156,11 @@ class Scene(Frozen):
     reference: tuple[Reference, ...] = ()
     """Numbers to test integrators against: `verify reference make`."""
 
+    @field_validator("schemes")
+    @classmethod
+    def _add_parts(cls, schemes: tuple[str, ...], info: ValidationInfo) -> tuple[str, ...]:
+        return add_field_parts(schemes, info.data.get("split", ()))
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         sources = (self.system, self.hamiltonian, self.field)
@@ -162,8 +174,8 @@ class Scene(Frozen):
         if self.keeps is not None:
             self.keeps.claims(hamiltonian, prefix="keeps.")
         if self.field is not None:
-            self._check_needs_no_energy()
-            return self
+            others = {name: getattr(self, name) for name in Scene.model_fields}
+            check_field_scene(self.field, {n: x for n, x in others.items() if n not in _OF_FIELDS})
         self._check_degrees(hamiltonian)
         if hamiltonian.time_dependent:
             if self.grid is not None and self.grid.growth:
@@ -187,16 +199,11 @@ class Scene(Frozen):
                 )
         return self
 
-    def _check_needs_no_energy(self) -> None:
-        """Raise InputError if something is requested that takes an H, or runs."""
-        for name in Scene.model_fields:
-            if name not in (*_IDENTITY, "keeps") and getattr(self, name):
-                problem = f"has no H; {name} takes one, in p and q"
-                raise InputError("field", self.field, problem)
-
     def _check_degrees(self, hamiltonian: Hamiltonian) -> None:
         """Raise InputError if a start or a section does not fit H's degrees of freedom."""
-        if not hamiltonian.planar:  # criteria, growth laws and others are of the plane alone
+        if (
+            not hamiltonian.planar and self.field is None
+        ):  # criteria, growth laws and others are of the plane alone
             self._check_no_plane(hamiltonian)
         for surface in self.poincare:
             surface.check_hamiltonian(hamiltonian)
@@ -206,7 +213,7 @@ class Scene(Frozen):
             starts = getattr(section, "initial_values", None) or ()
             single = getattr(section, "initial_value", None)
             for start in (*starts, *(() if single is None else (single,))):
-                point_of(hamiltonian, start.q, start.p)
+                check_initial_value(start, hamiltonian)
         for flow in self.flow:
             flow.point(hamiltonian)
         if self.grid is not None and self.grid.observables is not None:
@@ -251,8 +258,7 @@ class Scene(Frozen):
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
         if self.field is not None:
-            if not are_equations(self.field):
-                raise InputError("field", self.field, f"has no equation; write {EXAMPLE}")
+            check_equations(self.field)
             return read_system(self.field, self.parameters)
         systems.check_is_formula(self.hamiltonian or "")
         return Hamiltonian.parse(self.hamiltonian or "", self.parameters)

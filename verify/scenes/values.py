@@ -4,7 +4,16 @@ from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PlainSerializer, Tag
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    PlainSerializer,
+    Tag,
+    model_serializer,
+    model_validator,
+)
 
 from verify import arithmetic as number_systems
 from verify import schemes
@@ -13,14 +22,16 @@ from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians import systems
 from verify.hamiltonians.coordinates import MAX_DEGREES
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.run_domain import start_of
 from verify.scenes.frozen import Frozen
 
 MAX_STEPS = 10**12
 MAX_DIGITS = 10_000
 AUTO = number_systems.AUTO
 
-# Tags of the two models as which a table can be read; messages leave them out of keys.
-OF_ONE, OF_SEVERAL = "«one»", "«several»"
+# Tags of the models as which a table can be read; messages leave them out of keys.
+OF_ONE, OF_SEVERAL, BY_NAME = "«one»", "«several»", "«by name»"
 ExactNumber = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
 ]
@@ -154,6 +165,22 @@ class InitialState(Frozen):
     """The momenta, p1 … pn."""
 
 
+class NamedState(Frozen):
+    """The exact initial value of a run of equations without an H: each coordinate by its name."""
+
+    values: tuple[tuple[str, ExactNumber], ...]
+    """The names with their numbers, which are the keys of its table."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_table(cls, data: Any) -> Any:
+        return {"values": tuple(data.items())} if isinstance(data, dict) else data
+
+    @model_serializer
+    def _as_table(self) -> dict[str, str]:
+        return {name: text(value) for name, value in self.values}
+
+
 def _count_tag(value: Any) -> str:
     """Return the tag of a table or a model: of several where it has lists, else of one."""
     q = value.get("q", value.get("p")) if isinstance(value, dict) else getattr(value, "q", None)
@@ -164,3 +191,38 @@ Start = Annotated[
     Annotated[InitialValue, Tag(OF_ONE)] | Annotated[InitialState, Tag(OF_SEVERAL)],
     Discriminator(_count_tag),
 ]
+
+
+def _start_tag(value: Any) -> str:
+    """Return the tag of a table or a model: by name where it has other names than q and p."""
+    has_names = isinstance(value, dict) and not {*value} <= {"q", "p"}
+    return BY_NAME if has_names or isinstance(value, NamedState) else _count_tag(value)
+
+
+AnyStart = Annotated[  # also of equations without an H
+    Annotated[InitialValue, Tag(OF_ONE)]
+    | Annotated[InitialState, Tag(OF_SEVERAL)]
+    | Annotated[NamedState, Tag(BY_NAME)],
+    Discriminator(_start_tag),
+]
+
+
+def start_arguments(start: AnyStart, *, of_field: bool) -> dict[str, Any]:
+    """Return an initial value as the arguments q and p of a run, or `start` of equations."""
+    values = dict(start.values if isinstance(start, NamedState) else start)
+    return {"start": values} if of_field else values
+
+
+def check_initial_value(start: AnyStart, system: Hamiltonian) -> None:
+    """Raise InputError unless it is of the system's coordinates."""
+    arguments = start_arguments(start, of_field=not system.has_energy)
+    if system.has_energy and isinstance(start, NamedState):
+        name = next(name for name in arguments if name not in ("q", "p"))
+        missing = ", ".join(x for x in ("q", "p") if x not in arguments)
+        problem = f"is one of these meant: {missing}?" if missing else "allowed: q, p"
+        raise InputError(f"initial_value: {name}", text(arguments[name]), f"unknown key; {problem}")
+    try:
+        start_of(system, *map(arguments.get, ("q", "p", "start")))
+    except InputError as error:
+        name = "initial_value" if error.name == "start" else error.name
+        raise type(error)(name, error.value, error.problem) from None

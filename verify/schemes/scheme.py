@@ -35,6 +35,7 @@ class Scheme:
     - `formulas`: the formulas of a user's own map, by name: p_next and q_next, or p1_next, ….
     - `build`: builds the map for an H if neither `every_h` nor `formulas` does; raises InputError
       for an H that the scheme does not take.
+    - `takes_equations`: True if `build` takes equations without an H.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Scheme:
     build: Callable[[Hamiltonian], StepMap] | None = None
     every_h: BySeries | ByConditions | None = None
     formulas: Mapping[str, str] = field(default_factory=dict, hash=False)
+    takes_equations: bool = False
 
     def __repr__(self) -> str:
         area = "det J ≡ 1" if self.area_preserving else "area not preserved"
@@ -93,7 +95,8 @@ def _check_takes_equations(scheme: Scheme, equations: Equations) -> None:
     if isinstance(every_h, StageEquations):  # all coordinates alike, as those of the midpoint
         stages = every_h.stages
         of_fields = all(s.kick == s.drift and s.at_p == s.at_q for s in stages)
-    if not scheme.formulas and (not of_fields or is_partitioned):
-        allowed = "lieη, Runge–Kutta methods, formulas such as u_next = …"
+    of_fields = (of_fields and not is_partitioned) or bool(scheme.formulas)
+    if not of_fields and not scheme.takes_equations:
+        allowed = "lieη, Runge–Kutta methods, formulas such as u_next = …, splittings of the field"
         problem = f"takes an H, and {equations.formula} has none; allowed: {allowed}"
         raise InputError("scheme", scheme.name, problem)

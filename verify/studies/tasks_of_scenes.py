@@ -19,7 +19,7 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
 
 def collect_findings(scene: Scene, results: Results) -> dict[str, Any]:
     """Return the studies' parts of a `SceneResult`, from the results of the scene's tasks."""
-    parts: dict[str, Any] = {"runs": (), "series": ()}  # of equations without an H
+    parts: dict[str, Any] = {}
     for study in _studies_of(scene):
         parts |= study.results_for_scene(scene, results) if study.results_for_scene else {}
     return parts

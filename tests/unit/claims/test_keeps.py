@@ -12,6 +12,12 @@ from verify.verdict import Verdict
 PREY = 'field = "u_dot = u*(v - 2); v_dot = v*(1 - u)"\n'
 EULER = 'scheme = "u_next = u*exp(h*(v - 2)); v_next = v*exp(h*(1 - u*exp(h*(v - 2))))"\n'
 HENON = 'hamiltonian = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + (q1**2 + q2**2)**2"\n'
+SPLITTING = """
+field = "x_dot = y; y_dot = -sin(x)"
+scheme = "A 1/2; B 1; A 1/2"
+keeps = "symmetric"
+split = [{ name = "A", field = "x_dot = y" }, { name = "B", field = "y_dot = -sin(x)" }]
+"""
 CLAIMS = {
     "form": PREY + 'keeps = "symplectic"\nform = "du^dv/(u*v)"\ndefect_order = 5\nscheme = "rk4"\n',
     "density": PREY + EULER + 'keeps = "volume"\ndensity = "1/(u*v)"\n',
@@ -19,8 +25,10 @@ CLAIMS = {
     "energy": 'system = "pendulum"\nscheme = "lie2"\nkeeps = "energy"\ndefect_order = 3\n',
     "momentum": HENON + 'scheme = "stormer-verlet"\nkeeps = "angular-momentum"\n',
     "reversible": 'system = "pendulum"\nscheme = "stormer-verlet"\nkeeps = "reversible"\n',
+    "splitting": SPLITTING,
 }
 FALSE = {
+    "splitting": ("A 1/2; B 1; A 1/2", "A 1; B 1"),
     "form": ("defect_order = 5", "defect_order = 6"),
     "density": (EULER, 'scheme = "rk4"\n'),
     "integral": ("defect_order = 2", "defect_order = 3"),
@@ -62,6 +70,19 @@ def test_a_map_that_follows_no_flow_keeps_nothing_that_counts(tmp_path: Path) ->
     assert "no step of this system" in result.evidence
 
 
+def test_claims_share_a_field_with_its_parts_and_may_name_a_scene_that_has_them(
+    tmp_path: Path,
+) -> None:
+    field, scheme, keeps, split = SPLITTING.strip().splitlines()
+    shared = f"[defaults]\n{field}\n{split}\n{keeps}\n"
+    scene = f'[[scene]]\nname = "own"\n{field}\n{scheme.replace("scheme =", "schemes = [")}]\n'
+    scene += split + "\n"
+    content = claim("parts", scheme) + claim("other", 'scheme = "rk4"')
+    content += claim("scene", f'{scheme}\nscene = "own"')
+    verdicts = {n: x.verdict for n, x in check_file(tmp_path, shared + content + scene).items()}
+    assert verdicts == {"parts": "PROVED", "other": "REFUTED", "scene": "PROVED"}
+
+
 # what is wrong -> (keys, its line, what the message must hold)
 BAD = {
     "name": (PREY + 'scheme = "rk4"\nkeeps = "volum"', 6, "keeps=volum: unknown; is volume meant"),
@@ -78,6 +99,13 @@ BAD = {
         4,
         "field=u_dot: has no equation",
     ),
+    "part": (SPLITTING.replace("B 1;", "C 1;"), 6, "scheme=C: unknown; allowed: A, B"),
+    "split-of-an-h": (
+        SPLITTING.replace('field = "x_dot = y; y_dot = -sin(x)"', 'system = "pendulum"'),
+        8,
+        "split=A, B: are parts of equations",
+    ),
+    "sum": (SPLITTING.replace('-sin(x)" }', 'sin(x)" }'), 8, "split=y_dot: the parts do not"),
     "two-systems": (PREY + 'system = "pendulum"\nscheme = "rk4"\nkeeps = "volume"', 5, "give one"),
 }
 

@@ -188,6 +188,24 @@ def test_a_map_is_judged_by_its_own_names() -> None:
     assert with_masses.verdict == "PROVED"
 
 
+def test_names_stand_in_a_text_or_in_a_list() -> None:
+    names, form = ["v1", "v2", "x1", "x2"], "dv1^dx1 + 3*dv2^dx2"
+    for coordinates in (names, tuple(names), ",".join(names)):
+        assert verify.check_map(steps.two, coordinates=coordinates, form=form).verdict == "PROVED"
+    turn = verify.check_map(lambda z: [-z[1], z[0]], arguments=["q", "p"])
+    assert turn.verdict == "PROVED"
+    bad = {"x,y z": "'y z' is no name", "": "'' is no name", "x,x": "x stands twice"}
+    for text, problem in bad.items():
+        for coordinates in (text, text.split(",")):
+            with pytest.raises(verify.InputError, match=f"^coordinates=.*: {problem}$"):
+                verify.check_map(steps.two, coordinates=coordinates)
+    for wrong in (3, ["x", 3], {"x", "y"}):
+        with pytest.raises(verify.InputError, match="is no text, and no list of texts"):
+            verify.check_map(steps.two, coordinates=wrong)  # type: ignore[arg-type]
+    with pytest.raises(verify.InputError, match="arguments=q,x: is no order of p, q"):
+        verify.check_map(lambda z: z, arguments=["q", "x"])
+
+
 def test_a_map_may_have_any_number_of_coordinates() -> None:
     assert verify.check_map(steps.flow_of_abc, coordinates="x,y,w").verdict == "PROVED"
     stretched = verify.check_map(lambda z: [z[0] * 1.001, z[1], z[2]], coordinates="x,y,w")

@@ -4,12 +4,22 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.constructed.scenes import GOOD, GRID, HEAD, SERIES, load
+from tests.helpers.constructed.scenes import GOOD, GRID, HEAD, SERIES, START, load
 from verify.errors import InputError
 from verify.hamiltonians.equations import Equations
 from verify.scenes.scene import scene_from_toml, scene_text
 
 FIELD = 'schemes = ["rk4"]\nfield = "u_dot = u*(v - a); v_dot = v*(1 - u)"\nparameters = {a = 2}\n'
+PARTED = FIELD.replace("rk4", "A 1; B 1")
+SPLIT = """
+[[split]]
+name = "A"
+field = "u_dot = u*(v - a)"
+[[split]]
+name = "B"
+field = "v_dot = v*(1 - u)"
+"""
+UV = "initial_values = [{ u = 1, v = 2 }]"
 FORM = '[keeps]\nstructures = ["volume: 3"]\ndensity = "1/(u*v)"\nform = "du^dv/(u*v)"\n'
 
 
@@ -61,13 +71,52 @@ BAD = {
         FIELD + 'keeps = ["symplectic"]',
         "keeps=symplectic: a system without H has no p and q; write form",
     ),
-    "grid-of-a-field": (FIELD + GRID, "has no H; grid takes one, in p and q"),
-    "series-of-a-field": (FIELD + SERIES, "has no H; series takes one"),
+    "start-of-a-field": (FIELD + GRID, "initial_value=q: unknown; allowed: u, v"),
+    "series-of-a-field": (FIELD + SERIES, "initial_value=q: unknown; allowed: u, v"),
+    "start-without-v": (
+        FIELD + GRID.replace(START, UV.replace(", v = 2", "")),
+        "has no value of v",
+    ),
+    "start-of-an-h": (HEAD + GRID.replace(START, UV), "initial_value: u=1: unknown key; is one of"),
+    "separate-of-a-field": (
+        FIELD + GRID.replace(START, UV) + "separate = true",
+        "has no H; grid.separate takes one",
+    ),
+    "growth-of-a-field": (FIELD + GRID.replace(START, UV) + "growth = true", "grid.growth takes"),
+    "observable-of-a-field": (
+        FIELD + GRID.replace(START, UV) + 'observables = ["energy_error_max"]',
+        "observable=energy_error_max: unknown; allowed: ",
+    ),
+    "value-of-a-field": (
+        FIELD.replace("{a = 2}", "{}") + GRID.replace(START, UV),
+        "parameter=a: has no value",
+    ),
+    "reference-of-a-field": (
+        FIELD + f"[[reference]]\nstep_sizes = [0.1]\nsteps = [1]\n{START}",
+        "has no H; reference takes one",
+    ),
     "criteria-of-a-field": (FIELD + "criteria = [1]", "has no H; criteria takes one"),
     "every-h-of-a-field": (
         FIELD + "every_hamiltonian = true",
         "has no H; every_hamiltonian takes one",
     ),
+    "split-of-an-h": (HEAD + SPLIT, "split=A, B: no scheme is composed of its parts; write 'A 1; "),
+    "split-and-an-h": (HEAD.replace("lie2", "A 1; B 1") + SPLIT, "split=A, B: are parts of equ"),
+    "split-of-no-scheme": (FIELD + SPLIT, "no scheme is composed of its parts"),
+    "split-unknown": (PARTED.replace("B 1", "C 1") + SPLIT, "scheme=C: unknown; allowed: A, B"),
+    "split-sum": (
+        PARTED + SPLIT.replace("1 - u", "1 + u"),
+        "split=v_dot: the parts do not add up to the field: v*(u + 1), and the field has ",
+    ),
+    "split-no-shear": (
+        PARTED + SPLIT.replace("u_dot = u*(v - a)", "u_dot = u*(v - a); v_dot = 0"),
+        "split=A: u_dot = u*(-a + v): is a part with no flow that is a polynomial in time",
+    ),
+    "split-twice": (PARTED + SPLIT.replace('"B"', '"A"'), "split=2: a name stands twice"),
+    "split-name": (PARTED + SPLIT.replace('"B"', '"B 1"'), "split=B 1: is no name of a part"),
+    "split-empty": (PARTED + SPLIT.replace("v_dot = v*(1 - u)", ""), "split=B:: has other equ"),
+    "split-key": (PARTED + SPLIT.replace('name = "B"', 'nam = "B"'), "split.1.nam=B: unknown key"),
+    "split-table": (PARTED + 'split = { name = "A" }', "split={'name': 'A'}: must be a list"),
     "field-and-system": (FIELD + 'system = "duffing"', "give one of the two, or field"),
     "no-equation": (FIELD.replace("_dot", ""), "has no equation; write u_dot = "),
     "scheme": (FIELD.replace("rk4", "stormer-verlet"), "scheme=stormer-verlet: takes an H"),

@@ -60,10 +60,18 @@ def test_of_equations_volume_is_looked_at_where_nothing_is_named(tmp_path: Path)
     assert [x.verdict for x in result_of(tmp_path, rotation).keeps] == ["REFUTED"] * 2
 
 
+def test_of_equations_nothing_is_looked_at_that_their_flow_does_not_keep(tmp_path: Path) -> None:
+    plan = plan_scenes([load(tmp_path, PREY.partition("[keeps]")[0])])
+    assert (plan.tasks, plan.left_out[-1][1]) == ({}, "the scene has no `keeps`")
+
+
 def test_a_plan_of_equations_has_nothing_else(tmp_path: Path) -> None:
     plan = plan_scenes([load(tmp_path, PREY)])
     assert {type(task) for task in plan.tasks.values()} == {KeepsTask}
-    assert (len(plan.tasks), plan.left_out) == (2, [])
+    assert len(plan.tasks) == 2
+    assert {why for _, why in plan.left_out} == {
+        "the scene has no [grid]", "the scene has no [[series]]"
+    }  # fmt: skip
 
 
 def test_without_keeps_nothing_is_proved_of_it_and_the_plan_says_so(tmp_path: Path) -> None:
@@ -115,4 +123,5 @@ def test_the_observable_of_a_structure_is_one_of_the_scenes_runs(tmp_path: Path)
         "reversible": "",
     }  # fmt: skip
     (plain,) = result_of(tmp_path, PREY.replace('"rk4", ', "")).keeps
-    assert {x.observable for x in plain.keeps} == {""}
+    changes = "integral_error_max: -u - v + log(u) + 2*log(v)"
+    assert [x.observable for x in plain.keeps] == [changes, ""]

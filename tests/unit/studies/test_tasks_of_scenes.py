@@ -48,7 +48,7 @@ def test_tasks_that_differ_in_anything_have_different_keys(tmp_path: Path) -> No
     changes = {
         "hamiltonian": "p**2/2", "parameters": {"a": Fraction(1)}, "scheme": "lie3",
         "step_size": Fraction(1, 11), "steps": 11,
-        "q": Fraction(1), "p": Fraction(1), "t0": Fraction(1),
+        "q": Fraction(1), "p": Fraction(1), "start": {"u": Fraction(1)}, "t0": Fraction(1),
         "arithmetic": "mpmath", "digits": 18, "observables": ("mse",), "points": 3,
         "shares_kernel": True, "sections": 17,
     }  # fmt: skip

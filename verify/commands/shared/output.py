@@ -213,7 +213,7 @@ def print_report(report: "Report", *pages: Path) -> None:
     for scene in report.scenes:
         for kept in scene.keeps:
             for structure in kept.keeps:
-                line = f"{scene.name}, {kept.scheme}: {structure.label}: {structure.reason}"
+                line = f"{scene.name}, {kept.scheme_title}: {structure.label}: {structure.reason}"
                 click.echo(f"{structure.verdict:9}  {line}")
         for result in scene.criteria:
             click.echo(

@@ -78,11 +78,11 @@ def structure_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def compose_scheme(scheme: str, splits: Sequence[str], system: "Hamiltonian") -> str:
-    """Return the scheme, or the formulas of one that is composed of the parts in `splits`."""
+    """Return the scheme, with the parts in `splits` of which it is composed."""
     if not splits:
         return scheme
     from verify.hamiltonians.equations import Equations
-    from verify.schemes.field_splitting import formulas_of_splitting
+    from verify.schemes.field_splitting import add_parts
 
     if not isinstance(system, Equations):
         raise InputError("--split", splits[0], "goes with --field")
@@ -93,4 +93,4 @@ def compose_scheme(scheme: str, splits: Sequence[str], system: "Hamiltonian") ->
             problem = "stands twice" if colon else "has no name; write NAME: FIELD"
             raise InputError("--split", text, problem)
         parts[name.strip()] = field
-    return formulas_of_splitting(system, parts, scheme)
+    return add_parts(scheme, parts)

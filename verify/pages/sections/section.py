@@ -101,6 +101,7 @@ class ReportSection:
     matching_plots: Callable[[Any, str], Iterable[tuple[Plot | None, str]]] = _nothing
     # A sentence and tiles for the first screen of a report without claims and proofs.
     speaks: Callable[[Report], tuple[str, Sequence[Tile]] | None] = lambda _: None
+    takes_field: bool = False  # of a scheme: also of equations without an H
 
 
 @dataclass(frozen=True)
@@ -161,10 +162,14 @@ def sections(files: Catalogue) -> list[tuple[str, ReportSection]]:
 
 
 def select_sections(
-    files: Catalogue, place: SectionPlace, *subject: object
+    files: Catalogue, place: SectionPlace, *subject: object, of_field: bool = False
 ) -> tuple[VisibleSection, ...]:
-    """Return the sections in these files that have something to show of the subject, by `order`."""
-    views = ((s, template, s.view(*subject)) for template, s in sections(files))
+    """Return the sections in these files that have something to show of the subject, by `order`.
+
+    `of_field`: it is of equations without an H.
+    """
+    chosen = ((t, s) for t, s in sections(files) if s.takes_field or not of_field)
+    views = ((s, template, s.view(*subject)) for template, s in chosen)
     return tuple(VisibleSection(s, template, view, place) for s, template, view in views if view)
 
 

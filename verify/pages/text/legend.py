@@ -23,13 +23,13 @@ SIGNS = {
 # Terms of every page.
 ALWAYS = {
     "ΔJ": Markup(
-        "det J − 1, by how much one step changes area, with J the Jacobian matrix of the step map "
-        "(p, q) → (p′, q′). It is evaluated from its closed form, not as a difference from 1, "
-        "which would cancel."
+        "det J − 1, by how much one step changes area, or volume in more than two coordinates, "
+        "with J the Jacobian matrix of the step map z → z′. It is evaluated from its closed form, "
+        "not as a difference from 1, which would cancel."
     ),
     "MSE": Markup("The mean of ΔJ² over the N steps; lg MSE is its decimal logarithm."),
     "Λ": Markup(
-        "Π (1 + ΔJ) − 1 over the N steps: by how much all steps together change area. "
+        "Π (1 + ΔJ) − 1 over the N steps: by how much all steps together change it. "
         "<em>By closed form</em>: from the closed form of ΔJ. <em>The plain way</em>: four entries "
         "of J, determinant, product, minus one, all in working precision, as one would program it "
         "at first."

@@ -141,7 +141,10 @@ def start(
 ) -> str:
     """Return a run's initial value, and the time at which it starts if that is not 0."""
     t0 = getattr(run, "t0", "0")
-    texts = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})
+    named: dict[str, str] = getattr(run, "start", {})
+    texts: dict[str, str | tuple[str, ...]] = {f"{name}₀": x for name, x in named.items()}
+    texts = texts or {"q₀": run.q, "p₀": run.p}
+    texts |= {} if t0 == "0" else {"t₀": t0}
     return ", ".join(f"{name}{IS}{coordinates(x)}" for name, x in texts.items())
 
 

@@ -41,3 +41,8 @@ class KeptResult(OfScheme, WithProse):
     convergence_decided: bool
     keeps: tuple[StructureResult, ...]
     seconds: Seconds
+
+    @property
+    def order_of_delta_j(self) -> int | None:
+        """The proved order in h of ΔJ = det J − 1; None if it is 0, or was not asked for."""
+        return next((x.order for x in self.keeps if x.label == "volume"), None)

@@ -14,7 +14,9 @@ from verify.runs.task import RunTask
 from verify.scenes.observables import select_observables
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.structures import AREA, SYMPLECTIC
+from verify.scenes.values import start_arguments
+from verify.schemes.field_splitting import separate_parts
+from verify.structures import SYMPLECTIC
 from verify.studies.separation.determinants import POINTS, Determinants
 from verify.studies.separation.links import way_for
 
@@ -31,9 +33,8 @@ def grid_task(
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
     initial_value, steps = scene.grid.initial_values[start], scene.grid.steps_for(h)
     fields = common or _common_fields(scene)
-    return RunTask(
-        **fields, scheme=scheme, step_size=h, steps=steps, q=initial_value.q, p=initial_value.p
-    )
+    begin = start_arguments(initial_value, of_field=scene.field is not None)
+    return RunTask(**fields, **begin, scheme=scheme, step_size=h, steps=steps)
 
 
 def grid_tasks(scene: Scene, scheme: str) -> list[RunTask]:
@@ -100,9 +101,9 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     # Observables that measure the loss of area are exactly 0: no run is needed for them alone.
     if preserves and observable_names and observable_names <= vanishing:
         structure = hamiltonian.structure
-        of_form = {AREA: "", SYMPLECTIC: "S, W, "}[structure]
+        of_form = "S, W, " if structure is SYMPLECTIC else ""
         reason = f"{structure.identity} is proved: {of_form}ΔJ, MSE and Λ are exactly 0"
-        plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", reason)
+        plan.leave_out(f"{name}: {len(tasks)} runs of {separate_parts(scheme)[0]}", reason)
         return
     for task in tasks:
         plan.need(task, f"{name}: grid")
@@ -113,4 +114,4 @@ def _collect(scene: Scene, results: Results) -> dict[str, Any]:
 
 
 _SECTION = toml_section(1, "runs over step sizes", "[grid]")
-STUDY = Study(2, (_SECTION,), need_of_scheme=_need, results_for_scene=_collect)
+STUDY = Study(2, (_SECTION,), need_of_scheme=_need, results_for_scene=_collect, takes_field=True)

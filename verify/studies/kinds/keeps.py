@@ -3,6 +3,7 @@
 import time
 from typing import TYPE_CHECKING, Any, Literal
 
+from verify.errors import InputError
 from verify.execution.keeper import Keeper
 from verify.execution.plan import Plan, Results, SceneQuestion, Study, results_of_tasks, scene_name
 from verify.execution.task import SchemeTask
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
     from verify.proof.structures.structure_order import StructureProof
 
 _COST = 20_000_000  # of the proofs, about
-VOLUME = Keeps(structures=("volume",))  # what is asked of a field, where its scene says nothing
+# What is asked of a field whose flow keeps it, where its scene says nothing.
+VOLUME = Keeps(structures=("volume",))
 
 
 class KeepsTask(SchemeTask):
@@ -61,7 +63,17 @@ def _result_of(x: "StructureProof", system: Hamiltonian) -> StructureResult:
 
 
 def _keeps_of(scene: Scene) -> Keeps | None:
-    return scene.keeps or (None if scene.field is None else VOLUME)
+    if scene.keeps is None and scene.field is not None and _flow_keeps_volume(scene):
+        return VOLUME
+    return scene.keeps
+
+
+def _flow_keeps_volume(scene: Scene) -> bool:
+    try:
+        VOLUME.claims(scene.exact_hamiltonian())
+    except InputError:
+        return False
+    return True
 
 
 def _task(scene: Scene, scheme: str) -> KeepsTask | None:

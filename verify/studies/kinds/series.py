@@ -8,16 +8,17 @@ from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import PlottedSeries
 from verify.scenes.scene import Scene
+from verify.scenes.values import start_arguments
+from verify.schemes.field_splitting import separate_parts
 from verify.studies.kinds.grid import observables_of
 
 
 def series_task(scene: Scene, scheme: str, series: PlottedSeries) -> RunTask:
     """Return the run of a `[[series]]`."""
-    initial_value = series.initial_value
+    begin = start_arguments(series.initial_value, of_field=scene.field is not None)
     return RunTask(
-        **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=series.step_size, steps=series.count,
-        q=initial_value.q, p=initial_value.p, t0=scene.t0,
+        **scene.hamiltonian_fields(), **begin, scheme=scheme,
+        step_size=series.step_size, steps=series.count, t0=scene.t0,
         arithmetic=series.arithmetic, digits=series.digits,
         observables=observables_of(scene, None), points=series.points,
     )  # fmt: skip
@@ -25,7 +26,8 @@ def series_task(scene: Scene, scheme: str, series: PlottedSeries) -> RunTask:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     for series in scene.series:
-        description = f"{scene_name(scene)}: series of {scheme} at h = {text(series.step_size)}"
+        title, h = separate_parts(scheme)[0], text(series.step_size)
+        description = f"{scene_name(scene)}: series of {title} at h = {h}"
         task = series_task(scene, scheme, series)
         if preserves and "energy_error_max" not in (task.observables or ()):
             plan.leave_out(description, "ΔJ ≡ 0 is proved: it is a line at 0")
@@ -47,4 +49,5 @@ STUDY = Study(
     (_SECTION,),
     need_of_scheme=_need,
     results_for_scene=lambda scene, results: {"series": tuple(_runs(scene, results))},
+    takes_field=True,
 )

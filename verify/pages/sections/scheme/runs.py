@@ -17,7 +17,7 @@ from verify.pages.sections.table_rows import (
 )
 from verify.pages.text import legend
 from verify.pages.text.typography import number, start, value, whole
-from verify.scenes.results.proof_result import ProofResult
+from verify.scenes.frozen import OfScheme
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
@@ -36,13 +36,11 @@ class RunTable:
     proved_columns: tuple[str, ...]  # those whose values a proof gives for all runs
 
 
-def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
+def _view(scene: SceneResult, proof: OfScheme, _: str) -> RunTable | None:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
-    columns = {
-        name: observable.heading or observable.label
-        for name, observable in observables.by_name().items()
-    }
-    names = [n for n in columns if any(n in run.values for run in runs)]
+    computed = observables.select({name for run in runs for name in run.values})
+    columns = {each.name: each.heading or each.label for each in computed}
+    names = [*columns]
     if not names and all(run.status == "finished" for run in runs):
         return None
     failed = [run for run in runs if _has_failed(run)]
@@ -116,4 +114,4 @@ def _row(run: RunResult, names: Sequence[str]) -> TableRow:
     return TableRow(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
 
 
-SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN)
+SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN, takes_field=True)

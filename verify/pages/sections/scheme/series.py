@@ -15,7 +15,7 @@ from verify.pages.sections.section import Picture, ReportSection
 from verify.pages.sections.table_rows import by_key
 from verify.pages.text import legend
 from verify.pages.text.typography import start, whole
-from verify.scenes.results.proof_result import ProofResult
+from verify.scenes.frozen import OfScheme
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
@@ -23,11 +23,11 @@ from verify.scenes.results.run import RunResult
 SeriesView = tuple[tuple[Plot, str], ...]
 
 
-def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
+def _view(scene: SceneResult, proof: OfScheme, anchor: str) -> SeriesView:
     return tuple(_plots(scene, proof, anchor))
 
 
-def _plots(scene: SceneResult, proof: ProofResult, anchor: str) -> Iterator[tuple[Plot, str]]:
+def _plots(scene: SceneResult, proof: OfScheme, anchor: str) -> Iterator[tuple[Plot, str]]:
     """Yield a plot for all runs with the same step size that repeat the same part of a paper."""
     # Where a proof gives Λ, ΔJ and Λ are lines at 0; such a series is there for its energy.
     scheme_series = [
@@ -101,6 +101,7 @@ def _describe_ends(runs: Sequence[RunResult], label: str) -> Iterator[str]:
 SECTION = ReportSection(
     order=50,
     view=_view,
+    takes_field=True,
     pictures=lambda view: [Picture((4,), plot) for plot, _ in view],
     terms=lambda _: legend.RAN,
     shows="series",
