@@ -18,10 +18,12 @@ from verify.integrators.places.units import (
 )
 
 
-def units_of_system(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
+def units_of_system(
+    field: FloatField, usual: float | None = None
+) -> tuple[list[list[Fraction]], Fraction]:
     """Return the units of the coordinates, for each scale that the system has, and the unit of t.
 
-    `usual`: the length that is taken where the field has no scale.
+    `usual`: the length that is taken where the field has no scale; None for any.
     """
     if field.canonical:
         return units_of(field, usual)
@@ -33,7 +35,7 @@ def units_of_system(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fr
         return field.octave([s * x for x in ways], TIME, origin, TIME)
 
     turns = [*find_turns(size), *find_turns(lambda s: size(-s))]
-    scale = turns[0] if turns else usual
+    scale = turns[0] if turns else usual or 1.0
     base = [scale * x for x in ways]
     own_turns = [find_turns(response(field, base, k)) for k in range(len(ways))]
     units = [x[0] if x else scale for x in own_turns]

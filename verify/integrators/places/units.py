@@ -2,7 +2,8 @@
 
 A scale is a length at which the forces turn from one power of the coordinates to another (σ of a
 molecule, the length of a pendulum). Its momenta are those whose kinetic energy is the work of the
-forces over this length. If H has no scale, as Kepler's, any length will do, and 1 is taken.
+forces over this length. If H has no scale, as Kepler's, any length will do: 1 is taken, and that
+at which the motion takes a unit of time, since the numbers of a code are made for either.
 """
 
 import math
@@ -100,22 +101,41 @@ class FloatField:
         return columns
 
 
-def units_of(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
+def units_of(
+    field: FloatField, usual: float | None = None
+) -> tuple[list[list[Fraction]], Fraction]:
     """Return the units of the coordinates, p1 … qn, for each scale that H has, and the unit of t.
 
-    `usual`: the length that is taken if H has no scale.
+    `usual`: the length that is taken if H has no scale; None for any.
     """
     n, scales = field.degrees, list[list[float]]()
-    for lengths in _find_scales(field, n, usual):
+    for lengths in _find_scales(field, n, usual or 1.0):
         scales.append([*_find_partners(field, lengths, n), *lengths])
     # If the q have no scale, the p may have one, as those of a relativistic body on a spring.
     for momenta in [] if scales else _find_scales(field, 0):
         scales.append([*momenta, *_find_partners(field, momenta, 0)])
-    lengths = [usual] * n
-    scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
+    for length in [] if scales else [usual] if usual else _free_lengths(field):
+        lengths = [length] * n
+        scales.append([*_find_partners(field, lengths, n), *lengths])
     return [[round_to_simple(x) for x in scale] for scale in scales], round_to_simple(
         find_duration(field, scales[0])
     )
+
+
+def _free_lengths(field: FloatField) -> list[float]:
+    """Return 1, and the length at which the motion takes a unit of time where that is another."""
+    n, rates = field.degrees, list[float]()
+    for length in (1.0, float(_SCALE_RATIO)):
+        units = [*_find_partners(field, [length] * n, n), *[length] * n]
+        slopes = field([x * y for x, y in zip(units, 2 * direction(n), strict=True)])
+        rates.append(max(abs(x) / u for x, u in zip(slopes, units, strict=True)) if slopes else 0)
+    if not all(0 < x < math.inf for x in rates):
+        return [1.0]
+    # Without a scale the rate is a power of the length.
+    power = math.log(rates[1] / rates[0], _SCALE_RATIO)
+    octaves = -math.log2(rates[0]) / power if abs(power) > _PLATEAU_WIDTH else 0.0
+    is_other = math.log2(_SCALE_RATIO) < abs(octaves) < _OCTAVES[-1]
+    return [1.0, 2.0**octaves] if is_other else [1.0]
 
 
 def _find_scales(field: FloatField, first: int, usual: float = 1.0) -> list[list[float]]:
