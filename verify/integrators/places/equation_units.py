@@ -10,6 +10,7 @@ from verify.integrators.places.trial_places import round_to_simple
 from verify.integrators.places.units import (
     TIME,
     FloatField,
+    Units,
     direction,
     find_duration,
     find_turns,
@@ -18,9 +19,7 @@ from verify.integrators.places.units import (
 )
 
 
-def units_of_system(
-    field: FloatField, usual: float | None = None
-) -> tuple[list[list[Fraction]], Fraction]:
+def units_of_system(field: FloatField, usual: float | None = None) -> tuple[Units, Fraction]:
     """Return the units of the coordinates, for each scale that the system has, and the unit of t.
 
     `usual`: the length that is taken where the field has no scale; None for any.

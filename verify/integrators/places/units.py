@@ -32,6 +32,7 @@ _LATER_PLATEAU_SLOPES = 6  # slopes that have to show one power, beyond the firs
 _MAX_SCALES = 3
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
+Units = list[list[Fraction]]  # of the coordinates, for each scale
 
 
 class FloatField:
@@ -101,9 +102,7 @@ class FloatField:
         return columns
 
 
-def units_of(
-    field: FloatField, usual: float | None = None
-) -> tuple[list[list[Fraction]], Fraction]:
+def units_of(field: FloatField, usual: float | None = None) -> tuple[Units, Fraction]:
     """Return the units of the coordinates, p1 … qn, for each scale that H has, and the unit of t.
 
     `usual`: the length that is taken if H has no scale; None for any.
@@ -129,10 +128,9 @@ def _free_lengths(field: FloatField) -> list[float]:
         units = [*_find_partners(field, [length] * n, n), *[length] * n]
         slopes = field([x * y for x, y in zip(units, 2 * direction(n), strict=True)])
         rates.append(max(abs(x) / u for x, u in zip(slopes, units, strict=True)) if slopes else 0)
-    if not all(0 < x < math.inf for x in rates):
-        return [1.0]
     # Without a scale the rate is a power of the length.
-    power = math.log(rates[1] / rates[0], _SCALE_RATIO)
+    is_moving = all(0 < x < math.inf for x in rates)
+    power = math.log(rates[1] / rates[0], _SCALE_RATIO) if is_moving else 0.0
     octaves = -math.log2(rates[0]) / power if abs(power) > _PLATEAU_WIDTH else 0.0
     is_other = math.log2(_SCALE_RATIO) < abs(octaves) < _OCTAVES[-1]
     return [1.0, 2.0**octaves] if is_other else [1.0]
