@@ -252,6 +252,6 @@ def order_of(kept: Kept, names: Sequence[str], step: Step, z: State, t0: Any) ->
             text = f"the defect is 0 at small h, and {mp.nstr(large, 5)} at a large one"
             raise ArithmeticError(text)
         slope = mp.log(first / second, 2)
-        if abs(slope - mp.nint(slope)) < 0.01:
+        if abs(slope - mp.nint(slope)) < 1e-4:
             return int(mp.nint(slope))
     raise ArithmeticError(f"the slope is {mp.nstr(slope, 8)}")
