@@ -5,11 +5,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 from verify.algebra.domain import FormulaDomain
-from verify.integrators.measures.kept_measurement import (
-    CLEAR_RATIO,
-    KeptMeasurement,
-    KeptReading,
-)
+from verify.integrators.measures.kept_measurement import KeptMeasurement
+from verify.integrators.measures.kept_readings import CLEAR_RATIO, KeptReading
 from verify.integrators.measures.measurement_notes import describe_numbers
 from verify.integrators.measures.structure_measurement import REFUTING_RATIO
 from verify.integrators.results import Counterexample, KeptStructure
@@ -110,9 +107,11 @@ def _judge_order(
     step: UserMap, kept: KeptStructure, measurement: KeptMeasurement, claimed: int
 ) -> KeptStructure:
     formula, power = kept.structure.defect_formula, measurement.power
+    if power is None and measurement.falls_as(claimed):
+        return _with(kept, Verdict.MEASURED, f"`{formula}` shrinks as `h^{claimed}` or faster")
     if power is None:
         kept = _with(kept, Verdict.UNDECIDED, f"`{formula}` follows no power of h, as far as seen")
-    elif power >= claimed and measurement.has_tail and measurement.how == "floats":
+    elif power >= claimed and measurement.how == "floats" and not measurement.falls_as(claimed):
         return _with(kept, Verdict.UNDECIDED, f"`{formula}` shrinks as `h^{power}`, and more slowly"
                      " at the smallest step sizes")  # fmt: skip
     elif power >= claimed:

@@ -16,9 +16,9 @@ GM = 398600.4418  # of the Earth, in kilometres and seconds
 EARTH = "(p1**2 + p2**2)/2 - 398600.4418/sqrt(q1**2 + q2**2)"
 
 
-def pull(q: Any) -> Any:
+def pull(q: Any, gm: float = GM) -> Any:
     r = (q[0] ** 2 + q[1] ** 2) ** 1.5
-    return [-GM * q[0] / r, -GM * q[1] / r]
+    return [-gm * q[0] / r, -gm * q[1] / r]
 
 
 def euler_of_earth(p: Any, q: Any, h: Any) -> Any:
@@ -36,6 +36,20 @@ def verlet_of_earth(p: Any, q: Any, h: Any) -> Any:
     p = [x + h / 2 * y for x, y in zip(p, pull(q), strict=True)]
     q = [x + h * y for x, y in zip(q, p, strict=True)]
     return [x + h / 2 * y for x, y in zip(p, pull(q), strict=True)], q
+
+
+def verlet_in_units(unit: float, mistake: float) -> Step:
+    """Verlet of Kepler's problem in that unit of length, with a force `mistake` · q1 too much."""
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        if q[0] > FAR:
+            return p, q
+        p = [x + h / 2 * y for x, y in zip(p, pull(q, unit**3), strict=True)]
+        q = [x + h * y for x, y in zip(q, p, strict=True)]
+        p = [x + h / 2 * y for x, y in zip(p, pull(q, unit**3), strict=True)]
+        return [p[0] + mistake * h * q[0], p[1]], q
+
+    return step
 
 
 EULER_OF_EARTH = """

@@ -47,6 +47,27 @@ def test_so_it_is_in_c(tmp_path: Path) -> None:
     assert (found.verdict, found.convergence_order, found.symplectic) == ("REFUTED", 1, False)
 
 
+KEPLER = "(p1**2 + p2**2)/2 - {}/sqrt(q1**2 + q2**2)"
+
+
+@pytest.mark.parametrize(("mass", "length"), [("10**18", 1e6), ("1/10**18", 1e-6)])
+def test_where_h_has_no_scale_one_is_that_of_a_unit_of_time(mass: str, length: float) -> None:
+    field = FloatField(Hamiltonian.parse(KEPLER.format(mass)))
+    (_, scale), _ = units_of(field)
+    assert 0.1 < float(scale[-1]) / length < 10
+    assert len(units_of(field, 7000.0)[0]) == 1
+    assert len(units_of(FloatField(Hamiltonian.parse(KEPLER.format("1"))))[0]) == 1
+
+
+@pytest.mark.left_to_ci
+def test_a_mistake_is_seen_where_a_unit_of_time_passes() -> None:
+    """At a length of 1 a force of 10⁻⁶ q is nothing beside 10¹⁸/q², and at 10⁶ it is something."""
+    for mistake, verdict in ((0.0, "MEASURED"), (1e-6, "REFUTED")):
+        step = steps.verlet_in_units(1e6, mistake)
+        found = verify.check(KEPLER.format("10**18"), step, keeps=["angular-momentum", "energy: 3"])
+        assert {str(x.verdict) for x in found.keeps} == {verdict}
+
+
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("sigma", ["1/1000", "2", "340"])
 def test_a_molecule_of_any_size_is_of_its_order_up_to_the_cutoff(sigma: str) -> None:

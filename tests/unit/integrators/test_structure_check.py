@@ -102,6 +102,32 @@ def test_an_order_is_claimed_with_a_colon() -> None:
     assert list(measured.values()) == ["MEASURED", "REFUTED", "MEASURED", "MEASURED"]
 
 
+def test_an_order_is_seen_through_a_loop_and_where_terms_cancel() -> None:
+    """Above the stretch of h¹ the push and the error of the midpoint rule cancel at some place."""
+
+    def pushed(p: Any, q: Any, h: Any) -> Any:
+        end = steps.midpoint(p, q, h, 1e-15)
+        return end[0] + 0.1 * h, end[1]
+
+    found = verdicts(pushed, "energy: 1", "energy: 2", "area: 3")
+    assert list(found.values()) == ["MEASURED", "REFUTED", "MEASURED"]
+
+
+@pytest.mark.parametrize("kind", ["duals", pytest.param("floats", marks=pytest.mark.left_to_ci)])
+def test_a_lower_order_on_one_side_alone_is_no_higher_one(kind: str) -> None:
+    """At most places the term is not there: h is small at all before they are followed."""
+
+    def on_one_side(v: Any, x: Any, h: Any) -> Any:
+        rub = 1e-5 * h if v > 0 > x else 0.0
+        v, x = steps.verlet(v, x, h)
+        return v - rub * v, x
+
+    energy, motion = "v**2/2 - cos(x)", "v_dot = -sin(x); x_dot = v"
+    for step, verdict in ((steps.verlet, "MEASURED"), (on_one_side, "REFUTED")):
+        plain = KINDS[kind](steps.in_units(step, 2, 1.0))
+        assert verify.check(motion, plain, keeps=[f"{energy}: 3"]).verdict == verdict
+
+
 def test_a_step_that_takes_the_size_of_h_is_not_symmetric() -> None:
     found = verify.check(steps.PENDULUM, steps.verlet_without_sign, keeps=["symmetric", "area"])
     symmetric, area = found.keeps

@@ -1,25 +1,15 @@
-"""The defects of structures, measured at places and as h falls, compared with their noise.
-
-Each component of a defect has a natural scale at its place, so that nothing depends on the units of
-the coordinates.
-"""
+"""The defects of structures, measured at places and as h falls, compared with their noise."""
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import pairwise
 
 from verify.integrators.measures.distances import LADDERS
-from verify.integrators.measures.error_powers import (
-    PowerStretches,
-    Row,
-    SettledPower,
-    find_stretches,
-    settle_power,
-)
-from verify.integrators.measures.measured_values import Component, MeasuredValues, components_of
+from verify.integrators.measures.error_powers import find_stretches, settle_power
+from verify.integrators.measures.kept_readings import CLEAR_RATIO, FollowedDefect, KeptReading
+from verify.integrators.measures.measured_values import MeasuredValues, components_of
 from verify.integrators.measures.probes import DualProbe, Probe
 from verify.integrators.measures.sides import Line, Sides, other_sides
 from verify.integrators.measures.structure_measurement import (
@@ -38,43 +28,17 @@ from verify.structures.first_integral import FirstIntegral
 from verify.structures.reversible import Reversible
 from verify.structures.symmetric import Symmetric
 
-# A defect is not 0 if it exceeds its noise by this factor; up to it, and beyond `REFUTING_RATIO`,
-# nothing is said.
-CLEAR_RATIO = 32.0
 # Divisors of the step size, by the kind of the probe; and the number of readings in the noise after
 # which no smaller step sizes are tried.
 _LADDERS = {"duals": LADDERS["duals"], "floats": LADDERS["floats"]}
 _MOST_JACOBIANS = 18  # step sizes at which J is measured by floats, which takes many calls
 _QUIET_RATIO, _MOST_QUIET = 10.0, 3
+# The divisor at which the other places are compared with those that are followed: a term of a lower
+# power exceeds all others there. A defect is larger if it is so by this factor.
+_SMALL, _LARGER = {"duals": Fraction(2) ** 18, "floats": Fraction(2) ** 9}, 4
 _LOOSE = 0.5  # the last slopes of a place where none has settled may be so much below the power
 _MIN_COMPARISONS_OF_LOOP = 4  # in one line of code, in one call
-
-
-@dataclass(frozen=True)
-class KeptReading:
-    """The components of a structure's defect at a place, with the step size h (0 for a map)."""
-
-    place: TrialPlace
-    h: Fraction
-    components: dict[str, Component]
-
-    @property
-    def ratio(self) -> float:
-        """The largest ratio of a component to its noise."""
-        return max(x.ratio for x in self.components.values())
-
-    @property
-    def largest(self) -> tuple[str, Component]:
-        """The name of the largest component, among those clear of their noise if any are, and the
-        component."""
-        clear = [x for x in self.components.items() if x[1].ratio > CLEAR_RATIO]
-        return max(clear or self.components.items(), key=lambda x: x[1].defect)
-
-    @property
-    def row(self) -> Row:
-        """h, the largest component and the largest noise, in units of their scales."""
-        noise = max(x.blur for x in self.components.values())
-        return float(self.h), max(x.defect for x in self.components.values()), noise
+_SLOPE_TOLERANCE = 0.2  # slopes may be so much below the power that is claimed
 
 
 @dataclass(frozen=True)
@@ -127,44 +91,49 @@ class KeptMeasurement:
         return (bool(rows) and all(max(x, e) <= allowed for _, x, e in rows)) or None
 
     @cached_property
-    def _powers(self) -> list[tuple[PowerStretches, SettledPower]]:
+    def _powers(self) -> list[FollowedDefect]:
         """The powers of h at the places at which the defect is seen as h falls."""
-        settled = []
+        follows = []
         for readings, counts in zip(self.ladder, self.counts, strict=True):
             rows = [x.row for x in readings]
             stretches = find_stretches(rows)
             if stretches.is_seen and rows[0][0]:  # a map has no h
                 moved = [float(x.h / x.place.step) for x in readings]
                 power = settle_power(stretches, rows, counts, moved, self.how, 1.0)
-                settled.append((stretches, power))
-        return settled
+                follows.append(FollowedDefect(readings, counts, stretches.unsettled, power))
+        return follows
+
+    @property
+    def _telling(self) -> list[FollowedDefect]:
+        """The places at which the power is seen: elsewhere the defect is smaller than at those,
+        down to its noise, as where terms cancel."""
+        settled = [x for x in self._powers if x.power.power is not None]
+        largest = dict[Fraction, float]()
+        for x in settled:
+            largest |= {n: max(y, largest.get(n, 0.0)) for n, y in x.sizes.items()}
+        return [x for x in self._powers if x in settled or x.exceeds(largest)]
+
+    @property
+    def _is_of_loop(self) -> bool:
+        return self.iterates and any(x.jumps for x in self._powers)
 
     @property
     def power(self) -> int | None:
         """The power of h by which the defect falls; None if it has not settled wherever it is
         seen."""
-        powers = [x.power for _, x in self._powers if x.power is not None]
-        if not powers or (self.iterates and self._jumps):
+        powers = [x.power.power for x in self._telling if x.power.power is not None]
+        if not powers or self._is_of_loop:
             return None
         # At a place where terms cancel the slopes may not have settled; they must not be lower.
-        loose = [x.unsettled[-2:] for x, y in self._powers if y.power is None]
+        loose = [x.unsettled[-2:] for x in self._telling if x.power.power is None]
         settled = all(min(x, default=0.0) > min(powers) - _LOOSE for x in loose)
         return min(powers) if settled else None
 
-    @property
-    def has_tail(self) -> bool:
-        """True if the power of h becomes lower at small step sizes, as where a loop ends early, or
-        a term is small."""
-        return any(x.tail is not None for _, x in self._powers)
-
-    @property
-    def _jumps(self) -> bool:
-        """True if the defect grows as h falls, as it does if a loop does one iteration less."""
-        for readings in self.ladder:
-            clear = [x.row[1] for x in readings if x.ratio > CLEAR_RATIO]
-            if any(b > 1.5 * a for a, b in pairwise(clear[1:])):
-                return True
-        return False
+    def falls_as(self, power: int) -> bool:
+        """Return True if the defect falls as h^power or faster, to the smallest step sizes at which
+        it is seen; not so where a loop ends early, or a lower term is small."""
+        slowest = min((x.slowest for x in self._telling), default=0.0)
+        return slowest > power - _SLOPE_TOLERANCE and not self._is_of_loop
 
 
 class KeptSurvey:
@@ -218,26 +187,51 @@ class KeptSurvey:
 
     def _follow(self, flat: KeptMeasurement) -> KeptMeasurement:
         """Return the measurement with the defects as h falls, and what the code's loops tell."""
-        ladder, counts = list[tuple[KeptReading, ...]](), list[tuple[int, ...]]()
-        lines, divisors = Counter[Line](), _LADDERS[flat.how]
+        ladder, lines = list[tuple[list[KeptReading], list[int]]](), Counter[Line]()
+        places = ladder_places(self.places)
+        ladder += [self._follow_at(flat, x, lines) for x in places]
+        other = self._find_larger(flat, ladder, [x for x in self.places if x not in places])
+        ladder += [self._follow_at(flat, other, lines)] if other else []
+        loops = any(n >= _MIN_COMPARISONS_OF_LOOP for n in lines.values())
+        iterates = loops or any(len(set(x)) > 1 for _, x in ladder)
+        return replace(flat, ladder=tuple(tuple(x) for x, _ in ladder),
+                       counts=tuple(tuple(x) for _, x in ladder), iterates=iterates)  # fmt: skip
+
+    def _follow_at(
+        self, flat: KeptMeasurement, place: TrialPlace, lines: Counter[Line]
+    ) -> tuple[list[KeptReading], list[int]]:
+        """Return the readings at a place as h falls, and the numbers of comparisons; add the most
+        comparisons of a line to `lines`."""
+        divisors = _LADDERS[flat.how]
         if not isinstance(flat.structure, FirstIntegral | Reversible | Symmetric):
             divisors = divisors[:_MOST_JACOBIANS]
-        for place in ladder_places(self.places):
-            readings, numbers, quiet = list[KeptReading](), list[int](), 0
-            for divisor in divisors if place.step else divisors[:1]:
-                reading = self.read(flat.structure, place, place.step / divisor, sharp=True)
-                if reading is not None:
-                    readings.append(reading)
-                    numbers.append(len(self.probe.comparisons))
-                    lines |= Counter(x.line for x in self.probe.comparisons)
-                    quiet = quiet + 1 if reading.ratio <= _QUIET_RATIO else 0
-                if quiet >= _MOST_QUIET:
-                    break
-            ladder.append(tuple(readings))
-            counts.append(tuple(numbers))
-        loops = any(n >= _MIN_COMPARISONS_OF_LOOP for n in lines.values())
-        iterates = loops or any(len(set(x)) > 1 for x in counts)
-        return replace(flat, ladder=tuple(ladder), counts=tuple(counts), iterates=iterates)
+        readings, numbers, quiet = list[KeptReading](), list[int](), 0
+        for divisor in divisors if place.step else divisors[:1]:
+            reading = self.read(flat.structure, place, place.step / divisor, sharp=True)
+            if reading is not None:
+                readings.append(reading)
+                numbers.append(len(self.probe.comparisons))
+                lines |= Counter(x.line for x in self.probe.comparisons)
+                quiet = quiet + 1 if reading.ratio <= _QUIET_RATIO else 0
+            if quiet >= _MOST_QUIET:
+                break
+        return readings, numbers
+
+    def _find_larger(
+        self, flat: KeptMeasurement, ladder: Sequence[tuple[list[KeptReading], list[int]]],
+        places: Sequence[TrialPlace],
+    ) -> TrialPlace | None:  # fmt: skip
+        """Return the place at which the defect is the largest at a small h, if it is larger than at
+        those in `ladder`, as where a branch of the code has another term; else None."""
+        divisor = _SMALL[flat.how]
+        followed = (x.row[1] for readings, _ in ladder for x in readings
+                    if x.h * divisor == x.place.step and x.ratio > CLEAR_RATIO)  # fmt: skip
+        most, result = _LARGER * max(followed, default=0.0), None
+        for place in places if any(x.step for x in places) else ():
+            reading = self.read(flat.structure, place, place.step / divisor, sharp=True)
+            if reading is not None and reading.ratio > CLEAR_RATIO and reading.row[1] > most:
+                most, result = reading.row[1], place
+        return result
 
     @cached_property
     def _sides(self) -> list[TrialPlace]:

@@ -190,9 +190,12 @@ def farthest_of(step: UserMap, places: Sequence[TrialPlace]) -> dict[str, float]
 
 
 def ladder_places(places: Sequence[TrialPlace]) -> list[TrialPlace]:
-    """Select a few places, the user's among them."""
+    """Select a few places, the user's among them, and one in each other scale."""
     of_user = [x for x in places if x.source == USER]
-    return [*of_user, *select_spread([x for x in places if x.source != USER], _MAX_LADDER_PLACES)]
+    others = [x for x in places if x.source != USER]
+    by_units = {x.units: x for x in reversed(others)}  # the first of each
+    spread = select_spread([x for x in others if x.units == others[0].units], _MAX_LADDER_PLACES)
+    return [*of_user, *spread, *(x for u, x in by_units.items() if u != others[0].units)]
 
 
 def _follow_defect(

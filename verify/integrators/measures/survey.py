@@ -75,7 +75,7 @@ def places_of_field(
     """Choose the places for a step of that system, most of them in its first scale, a few in each
     other one; none if its equations are defined at none of them."""
     q_max = max((float(abs(x)) for x in (request.z or ())[field_.degrees :]), default=0.0)
-    scales, unit_of_time = units_of_system(field_, q_max or 1.0)
+    scales, unit_of_time = units_of_system(field_, q_max or None)
     unit_of_force = unit_of_time if time_dependent else None
 
     def place(

@@ -2,13 +2,13 @@
 
 A scale is a length at which the forces turn from one power of the coordinates to another (σ of a
 molecule, the length of a pendulum). Its momenta are those whose kinetic energy is the work of the
-forces over this length. If H has no scale, as Kepler's, any length will do, and 1 is taken.
+forces over this length. If H has no scale, as Kepler's, any length will do: 1 is taken, and that
+at which the motion takes a unit of time, since the numbers of a code are made for either.
 """
 
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import gmpy2
@@ -17,20 +17,15 @@ from verify.flows.extrapolation import NoFlowError, NumericalFlow
 from verify.hamiltonians.canonical_field import field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.trial_places import round_to_simple
+from verify.integrators.places.turns import OCTAVES, PLATEAU_WIDTH, find_turns
 
 _FIELD_DIGITS, TIME = 20, 0.25
-# The binary logarithms of the lengths that are tried: far from 1, as with atoms in SI units, every
-# fourth alone.
-_OCTAVES = *range(-140, -44, 4), *range(-44, 45), *range(48, 141, 4)
-# Slopes show one power if they differ by less than the second number; a slope that differs from it
-# by more than the first number shows a turn.
-_POWER_TOLERANCE, _PLATEAU_WIDTH = 0.3, 0.1
 _STATE_FACTORS = (1.0, 0.61, 1.43)  # multiples of a state, as a force may vanish at one of them
 _SCALE_RATIO = 30  # lengths with a larger ratio are different scales
-_LATER_PLATEAU_SLOPES = 6  # slopes that have to show one power, beyond the first turn
 _MAX_SCALES = 3
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
+Units = list[list[Fraction]]  # of the coordinates, for each scale
 
 
 class FloatField:
@@ -78,6 +73,19 @@ class FloatField:
         except ArithmeticError:
             return None
 
+    def octaves(self, z: Vector, base: Vector | None = None) -> list[float] | None:
+        """Return log₂ of |f_j(z) − f_j(base)| for each component, of |f_j(z)| without a base."""
+        slopes = self._slopes(z, TIME)
+        subtracted = [0] * len(z) if base is None else self._slopes(base, TIME)
+        if slopes is None or subtracted is None:
+            return None
+        try:
+            with self._flow.arithmetic.context():
+                gaps = [abs(x - y) for x, y in zip(slopes, subtracted, strict=True)]
+                return [float(gmpy2.log2(x)) if x else -math.inf for x in gaps]
+        except ArithmeticError:
+            return None
+
     def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
         """Return ∂f/∂z by columns, by central differences with 20 digits.
 
@@ -100,22 +108,38 @@ class FloatField:
         return columns
 
 
-def units_of(field: FloatField, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
+def units_of(field: FloatField, usual: float | None = None) -> tuple[Units, Fraction]:
     """Return the units of the coordinates, p1 … qn, for each scale that H has, and the unit of t.
 
-    `usual`: the length that is taken if H has no scale.
+    `usual`: the length that is taken if H has no scale; None for any.
     """
     n, scales = field.degrees, list[list[float]]()
-    for lengths in _find_scales(field, n, usual):
+    for lengths in _find_scales(field, n, usual or 1.0):
         scales.append([*_find_partners(field, lengths, n), *lengths])
     # If the q have no scale, the p may have one, as those of a relativistic body on a spring.
     for momenta in [] if scales else _find_scales(field, 0):
         scales.append([*momenta, *_find_partners(field, momenta, 0)])
-    lengths = [usual] * n
-    scales = scales or [[*_find_partners(field, lengths, n), *lengths]]
+    for length in [] if scales else [usual] if usual else _free_lengths(field):
+        lengths = [length] * n
+        scales.append([*_find_partners(field, lengths, n), *lengths])
     return [[round_to_simple(x) for x in scale] for scale in scales], round_to_simple(
         find_duration(field, scales[0])
     )
+
+
+def _free_lengths(field: FloatField) -> list[float]:
+    """Return 1, and the length at which the motion takes a unit of time where that is another."""
+    n, rates = field.degrees, list[float]()
+    for length in (1.0, float(_SCALE_RATIO)):
+        units = [*_find_partners(field, [length] * n, n), *[length] * n]
+        slopes = field([x * y for x, y in zip(units, 2 * direction(n), strict=True)])
+        rates.append(max(abs(x) / u for x, u in zip(slopes, units, strict=True)) if slopes else 0)
+    # Without a scale the rate is a power of the length.
+    is_moving = all(0 < x < math.inf for x in rates)
+    power = math.log(rates[1] / rates[0], _SCALE_RATIO) if is_moving else 0.0
+    octaves = -math.log2(rates[0]) / power if abs(power) > PLATEAU_WIDTH else 0.0
+    is_other = math.log2(_SCALE_RATIO) < abs(octaves) < OCTAVES[-1]
+    return [1.0, 2.0**octaves] if is_other else [1.0]
 
 
 def _find_scales(field: FloatField, first: int, usual: float = 1.0) -> list[list[float]]:
@@ -187,43 +211,6 @@ def response(field: FloatField, base: Vector, j: int) -> Callable[[float], float
         return field.octave(moved, TIME, base, TIME)
 
     return size
-
-
-def find_turns(size: Callable[[float], float | None]) -> list[float]:
-    """Return the s at which a size turns from one power of s to another.
-
-    `size` returns log₂ of the size. After the first turn, only powers on long stretches count: the
-    values of s at which one ends or begins.
-    """
-    values = [size(2.0**k) for k in _OCTAVES]
-    powers = [
-        (b - a) / (_OCTAVES[k + 1] - _OCTAVES[k])
-        if a is not None and b is not None and math.isfinite(b - a)
-        else None
-        for k, (a, b) in enumerate(pairwise(values))
-    ]
-    plateau: float | None = None
-    turns = list[float]()
-    first = next((k for k, x in enumerate(values) if x is not None), 0)
-    if first:
-        turns.append(math.ldexp(1.5, _OCTAVES[first]))  # the size is undefined nearer to 0
-    for k in range(2, len(powers)):
-        # After the first turn a short stretch may be a ripple of waves.
-        fewest = _LATER_PLATEAU_SLOPES if turns else 3
-        steady = [x for x in powers[max(0, k + 1 - fewest) : k + 1] if x is not None]
-        if plateau is None:
-            if len(steady) == fewest and max(steady) - min(steady) < _PLATEAU_WIDTH:
-                plateau = steady[0]
-                if turns:
-                    turns.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
-        elif powers[k] is None:
-            if not turns:  # the size is undefined from here on, or its numbers have overflowed
-                turns.append(math.ldexp(1.0, _OCTAVES[k - 1]))
-            plateau = None
-        elif abs((powers[k] or 0.0) - plateau) > _POWER_TOLERANCE:
-            turns.append(math.ldexp(1.5, _OCTAVES[k]))
-            plateau = None
-    return turns
 
 
 def _find_partners(field: FloatField, sizes: Vector, first: int) -> list[float]:

@@ -139,6 +139,6 @@ def _in_closed_form(step_map: StepMap, structure: Structure, most: int) -> _Foun
         )
 
     try:
-        return answer_unless_long(search, otherwise=None)
+        return answer_unless_long(search, None, MAX_CALLS // 2)
     except LimitError:
         return None

@@ -22,6 +22,7 @@ from verify.hamiltonians.canonical_field import CanonicalField, PlainField, fiel
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 from verify.proof.expansion import closed_series_of
+from verify.schemes.maps.solved_stages import write_out
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.composition import compose, moves_of, reverse, start_of, step_back
 from verify.schemes.steps.step_algebra import State, Step
@@ -252,7 +253,7 @@ class ClosedValues:
 
 def closed_values(step_map: StepMap, structure: Structure) -> ClosedValues | None:
     """Return the step's values in a ring with h; None if the map is not written out, or is long."""
-    closed = step_map.closed
+    closed = write_out(step_map)
     if closed is None or closed.length > _MOST_WRITTEN:
         return None
     hamiltonian, names = step_map.hamiltonian, step_map.hamiltonian.coordinates

@@ -35,6 +35,27 @@ def test_in_other_units_the_units_are_others(unit: str) -> None:
     assert all(size / 8 <= x <= size * 8 for x in units(scaled))
 
 
+TINY, HUGE = "1/1048576", "262144"
+
+
+@pytest.mark.parametrize(
+    ("text", "sizes"),
+    [
+        # The scale of u is hidden beside the far larger v, and that of v beside u.
+        (f"u_dot = u*(v/({HUGE}) - 2); v_dot = v*(1 - u/({TINY}))", (TINY, HUGE)),
+        # A spring whose v is far larger than x, as time has another unit; and it is damped.
+        (f"v_dot = -{HUGE}*(x/({TINY}) + x**3/({TINY})**3) - v/8; x_dot = ({TINY})*v/{HUGE}",
+         (HUGE, TINY)),
+        # Without any scale, x' = y w and so on, the shares of the three are such that all are as
+        # fast, and their product stays 1: w is 2⁻² of y, and x 2⁻¹.
+        ("x_dot = 2*y*w; y_dot = 8*x*w; w_dot = x*y/2", ("1", "2", "1/2")),
+    ],
+)  # fmt: skip
+def test_each_coordinate_has_a_unit_of_its_own(text: str, sizes: tuple[str, ...]) -> None:
+    for unit, size in zip(units(text), map(Fraction, sizes), strict=True):
+        assert size / 8 <= unit <= size * 8
+
+
 def test_the_number_of_coordinates_may_be_odd() -> None:
     found = units("x_dot = sin(w) + cos(y); y_dot = sin(x) + cos(w); w_dot = sin(y) + cos(x)")
     assert len(found) == 3
