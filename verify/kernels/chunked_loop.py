@@ -75,6 +75,7 @@ class ChunkedLoop:
         carried_names = (*(name for name in tangent_names if name in self._position), "done")
         self._tangent = carried_names if "growth" in self._position else ()
         self._tangent += tuple(self._form) if W_ENTRIES in run.observables else ()
+        self._tangent += self._changes.parts(kernel.matrix) if self._tangent else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = run.section
         # The label identifies the run: a checkpoint with another label is ignored, since its
@@ -209,9 +210,7 @@ class ChunkedLoop:
 
     def _tangent_value(self, name: str, state: State, done: int) -> Fraction:
         """Return one number of the tangent map's notes, as an exact rational."""
-        if name in self._form:
-            return self._unscale(1, self._total(name, state, self._exact))
-        return Fraction(done) if name == "done" else self._exact(state[self._position[name]])
+        return Fraction(done) if name == "done" else self._unscaled(name, state, self._exact)
 
     def _exact_value(self, name: str, state: State, done: int) -> Fraction:
         """Return a coordinate or an observable after the steps done, as an exact rational."""
@@ -236,7 +235,7 @@ class ChunkedLoop:
     def _change(self, name: str, state: State, done: int) -> tuple[Fraction, Fraction]:
         """Return the change of a function of the state, and how far it may be off."""
         radius = self.arithmetic.radius or (lambda _: Fraction(0))
-        parts = (partial(self._total, state=state, convert=x) for x in (self._exact, radius))
+        parts = (partial(self._unscaled, state=state, convert=x) for x in (self._exact, radius))
         return self._changes.change(name, done, *parts)
 
     def _total(
@@ -247,6 +246,12 @@ class ChunkedLoop:
         if (rest := f"{name}_rest") in self._position:
             total += convert(state[self._position[rest]])
         return total
+
+    def _unscaled(
+        self, name: str, state: State, convert: Callable[[SystemNumber], Fraction]
+    ) -> Fraction:
+        """Return the carried number of that name without its factor 2^s, which W and Λ have."""
+        return self._unscale(name[:2] == "w_" or name == "lam", self._total(name, state, convert))
 
     def _exact(self, x: SystemNumber) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)

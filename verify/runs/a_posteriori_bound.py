@@ -85,6 +85,7 @@ class _Certificate:
         self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
         self.rounding = StepRounding(run, arithmetic, outcome, note)
         self.steps, self.records = self.rounding.steps, self.rounding.records
+        self.noted = outcome.tangents[note]
         self.names, self.unit = self.rounding.names, self.rounding.unit
         self.scale = flint.arb(2) ** -outcome.shift
 
@@ -208,7 +209,6 @@ class _Certificate:
             return None
         size, slope = self._form
         most = matrix_growth.MOST * motion.top
-        matrix = (rounding.error_of_addition(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
         entries = [x for name, x in values.items() if name.startswith("dw_")]
         largest = flint.arb(0)
         for x in entries:
@@ -219,9 +219,42 @@ class _Certificate:
             second=self.derivatives.second(*self._box),
             size=size,
             slope=slope,
-            matrix_rounding=norm(matrix),
+            matrix_rounding=self._matrix_rounding(motion),
             entry_rounding=self.scale * largest,
         )
+
+    def _matrix_rounding(self, motion: matrix_growth.MatrixGrowth) -> Ball:
+        """Return a bound of the rounding of one step of Ĵ."""
+        rounding, most = self.rounding, matrix_growth.MOST * motion.top
+        names = (f"d{name}" for name in rounding.kernel.matrix)
+        return norm(rounding.error_of_addition(most, self.rounded.values[n]) for n in names)
+
+    @cached_property
+    def error_of_matrix(self) -> Ball:
+        """A bound of the error of M at the end."""
+        motion = self.motion
+        if motion is None:
+            return flint.arb.nan()
+        second, rounding = self.derivatives.second(*self._box), self._matrix_rounding(motion)
+        return matrix_growth.bound_matrix(motion, self.error_sum, second, rounding)
+
+    def bound_of_defect(self, name: str) -> Ball:
+        """Return a bound of the error of an accumulated defect: the distance of its value from the
+        defects of all z_N, and M or Λ, that are within their bounds."""
+        (observable,), around = observables.select({name}), flint.arb(0, 1)
+        of_volume = observable.carried == "lam"
+        other = self.bound_of_product() if of_volume else self.error_of_matrix
+        if not other.is_finite():
+            return other
+
+        def read(number: str) -> Ball:
+            if number in self.names:
+                return rational_ball(self.values[number]) + around * self.error
+            return rational_ball(self.noted[number]) + around * other
+
+        # W = MᵀΩM − Ω cancels: the balls need the digits of the run.
+        with working_precision(self.arithmetic.bits + PRECISION_BITS):
+            return self.run.accumulate(observable, self.steps, read) - self.total(name)
 
     # -- functions of the state -------------------------------------------------------------------
 

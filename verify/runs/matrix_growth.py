@@ -92,6 +92,19 @@ class MatrixGrowth:
     path: Ball
 
 
+def bound_matrix(
+    motion: MatrixGrowth, error_sum: Ball, second: Ball, matrix_rounding: Ball
+) -> Ball:
+    """Return E, a bound of the error of each Ĵ_k; not finite if there is none."""
+    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
+    top, growth = motion.top, motion.rate.exp()
+    displacement = 2 * top * top * second * error_sum / motion.least
+    if not growth * (displacement + motion.rate) <= 1:
+        return flint.arb.nan()
+    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
+    return error if error <= top else flint.arb.nan()
+
+
 def bound_total_defect(
     motion: MatrixGrowth,
     *,
@@ -108,14 +121,7 @@ def bound_total_defect(
     `matrix_rounding`: a bound of the rounding of one step of Ĵ. `entry_rounding`: one of the
     rounding of one term of W and its addition.
     """
-    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
-    top, growth = motion.top, motion.rate.exp()
-    displacement = 2 * top * top * second * error_sum / motion.least
-    if not growth * (displacement + motion.rate) <= 1:
-        return flint.arb.nan()
-    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
-    if not error <= top:
-        return flint.arb.nan()
+    top, error = motion.top, bound_matrix(motion, error_sum, second, matrix_rounding)
     terms = motion.steps * (2 * top + MOST * top) * size * error
     bound = terms + 4 * top * top * slope * error_sum + motion.steps * entry_rounding
     # Where the rounding was counted, the computed W was taken to be below 9 max ‖M‖².

@@ -7,6 +7,7 @@ from verify.algebra.formula import parse
 from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.observables.observable import ENERGY, Observable
+from verify.structures.accumulated import read_accumulated
 
 _KINDS = observables.by_name()
 _BY_PLACE = sorted((each.usual, name) for name, each in _KINDS.items() if each.usual is not None)
@@ -87,6 +88,8 @@ def check_observables(hamiltonian: Hamiltonian, requested: Sequence[str]) -> Non
         if observable.integral not in ("", ENERGY):
             time = ("t",) if hamiltonian.time_dependent else ()
             parse(observable.integral, (*hamiltonian.coordinates, *time), source="observable")
+        if observable.structure:
+            read_accumulated(observable.structure, hamiltonian)
 
 
 def _find(name: object) -> Observable | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, is_zero
@@ -46,6 +47,11 @@ class Poisson(Structure):
                 total = total - step.after(self.entries[a, b])
             result[f"{{{step.names[a]}, {step.names[b]}}}"] = total
         return result
+
+    def total_defect_text(self, names: Sequence[str]) -> str:
+        """Return the text by which a run names its accumulated defect."""
+        rows = self.matrix(len(names)).tolist()
+        return f"poisson = {'; '.join(', '.join(map(to_text, row)) for row in rows)}"
 
     def matrix(self, size: int) -> sympy.Matrix:
         """Return B as an antisymmetric matrix."""

@@ -66,6 +66,18 @@ class Structure(ABC):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
 
+    def total_defect(self, steps: StepValues) -> Sequence[Value]:
+        """Return the components of the defect that has accumulated over steps, which are one map:
+        `steps` has its values."""
+        return [*self.defect(steps).values()]
+
+    def total_defect_text(self, names: Sequence[str]) -> str:
+        """Return the text by which a run names its accumulated defect; "" if it has none.
+
+        `verify.structures.accumulated` reads it back.
+        """
+        return ""
+
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure on these coordinates; "" if nothing does.
 

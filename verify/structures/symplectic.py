@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, is_zero
@@ -42,6 +43,10 @@ class SymplecticForm(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries)
+
+    def total_defect_text(self, names: Sequence[str]) -> str:
+        """Return the text by which a run names its accumulated defect."""
+        return f"form = {form_text(self.entries, names)}"
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""
@@ -77,6 +82,12 @@ def form_defect(
             total = total - (share if factor is None else factor * share)
         result[f"d{step.names[a]}∧d{step.names[b]}"] = total
     return result
+
+
+def form_text(entries: Entries, names: Sequence[str]) -> str:
+    """Return a 2-form as a text that `verify.structures.reading` reads back."""
+    coefficients = {place: "" if x == 1 else f"({to_text(x)})*" for place, x in entries.items()}
+    return " + ".join(f"{x}d{names[a]}^d{names[b]}" for (a, b), x in coefficients.items())
 
 
 def canonical_entries(size: int) -> Entries:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, is_zero
 
@@ -33,6 +35,15 @@ class Volume(Structure):
         """Return the components of the defect of one step, by their names."""
         volume = step.after(self.density) * determinant(step.jacobian)
         return {"": volume - step.before(self.density)}
+
+    def total_defect(self, steps: StepValues) -> Sequence[Value]:
+        """Return the accumulated defect relative to the density at the start, as Λ is."""
+        share = steps.after(self.density) / steps.before(self.density)
+        return [share * determinant(steps.jacobian) - steps.number(Fraction(1))]
+
+    def total_defect_text(self, names: Sequence[str]) -> str:
+        """Return the text by which a run names its accumulated defect."""
+        return f"density = {to_text(self.density)}"
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""
