@@ -81,8 +81,9 @@ def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | Non
     # Then the angle 2π t/P is also below 2^12, since 2π < 8 and P ≥ factor.
     if latest < _MAX_TIME and latest / factor < _MAX_TIME / 8:
         return None
-    steps = max(1, (_PERIODS_PER_LOOP * factor / h).__floor__())
-    return Turns(factor, power, steps, (-period_bound, period_bound + steps * h))
+    steps = max(1, (_PERIODS_PER_LOOP * factor / abs(h)).__floor__())
+    first, last = sorted((0, steps * h))  # h is negative on the way back
+    return Turns(factor, power, steps, (first - period_bound, last + period_bound))
 
 
 DEFAULT_SECTIONS = 16  # the number of notes of a run

@@ -157,7 +157,7 @@ class Observable:
     @property
     def of_any_field(self) -> bool:
         """True if it is also of equations without an H: of ΔJ, or of a formula of one's own."""
-        return self.needs in (None, "delta_j") and self.integral != ENERGY
+        return self.needs in (None, "delta_j", "matrix") and self.integral != ENERGY
 
     @property
     def of_one_run(self) -> bool:

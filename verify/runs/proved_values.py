@@ -22,11 +22,10 @@ from verify.schemes.maps.step_map import StepMap
 from verify.structures import Structure
 from verify.structures.accumulated import read_accumulated
 from verify.structures.first_integral import FirstIntegral
-from verify.structures.reversible import Reversible
 
 
 def prove_kept(
-    step_map: StepMap, scheme: str, names: Iterable[str], ways: Mapping[str, Reversible]
+    step_map: StepMap, scheme: str, names: Iterable[str], ways: Mapping[str, Structure]
 ) -> BoundedValues:
     """Return the changes of functions, accumulated defects, and ways back that are shown to be 0.
 

@@ -244,7 +244,7 @@ class StepRounding:
             inputs[name] = RoundedValue(rational_ball(value), rational_ball(abs(lost)))
         if self.kernel.timed:
             # The clock's error is largest at the largest time.
-            latest = abs(self.run.start["t"]) + self.steps * self.run.start["h"]
+            latest = abs(self.run.start["t"]) + self.steps * abs(self.run.start["h"])
             inputs["t"] = RoundedValue(
                 self.times(), rational_ball(bound_time_error(self.arithmetic, latest))
             )

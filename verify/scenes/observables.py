@@ -51,8 +51,11 @@ def carries_defect(hamiltonian: Hamiltonian) -> bool:
 
 
 def carries(hamiltonian: Hamiltonian, name: str) -> bool:
-    """Return True if the observable is carried for such an H and repeats none of the plane."""
-    observable = _KINDS[name]
+    """Return True if a run carries the observable for such an H, and it repeats none of the
+    plane."""
+    observable = _find(name)
+    if observable is None or not observable.of_one_run:
+        return False
     if hamiltonian.planar and observable.in_plane:
         return False
     is_of = hamiltonian.has_energy or observable.of_any_field

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 from verify.structures.symplectic import Entries, SymplecticForm, form_defect, form_text
 
 
@@ -38,9 +38,10 @@ class Conformal(Structure):
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries, step.factor(self.factor))
 
-    def total_defect_text(self, names: Sequence[str]) -> str:
-        """Return the text by which a run names its accumulated defect."""
-        return f"factor = {to_text(self.factor)}; form = {form_text(self.entries, names)}"
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable of a run that is its accumulated defect."""
+        form = form_text(self.entries, names)
+        return (accumulated_defect(f"factor = {to_text(self.factor)}; form = {form}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

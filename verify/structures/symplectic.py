@@ -13,7 +13,7 @@ from itertools import combinations
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 
 # The coefficients of dz_a∧dz_b, a < b. In quotes, for here sympy would be imported.
 Entries = Mapping[tuple[int, int], "sympy.Expr"]
@@ -44,9 +44,9 @@ class SymplecticForm(Structure):
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries)
 
-    def total_defect_text(self, names: Sequence[str]) -> str:
-        """Return the text by which a run names its accumulated defect."""
-        return f"form = {form_text(self.entries, names)}"
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable of a run that is its accumulated defect."""
+        return (accumulated_defect(f"form = {form_text(self.entries, names)}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""
@@ -136,6 +136,10 @@ class CanonicalForm(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, canonical_entries(len(step.names)))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run of the accumulated defect, at its end and the greatest."""
+        return self.of_run, self.over_run
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

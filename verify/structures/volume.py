@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from verify.algebra.expressions.formula_text import to_text
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,12 @@ class Volume(Structure):
         share = steps.after(self.density) / steps.before(self.density)
         return [share * determinant(steps.jacobian) - steps.number(Fraction(1))]
 
-    def total_defect_text(self, names: Sequence[str]) -> str:
-        """Return the text by which a run names its accumulated defect."""
-        return f"density = {to_text(self.density)}"
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run of the accumulated defect: at its end, with the density 1
+        the greatest too."""
+        if self.density == 1:
+            return "lambda", "lambda_max"
+        return (accumulated_defect(f"density = {to_text(self.density)}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""
