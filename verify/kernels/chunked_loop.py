@@ -64,13 +64,12 @@ class ChunkedLoop:
         # would leave its format.
         self.turns = run.turns(arithmetic)
         self._observables = {each.name: each for each in observables.select(run.observables)}
-        self._changes = RunChanges(run, arithmetic, [*self._observables.values()])
+        self._changes = RunChanges(run, arithmetic, [*self._observables.values()], shift)
         self.state: State = self._first_state()
         self._position = {name: k for k, name in enumerate(kernel.state_names)}
         self._extreme = [name for name in _EXTREMES if name in self._position]
         self._note_names = (*kernel.coordinates, *sorted(self._observables))
-        accumulators = (name for name in kernel.state_names if f"d{name}" in kernel.outputs)
-        self._form = [name for name in accumulators if name.startswith("w_")]
+        self._form = [n for n in kernel.state_names if n[:2] == "w_" and f"d{n}" in kernel.outputs]
         tangent_names = tangent_map.names_of(kernel.coordinates)
         carried_names = (*(name for name in tangent_names if name in self._position), "done")
         self._tangent = carried_names if "growth" in self._position else ()
@@ -210,7 +209,9 @@ class ChunkedLoop:
 
     def _tangent_value(self, name: str, state: State, done: int) -> Fraction:
         """Return one number of the tangent map's notes, as an exact rational."""
-        return Fraction(done) if name == "done" else self._unscaled(name, state, self._exact)
+        if name in self._form:
+            return self._unscale(1, self._total(name, state, self._exact))
+        return Fraction(done) if name == "done" else self._exact(state[self._position[name]])
 
     def _exact_value(self, name: str, state: State, done: int) -> Fraction:
         """Return a coordinate or an observable after the steps done, as an exact rational."""
@@ -235,7 +236,7 @@ class ChunkedLoop:
     def _change(self, name: str, state: State, done: int) -> tuple[Fraction, Fraction]:
         """Return the change of a function of the state, and how far it may be off."""
         radius = self.arithmetic.radius or (lambda _: Fraction(0))
-        parts = (partial(self._unscaled, state=state, convert=x) for x in (self._exact, radius))
+        parts = (partial(self._total, state=state, convert=x) for x in (self._exact, radius))
         return self._changes.change(name, done, *parts)
 
     def _total(
@@ -246,12 +247,6 @@ class ChunkedLoop:
         if (rest := f"{name}_rest") in self._position:
             total += convert(state[self._position[rest]])
         return total
-
-    def _unscaled(
-        self, name: str, state: State, convert: Callable[[SystemNumber], Fraction]
-    ) -> Fraction:
-        """Return the carried number of that name without its factor 2^s, which W and Λ have."""
-        return self._unscale(name[:2] == "w_" or name == "lam", self._total(name, state, convert))
 
     def _exact(self, x: SystemNumber) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)

@@ -1,4 +1,4 @@
-"""The changes of functions I of the state along a run, and accumulated defects, read from the numbers of its kernel."""
+"""Changes of functions along a run, and accumulated defects, read from its kernel's numbers."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -23,13 +23,19 @@ class RunChanges:
     """I − I₀ at the end, max |I − I₀| and accumulated defects, for the observables made of them.
 
     I₀ is taken at the exact initial state, and I at a state as it is, without rounding. `carried`:
-    the functions of which the kernel keeps the least and the greatest values.
+    the functions of which the kernel keeps the least and the greatest values. `shift`: Λ is carried
+    as 2^shift Λ.
     """
 
     def __init__(
-        self, run: RunInputs, arithmetic: Arithmetic, observables: Sequence[Observable]
+        self,
+        run: RunInputs,
+        arithmetic: Arithmetic,
+        observables: Sequence[Observable],
+        shift: int,
     ) -> None:
         self.run, self.bits = run, arithmetic.bits
+        self._scales = {"lam": Fraction(1, 1 << shift)}
         self.carried = integrals_of(run.observables)
         self.observables = {x.name: x for x in observables if x.integral or x.structure}
         functions = (x for x in self.observables.values() if x.integral)
@@ -62,9 +68,12 @@ class RunChanges:
         observable = self.observables[name]
         if observable.structure:
             with working_precision(self.bits + _GUARD_BITS):
-                ball = self.run.accumulate(
-                    observable, done, lambda n: make_ball(exact(n), radius(n))
-                )
+
+                def read(number: str) -> Ball:
+                    scale = self._scales.get(number, 1)
+                    return make_ball(scale * exact(number), scale * radius(number))
+
+                ball = self.run.accumulate(observable, done, read)
                 if not is_representable(ball):
                     problem = f"is not defined at the state after step {done}, or at the start"
                     raise UndefinedError("keeps", observable.structure, problem)

@@ -82,8 +82,11 @@ def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | Non
     if latest < _MAX_TIME and latest / factor < _MAX_TIME / 8:
         return None
     steps = max(1, (_PERIODS_PER_LOOP * factor / abs(h)).__floor__())
-    first, last = sorted((0, steps * h))  # h is negative on the way back
-    return Turns(factor, power, steps, (first - period_bound, last + period_bound))
+    way = steps * h  # negative on the way back
+    first, last = (
+        (-period_bound, way + period_bound) if h > 0 else (way - period_bound, period_bound)
+    )
+    return Turns(factor, power, steps, (first, last))
 
 
 DEFAULT_SECTIONS = 16  # the number of notes of a run
@@ -232,9 +235,7 @@ class RunInputs:
         value = self.integral(observable.integral).evaluate(point, 53)
         return Fraction(0) if value is None else abs(midpoint_and_radius(value)[0])
 
-    def accumulate(
-        self, observable: Observable, steps: int, read: Callable[[str], Ball]
-    ) -> Ball:
+    def accumulate(self, observable: Observable, steps: int, read: Callable[[str], Ball]) -> Ball:
         """Return an accumulated defect, at flint's present precision; not finite if undefined.
 
         `read`: returns the ball of a number of the kernel after so many steps, by its name.

@@ -51,7 +51,6 @@ from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import matrix_growth
 from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
 
-_LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 METHOD = "a-posteriori bound with the tangent map carried along"
 
 
@@ -121,22 +120,8 @@ class _Certificate:
     @cached_property
     def motion(self) -> matrix_growth.MatrixGrowth | None:
         """The growth of M along the run; None if no bound follows from it."""
-        records, count, size = self.records, self.steps, len(self.names)
-        # The rounding of float64's sums, over the steps and in each sum of squares.
-        slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
-        growth, highest = records["growth"] * slack, records["growth_top"] * slack
-        least = matrix_growth.least_of(size, records)
-        if not (growth.is_finite() and least > 0):
-            return None
-        # This is Q of the module's text.
-        rate = self.rounded.tangent * growth / least
-        if not rate < _LARGEST_Q:
-            return None
-        top = matrix_growth.square_of_norm(size, highest, least).sqrt()
-        mean = matrix_growth.square_of_norm(size, growth / (count + 1), least)
-        return matrix_growth.MatrixGrowth(
-            count, least, rate, top, (count * (count + 1) * mean).sqrt()
-        )
+        size, rounding = len(self.names), self.rounded.tangent
+        return matrix_growth.growth_of(size, self.records, self.steps, rounding)
 
     def orbit(self) -> tuple[Ball, Ball] | None:
         """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
@@ -250,7 +235,8 @@ class _Certificate:
         def read(number: str) -> Ball:
             if number in self.names:
                 return rational_ball(self.values[number]) + around * self.error
-            return rational_ball(self.noted[number]) + around * other
+            scale = self.scale if of_volume else 1  # Λ was carried as 2^s Λ
+            return scale * rational_ball(self.noted[number]) + around * other
 
         # W = MᵀΩM − Ω cancels: the balls need the digits of the run.
         with working_precision(self.arithmetic.bits + PRECISION_BITS):

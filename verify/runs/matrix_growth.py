@@ -35,6 +35,7 @@ import flint
 
 from verify.kernels.rounding import Ball
 
+_LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 MOST = 3  # units of max ‖M‖; the entries of Ĵ are taken to be within it
 # A bound of the rounding of an entry of MᵀΩM, and of det M in the plane, relative to ‖M‖².
 _RELATIVE_ROUNDING = flint.arb(2) ** -48
@@ -90,6 +91,26 @@ class MatrixGrowth:
     rate: Ball
     top: Ball
     path: Ball
+
+
+def growth_of(
+    size: int, records: Mapping[str, Ball], steps: int, rounding: Ball
+) -> MatrixGrowth | None:
+    """Return the growth of the `size` × `size` matrices of a run's records; None if no bound
+    follows from it. `rounding`: ρ."""
+    # The rounding of float64's sums, over the steps and in each sum of squares.
+    slack = 1 + flint.arb(steps + size - 2) * flint.arb(2) ** -50
+    growth, highest = records["growth"] * slack, records["growth_top"] * slack
+    least = least_of(size, records)
+    if not (growth.is_finite() and least > 0):
+        return None
+    # This is Q of `a_posteriori_bound`'s text.
+    rate = rounding * growth / least
+    if not rate < _LARGEST_Q:
+        return None
+    top = square_of_norm(size, highest, least).sqrt()
+    mean = square_of_norm(size, growth / (steps + 1), least)
+    return MatrixGrowth(steps, least, rate, top, (steps * (steps + 1) * mean).sqrt())
 
 
 def bound_matrix(

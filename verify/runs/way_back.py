@@ -62,9 +62,10 @@ class Reflection:
 
     @cached_property
     def _enclosures(self) -> Enclosures:
-        is_turned = isinstance(self.structure, Reversible)
-        formulas = self.structure.reflection if is_turned else map(symbol, self.names)
-        return Enclosures(*embed([*formulas], self.names))
+        images = tuple(map(symbol, self.names))
+        if isinstance(self.structure, Reversible):
+            images = self.structure.reflection
+        return Enclosures(*embed(images, self.names))
 
     def reflect(self, box: Mapping[str, Bounded], bits: int) -> BoundedValues | None:
         """Return ρ of a box, as a box; None if ρ may be undefined in it. The coordinates of a box

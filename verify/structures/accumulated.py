@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, reduce
+from typing import Protocol
 
 import flint
 
@@ -60,12 +61,18 @@ class RunValues:
         raise NotImplementedError
 
 
+class RunSystem(System, Protocol):
+    """A system whose parameters have values."""
+
+    @property
+    def value_substitutions(self) -> Mapping[sympy.Symbol, sympy.Expr]: ...
+
+
 def accumulate(structure: Structure, steps: RunValues) -> Ball:
     """Return the accumulated defect, of several components the greatest absolute value."""
-    components = structure.total_defect(steps)
-    if len(components) == 1:
-        return components[0]
-    return reduce(flint.arb.max, map(abs, components), flint.arb(0))
+    first, *others = structure.total_defect(steps)
+    largest: Ball = reduce(flint.arb.max, map(abs, others), abs(first)) if others else first
+    return largest
 
 
 def _enclose(formula: sympy.Expr, box: Mapping[str, Ball]) -> Ball:
@@ -79,7 +86,7 @@ def _enclosures(formula: sympy.Expr, names: tuple[str, ...]) -> Enclosures:
 
 
 @lru_cache(maxsize=64)
-def read_accumulated(text: str, system: System) -> Structure:
+def read_accumulated(text: str, system: RunSystem) -> Structure:
     """Return the structure of a text, with the values of the system's parameters.
 
     Raises InputError, one line, for a bad one.
@@ -89,7 +96,7 @@ def read_accumulated(text: str, system: System) -> Structure:
     try:
         claims = read_structures(KeepsRequest(**pairs), system)  # type: ignore[arg-type]
     except InputError as error:
-        raise type(error)("accumulated_defect", text, error.problem) from None
+        raise type(error)("accumulated_defect", text, error.problem.replace("--", "")) from None
     if len(claims) != 1 or 2 * len(pairs) != len(parts):
         problem = "is none; write form = …, density = …, poisson = … or factor = …"
         raise InputError("accumulated_defect", text, problem)

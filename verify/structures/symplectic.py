@@ -138,7 +138,7 @@ class CanonicalForm(Structure):
         return form_defect(step, canonical_entries(len(step.names)))
 
     def observables(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return the observables of a run of the accumulated defect, at its end and the greatest."""
+        """Return the observables of a run: its accumulated defect, at the end and the greatest."""
         return self.of_run, self.over_run
 
     def mistake(self, names: Sequence[str]) -> str:
