@@ -148,6 +148,7 @@ class RunInputs:
         self.keeper, self.shares_kernel = keeper, shares_kernel
         self.aside = aside & observables
         self.start_radii: Mapping[str, Fraction] = {}  # how far the coordinates may be off
+        self.restarts = False  # whether the tangent map begins anew at each note
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -184,8 +185,14 @@ class RunInputs:
     ) -> Self:
         """Return the same run with other observables and `sections`, and without a series."""
         run = copy(self)
-        run.observables, run.points = observables, 0
+        run.observables, run.points, run.restarts = observables, 0, False
         run.sections, run.aside = sections, self.aside & observables
+        return run
+
+    def restarting(self, sections: int) -> Self:
+        """Return the same run with a tangent map that begins anew after each of the sections."""
+        run = self.with_observables(self.observables, sections)
+        run.restarts, run.aside, run.keeper = True, self.aside, NOTHING
         return run
 
     def from_box(self, box: Mapping[str, tuple[Fraction, Fraction]]) -> Self:

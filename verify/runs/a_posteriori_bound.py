@@ -49,7 +49,8 @@ from verify.kernels.rounding import PRECISION_BITS, Ball
 from verify.kernels.statements import integrals_of, needs_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import matrix_growth
-from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
+from verify.runs.orbit_bound import OrbitBound
+from verify.runs.step_bounds import StepDerivatives, norm
 
 METHOD = "a-posteriori bound with the tangent map carried along"
 
@@ -67,28 +68,14 @@ def certify(
         return _Certificate(run, arithmetic, outcome, note).bounds()
 
 
-class _Certificate:
+class _Certificate(OrbitBound):
     """The quantities that bound observables; see `verify.observables.observable.Certificate`.
 
     `error` is E of the module's text, and `error_sum` a bound of Σ ‖e_k‖.
     """
 
-    rounded: StepErrors
-    derivatives: StepDerivatives
     error: Ball
     error_sum: Ball
-
-    def __init__(
-        self, run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int
-    ) -> None:
-        self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
-        self.rounding = StepRounding(run, arithmetic, outcome, note)
-        self.steps, self.records = self.rounding.steps, self.rounding.records
-        self.noted = outcome.tangents[note]
-        self.names, self.unit = self.rounding.names, self.rounding.unit
-        self.scale = flint.arb(2) ** -outcome.shift
-
-    # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
         """Return the bounds by name, of each value that has one; None if the orbit has none."""
@@ -96,7 +83,7 @@ class _Certificate:
         if derivatives is None or rounding_errors is None:
             return None
         self.derivatives, self.rounded = derivatives, rounding_errors
-        orbit = self.orbit()
+        orbit = self.bound_orbit()
         if orbit is None:
             return None
         self.error, self.error_sum = orbit
@@ -116,36 +103,6 @@ class _Certificate:
         )
         volume, form = "delta_j" in needs, bool(needs & {"symplectic", "carried"})
         return StepDerivatives.from_scheme(hamiltonian, scheme, volume=volume, form=form)
-
-    @cached_property
-    def motion(self) -> matrix_growth.MatrixGrowth | None:
-        """The growth of M along the run; None if no bound follows from it."""
-        size, rounding = len(self.names), self.rounded.tangent
-        return matrix_growth.growth_of(size, self.records, self.steps, rounding)
-
-    def orbit(self) -> tuple[Ball, Ball] | None:
-        """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
-        motion = self.motion
-        if motion is None:
-            return None
-        least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
-        # `linear_bound` is X without its quadratic term. E* is twice the error that it gives, and B
-        # is taken over the box widened by E*.
-        linear_bound = rate.exp() * (self.first_error() + path / least * self.rounded.state)
-        error = (2 * top * linear_bound).abs_upper()
-        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
-        start = (linear_bound + rate.exp() * path / least * second * error * error / 2).abs_upper()
-        # The bootstrap: with E* in the quadratic term the bound must stay within E*.
-        if not top * start <= error:
-            return None
-        return (top * start).abs_upper(), (start * path).abs_upper()
-
-    def first_error(self) -> Ball:
-        """Return ‖e_0‖, the rounding of the initial values, and how far these may be off."""
-        start, number, to_fraction = self.run.start, self.arithmetic.number, self.arithmetic.exact
-        lost = [rational_ball(to_fraction(number(start[n])) - start[n]) for n in self.names]
-        radii = (rational_ball(x) for x in self.run.start_radii.values())
-        return norm(lost) + norm(radii)
 
     # -- the observables ----------------------------------------------------------------------
 
@@ -204,24 +161,27 @@ class _Certificate:
             second=self.derivatives.second(*self._box),
             size=size,
             slope=slope,
-            matrix_rounding=self._matrix_rounding(motion),
+            matrix_rounding=self._matrix_rounding(motion.top),
             entry_rounding=self.scale * largest,
         )
 
-    def _matrix_rounding(self, motion: matrix_growth.MatrixGrowth) -> Ball:
-        """Return a bound of the rounding of one step of Ĵ."""
-        rounding, most = self.rounding, matrix_growth.MOST * motion.top
+    def _matrix_rounding(self, top: Ball) -> Ball:
+        """Return a bound of the rounding of one step of Ĵ; `top`: max ‖M‖."""
+        rounding, most = self.rounding, matrix_growth.MOST * top
         names = (f"d{name}" for name in rounding.kernel.matrix)
         return norm(rounding.error_of_addition(most, self.rounded.values[n]) for n in names)
 
     @cached_property
     def error_of_matrix(self) -> Ball:
         """A bound of the error of M at the end."""
-        motion = self.motion
-        if motion is None:
-            return flint.arb.nan()
-        second, rounding = self.derivatives.second(*self._box), self._matrix_rounding(motion)
-        return matrix_growth.bound_matrix(motion, self.error_sum, second, rounding)
+        motion, second = self.motion, self.derivatives.second(*self._box)
+        if motion is not None:
+            rounding = self._matrix_rounding(motion.top)
+            return matrix_growth.bound_matrix(motion, self.error_sum, second, rounding)
+        top, rounding = self.rounding.top, self._matrix_rounding(self.rounding.top)
+        return matrix_growth.bound_matrix_in_sections(
+            self.sections or [], top, second * self.error, rounding
+        )
 
     def bound_of_defect(self, name: str) -> Ball:
         """Return a bound of the error of an accumulated defect: the distance of its value from the
@@ -270,16 +230,34 @@ class _Certificate:
         scale, count = self.scale, self.steps
         low, high = self.records["least"], self.records["most"]
         largest, jump = abs(low).max(abs(high)), scale * self.size
+        rounding, least = self.of_product(scale, jump, largest), self.least_product
+        shift = apart = flint.arb.nan()
         # The bound takes logarithms of the factors and of the product: both must be positive.
-        if not (jump < 1 and low > -1):
-            return flint.arb.nan()
-        drift = count * self.of_product(scale, jump, largest) / (1 + low)
-        shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
-        # The distance of 1 + Λ from the product of the computed factors.
-        apart = drift.expm1() * (1 + high)
+        if jump < 1 and least > 0:
+            drift = count * rounding / least
+            shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
+            # The distance of 1 + Λ from the product of the computed factors.
+            apart = drift.expm1() * (1 + high)
+        if not shift + apart < least:
+            # Volume shrinks to almost nothing. Without logarithms the distance δ of the products
+            # obeys δ_{k+1} = δ_k (1 + ΔJ_k) + P_k (ΔĴ_k − ΔJ_k) + τ_k.
+            shift = scale * self.sum_of_shifts * abs(1 + low).max(1 + high)
+            apart = self.largest_factor**count * (shift + count * rounding)
         if self.arithmetic.absolute:
             return shift + scale * count * (self.size * apart + self.unit)
         return shift + apart
+
+    @property
+    def least_product(self) -> Ball:
+        """The least 1 + Λ, which may be far below the last bit of 1."""
+        return rational_ball(1 + self.noted["least"])
+
+    @property
+    def largest_factor(self) -> Ball:
+        """A bound of |1 + ΔJ| at the true states; 1 where it is less."""
+        around = flint.arb(0, 1) * (self.slope * self.error)
+        delta_j = self.scale * (self.rounded.values["dj"].interval + around)
+        return abs(1 + delta_j).abs_upper().max(flint.arb(1))
 
     def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
         """Return the rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""

@@ -28,12 +28,15 @@ Where ‖M‖ grows like N, as in integrable motion, Σ‖e_k‖ grows like N⁵
 N⁹: it takes the worst of every step for all. `verify.runs.digits_on_demand` has a nearer one.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import flint
 
+from verify.arithmetic.arb import rational_ball
 from verify.kernels.rounding import Ball
+from verify.kernels.step.tangent_map import entries_of
 
 _LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 MOST = 3  # units of max ‖M‖; the entries of Ĵ are taken to be within it
@@ -84,20 +87,24 @@ def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
 
 @dataclass(frozen=True)
 class MatrixGrowth:
-    """The growth of a run's matrices M: N, d, Q, max ‖M‖ and S of `a_posteriori_bound`'s text."""
+    """The growth of a run's matrices M: N, d, Q, max ‖M‖ and S of `a_posteriori_bound`'s text.
+
+    `end`: a bound of the norm of the last one, if its entries are noted.
+    """
 
     steps: int
     least: Ball
     rate: Ball
     top: Ball
     path: Ball
+    end: Ball
 
 
 def growth_of(
-    size: int, records: Mapping[str, Ball], steps: int, rounding: Ball
+    size: int, records: Mapping[str, Ball], steps: int, rounding: Ball, last: Sequence[Ball]
 ) -> MatrixGrowth | None:
     """Return the growth of the `size` × `size` matrices of a run's records; None if no bound
-    follows from it. `rounding`: ρ."""
+    follows from it. `rounding`: ρ. `last`: the entries of the last one, if they are noted."""
     # The rounding of float64's sums, over the steps and in each sum of squares.
     slack = 1 + flint.arb(steps + size - 2) * flint.arb(2) ** -50
     growth, highest = records["growth"] * slack, records["growth_top"] * slack
@@ -110,7 +117,34 @@ def growth_of(
         return None
     top = square_of_norm(size, highest, least).sqrt()
     mean = square_of_norm(size, growth / (steps + 1), least)
-    return MatrixGrowth(steps, least, rate, top, (steps * (steps + 1) * mean).sqrt())
+    square = sum((x * x * slack for x in last), flint.arb(0))
+    end = square_of_norm(size, square, least).sqrt() if last else top
+    return MatrixGrowth(steps, least, rate, top, (steps * (steps + 1) * mean).sqrt(), end)
+
+
+def follow(sections: Iterable[MatrixGrowth], first: Ball, source: Ball) -> tuple[Ball, Ball]:
+    """Return bounds of all ‖y_k‖, and of their sum, for y_{k+1} = A_k y_k + s_k.
+
+    `sections`: the matrices of each section, which begin with 1. `first`: ‖y_0‖; `source`: a bound
+    of all ‖s_k‖.
+    """
+    top = total = flint.arb(0)
+    for motion in sections:
+        # With y_k = M_k x_k this bounds all ‖x_k‖ of the section.
+        growth = motion.rate.exp() * (first + motion.path / motion.least * source)
+        top, total = top.max(motion.top * growth), total + motion.path * growth
+        first = (motion.end * growth).abs_upper()
+    return top.abs_upper(), total.abs_upper()
+
+
+def bound_product(notes: Sequence[Mapping[str, Fraction]], coordinates: Sequence[str]) -> Ball:
+    """Return about the greatest norm of the products of matrices that began anew at each note."""
+    product = top = flint.arb(1)
+    for records in notes:
+        top = top.max(product * rational_ball(records["growth_top"]).sqrt())
+        squares = (rational_ball(records[name]) ** 2 for name in entries_of(coordinates))
+        product *= sum(squares, flint.arb(0)).sqrt()
+    return top.abs_upper()
 
 
 def bound_matrix(
@@ -124,6 +158,21 @@ def bound_matrix(
         return flint.arb.nan()
     error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
     return error if error <= top else flint.arb.nan()
+
+
+def bound_matrix_in_sections(
+    sections: Sequence[MatrixGrowth], top: Ball, slope: Ball, matrix_rounding: Ball
+) -> Ball:
+    """Return a bound of the error of each Ĵ_k where M began anew; not finite if there is none.
+
+    `top`: a bound of Ĵ's entries over MOST; `slope`: one of ‖A(ẑ_k) − A(z_k)‖.
+    """
+    # As long as ‖J_k‖ ≤ 2 `top`, J_{k+1} = A(ẑ_k) J_k + s_k with ‖s_k‖ ≤ 2 `slope` `top`. If that
+    # gives ‖J_{k+1}‖ ≤ 2 `top` again, it holds for all k. E_k obeys the same from 0, with ρ added.
+    source = 2 * slope * top
+    largest, _ = follow(sections, flint.arb(1), source)
+    error, _ = follow(sections, flint.arb(0), source + matrix_rounding)
+    return error if largest <= 2 * top and error <= top else flint.arb.nan()
 
 
 def bound_total_defect(
