@@ -83,7 +83,7 @@ class _Certificate(OrbitBound):
         if derivatives is None or rounding_errors is None:
             return None
         self.derivatives, self.rounded = derivatives, rounding_errors
-        orbit = self.bound_orbit()
+        orbit = self.orbit()
         if orbit is None:
             return None
         self.error, self.error_sum = orbit
@@ -239,7 +239,7 @@ class _Certificate(OrbitBound):
             # The distance of 1 + Λ from the product of the computed factors.
             apart = drift.expm1() * (1 + high)
         if not shift + apart < least:
-            # Volume shrinks to almost nothing. Without logarithms the distance δ of the products
+            # 1 + Λ is almost nothing, or negative. Without logarithms the distance δ of the products
             # obeys δ_{k+1} = δ_k (1 + ΔJ_k) + P_k (ΔĴ_k − ΔJ_k) + τ_k.
             shift = scale * self.sum_of_shifts * abs(1 + low).max(1 + high)
             apart = self.largest_factor**count * (shift + count * rounding)

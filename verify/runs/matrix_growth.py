@@ -122,16 +122,26 @@ def growth_of(
     return MatrixGrowth(steps, least, rate, top, (steps * (steps + 1) * mean).sqrt(), end)
 
 
-def follow(sections: Iterable[MatrixGrowth], first: Ball, source: Ball) -> tuple[Ball, Ball]:
+def follow(
+    sections: Iterable[MatrixGrowth], first: Ball, source: Ball, second: Ball | None = None
+) -> tuple[Ball, Ball]:
     """Return bounds of all ‖y_k‖, and of their sum, for y_{k+1} = A_k y_k + s_k.
 
-    `sections`: the matrices of each section, which begin with 1. `first`: ‖y_0‖; `source`: a bound
-    of all ‖s_k‖.
+    `sections`: the matrices of each section, which begin with 1. `first`: ‖y_0‖. All ‖s_k‖ are at
+    most `source`, and with `second`, B, at most `source` + ½ B ‖y_k‖², as long as ‖y_k‖ is at most
+    twice the bound without it. The bounds are not finite if that is not shown to hold.
     """
     top = total = flint.arb(0)
     for motion in sections:
         # With y_k = M_k x_k this bounds all ‖x_k‖ of the section.
-        growth = motion.rate.exp() * (first + motion.path / motion.least * source)
+        share = motion.rate.exp() * motion.path / motion.least
+        growth = motion.rate.exp() * first + share * source
+        if second is not None:
+            limit = 2 * motion.top * growth
+            growth += share * second * limit * limit / 2
+            # The bootstrap: with E* in the quadratic term the bound must stay within E*.
+            if not motion.top * growth <= limit:
+                return flint.arb.nan(), flint.arb.nan()
         top, total = top.max(motion.top * growth), total + motion.path * growth
         first = (motion.end * growth).abs_upper()
     return top.abs_upper(), total.abs_upper()

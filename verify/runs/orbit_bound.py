@@ -74,18 +74,19 @@ class OrbitBound:
         """The growth of M along the whole run; None if it began anew."""
         return self.sections[0] if self.sections and not self.run.restarts else None
 
-    def bound_orbit(self) -> tuple[Ball, Ball] | None:
+    def orbit(self) -> tuple[Ball, Ball] | None:
         """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
         sections, first, rounding = self.sections, self.first_error(), self.rounded.state
         if sections is None:
             return None
-        # E* is twice the error without the quadratic term, and B is taken over the box widened by
-        # E*.
-        error = 2 * matrix_growth.follow(sections, first, rounding)[0]
-        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
-        top, total = matrix_growth.follow(sections, first, rounding + second * error * error / 2)
-        # The bootstrap: with E* in the quadratic term the bound must stay within E*.
-        return (top, total) if top <= error else None
+        # B is taken over the box widened by E*, twice the error without the quadratic term; where M
+        # begins anew the terms of all sections before add to it.
+        room = 4 if self.run.restarts else 2
+        width = room * matrix_growth.follow(sections, first, rounding)[0]
+        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(width))
+        top, total = matrix_growth.follow(sections, first, rounding, second)
+        # All E* are at most 2 `top`, and B holds up to `width`.
+        return (top, total) if room * top <= 2 * width else None
 
     def first_error(self) -> Ball:
         """Return ‖e_0‖, the rounding of the initial values, and how far these may be off."""

@@ -17,7 +17,7 @@ from verify.runs.orbit_bound import linear_error
 _SECTIONS = (16, 128, 1024, 8192)  # the more, the more a flow may contract, and the wider the bound
 _ATTEMPTS = 8
 _SPARE_DIGITS = 3
-_MOST_DIGITS = 2000
+_MOST_DIGITS = 1000
 METHOD = "a-posteriori bound with tangent maps of many sections"
 
 
