@@ -30,6 +30,10 @@ the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) ove
 most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
 nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
 
+Where a flow contracts volume, M is soon singular to float64. There it begins anew with 1 at each note
+of the run: the bound above holds in each section, and ‖M‖ X of its last matrix takes the place of
+‖x_0‖ in the next one (`verify.runs.restarted_certificate`).
+
 Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
 P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
@@ -239,8 +243,8 @@ class _Certificate(OrbitBound):
             # The distance of 1 + Λ from the product of the computed factors.
             apart = drift.expm1() * (1 + high)
         if not shift + apart < least:
-            # 1 + Λ is almost nothing, or negative. Without logarithms the distance δ of the products
-            # obeys δ_{k+1} = δ_k (1 + ΔJ_k) + P_k (ΔĴ_k − ΔJ_k) + τ_k.
+            # Volume is almost nothing, or far from 1. Without logarithms the distance δ of the
+            # products obeys δ_{k+1} = δ_k (1 + ΔJ_k) + P_k (ΔĴ_k − ΔJ_k) + τ_k.
             shift = scale * self.sum_of_shifts * abs(1 + low).max(1 + high)
             apart = self.largest_factor**count * (shift + count * rounding)
         if self.arithmetic.absolute:
